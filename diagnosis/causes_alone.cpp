@@ -8,7 +8,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kMostWorse = 1.1;        // of the squares
+constexpr double kMostWorse = 1.1;    // of the squares
 constexpr double kWorseOfOne = 1.05;  // RMSE of one channel
 constexpr double kStrong = 20.0;      // nats of a cause that may be written alone
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNearRarest = 6.0;  // nats behind the rarest: what the full model may make up for
 constexpr std::size_t kMostFits = 12;
-constexpr double kBorneOut = 0.5;      // of what linear theory promised, that the full model must keep
+constexpr double kBorneOut = 0.5;           // of what linear theory promised, that the full model must keep
 constexpr double kLeastNamedFactor = 0.05;  // logarithm of a factor that is worth a name
 
 /// A candidate by its rarest law.

@@ -12,9 +12,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortestWindow_s = 1.0;     // of a window that another length has shortened
+constexpr double kShortestWindow_s = 1.0;       // of a window that another length has shortened
 constexpr std::size_t kWindowsFittedAlone = 5;  // whose times are fitted one by one
-constexpr double kTurnsGoOn = 2.0;      // of the longest run: how long turns are written for
+constexpr double kTurnsGoOn = 2.0;              // of the longest run: how long turns are written for
 // Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
 constexpr double kUsualExponent = 1.5;
 

@@ -7,7 +7,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFirst = 10.0;     // the heat at the first row may be so many typical ones
-constexpr int kSmoothings = 8;           // of steps that learn their own size
+constexpr int kSmoothings = 8;      // of steps that learn their own size
 constexpr double kSharpens = 12.0;  // nats of a heat that is worth it
 constexpr double kQuiet = 0.003;    // variance of a step where nothing happens, over the mean one
 

@@ -11,7 +11,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr Eigen::Index kKnots = 24;  // of a run, between which heat is a straight line
-constexpr int kMaximisations = 30;           // of expectation and maximisation
+constexpr int kMaximisations = 30;   // of expectation and maximisation
 constexpr double kMatters = 0.02;    // of all that the bodies do
 constexpr double kShortest = 1.0;    // time constants that are tried, in distances of knots
 constexpr double kLongest = 64.0;
@@ -66,7 +66,7 @@ struct FittedCourse {
 
 /// Expectation and maximisation. @param gram, along  of each run: columns' products, and with the residual
 FittedCourse fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& gram,
-              const std::vector<Eigen::VectorXd>& along, Eigen::Index n_bodies, double time_s) {
+                    const std::vector<Eigen::VectorXd>& along, Eigen::Index n_bodies, double time_s) {
   const Eigen::Index n = n_bodies * kKnots;
   std::vector<Eigen::MatrixXd> g;
   std::vector<Eigen::VectorXd> a;

@@ -9,9 +9,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kRise = 1.92;  // of Φ: half the 95 % quantile of χ² with one degree of freedom
+constexpr double kRise = 1.92;       // of Φ: half the 95 % quantile of χ² with one degree of freedom
 constexpr double kNearBound = 0.15;  // to it
-constexpr int kMostTries = 7;   // a side
+constexpr int kMostTries = 7;        // a side
 constexpr int kMostRows = 15;
 constexpr double kHopelessStep = 8.0;  // of Φ
 

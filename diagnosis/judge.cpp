@@ -12,13 +12,13 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr Eigen::Index kAllFitted = -1;  // of a fit of all numbers
-constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
+constexpr double kNoSolution = -1e6;     // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelierKeptOut = 10.0;  // nats
 constexpr double kWorseKeptOut = 1.1;            // of the squares
-constexpr double kMuchWorse = 1.25;       // of the squares: speaks against a claim, not only against writing it
-constexpr int kMostAgain = 6;             // climbs from where the last one ended
-constexpr double kStoppedShort = 0.3;     // nats that another climb gains
+constexpr double kMuchWorse = 1.25;              // of the squares: speaks against a claim, not only against writing it
+constexpr int kMostAgain = 6;                    // climbs from where the last one ended
+constexpr double kStoppedShort = 0.3;            // nats that another climb gains
 
 /// The kind of a cause, whether it lasts or comes in windows, or is of a path that the scenario has or lacks: with fewer rows the one may look like the other.
 std::string_view lasting_kind(std::string_view effect) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostFirst = 40;  // candidates that a pair begins with
 constexpr double kToldApart = 0.98;     // cosine: more alike than that, two causes are one
 constexpr double kSeen = 1e-12;         // squares of a signature
-constexpr double kNoPair = -1e200;        // nats of what is no pair
+constexpr double kNoPair = -1e200;      // nats of what is no pair
 
 /// A signature beside the numbers that are fitted anyway.
 struct Seen {

@@ -38,7 +38,8 @@ Eigen::MatrixXd left_of_laws(const Question& question, const Eigen::MatrixXd& in
 
 /// z² from which on an expected gain z²/2 slope - cost reaches 0.
 double square_of_size(double slope, double cost) {
-  if (slope < -1e-9) return kNeverDecided;  // what it brings falls with its size, as beside a law that does the same and more
+  if (slope < -1e-9)
+    return kNeverDecided;  // what it brings falls with its size, as beside a law that does the same and more
   if (cost <= 0.0) return 0.0;
   return slope > 1e-12 ? 2.0 * cost / slope : kNeverDecided;
 }

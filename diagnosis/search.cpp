@@ -25,7 +25,7 @@ constexpr int kMostRounds = 6;
 constexpr double kBetter = 0.5;    // nats for which one explanation is exchanged for another
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
-constexpr double kNearBest = 12.0;             // nats: what fits on may make up for
+constexpr double kNearBest = 12.0;         // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
@@ -150,8 +150,8 @@ void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const
 /// @param known      null: all are fitted anew, from where scatter was settled last
 /// @param each_kind  the best of each effect is among them, though the first n be of others: which kind it is must not hang on linear theory
 std::vector<FittedClaim> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                   const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit, int n,
-                                   KnownFits* known, const Listener& listener, bool each_kind = false) {
+                                        const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
+                                        int n, KnownFits* known, const Listener& listener, bool each_kind = false) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
@@ -209,8 +209,8 @@ std::vector<FittedClaim> best_additions(const Fitter& fitter, const std::vector<
   // one law a candidate
   std::vector<FittedClaim> unique;
   for (FittedClaim& f : fitted) {
-    const bool seen =
-        std::any_of(unique.begin(), unique.end(), [&](const FittedClaim& u) { return u.claim.candidate == f.claim.candidate; });
+    const bool seen = std::any_of(unique.begin(), unique.end(),
+                                  [&](const FittedClaim& u) { return u.claim.candidate == f.claim.candidate; });
     if (!seen) unique.push_back(std::move(f));
   }
   return unique;
@@ -381,8 +381,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
                                best.empty() ? "" : fmt::format(" beside {}", best.size())));
     if (round > 0) add_of_some_records(best, best_fit);
-    std::vector<FittedClaim> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
-                                                   options.refits, &known, listener);
+    std::vector<FittedClaim> additions = best_additions(
+        fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
       const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);

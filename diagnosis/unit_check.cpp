@@ -12,7 +12,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kWithin = 5.0;         // of a thousand
-constexpr double kFollowsTwin = 0.6;        // correlation of readings with the twin
+constexpr double kFollowsTwin = 0.6;    // correlation of readings with the twin
 constexpr double kTurned = 0.3;         // of the readings: what minus the twin leaves of them
 constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
 

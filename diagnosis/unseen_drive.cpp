@@ -9,7 +9,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kHalvings = 4;
-constexpr double kOpenDrive = 0.5;  // of what the drive can do: one standard deviation
+constexpr double kOpenDrive = 0.5;        // of what the drive can do: one standard deviation
 constexpr double kKnownAmbient_K = 0.01;  // an ambient that strays no further is known
 
 /// Of all that a run shows, each quantity of the drive at its most.

@@ -173,8 +173,7 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   if (!u.heat_would_sit_in.empty())
     add(section, Value{.key = "heat_would_sit_in", .words = "heat would sit in", .datum = u.heat_would_sit_in});
   if (u.fails_held_out) put("fails_held_out", true);
-  if (u.ambient_off_K > 0.0)
-    put("ambient_off_K", u.ambient_off_K);
+  if (u.ambient_off_K > 0.0) put("ambient_off_K", u.ambient_off_K);
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"

@@ -109,7 +109,8 @@ Table images_table(const SensorStudy& study) {
                           {.key = "not_defined", .title = "not defined"}},
               .detail = true};
   for (const studies::OtherRanking& o : study.others)
-    table.rows.push_back({word(o.image), o.quantity == compensation::Quantity::kRise ? "rise" : "as recorded", o.best, o.not_defined});
+    table.rows.push_back(
+        {word(o.image), o.quantity == compensation::Quantity::kRise ? "rise" : "as recorded", o.best, o.not_defined});
   return table;
 }
 

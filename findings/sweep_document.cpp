@@ -129,7 +129,8 @@ output::Document sweep_document(const SweepPlan& plan, const std::map<std::size_
     }
   }
   const auto remark = [&](const std::string& words) { add(plots, output::Text{.words = words, .detail = true}); };
-  if (n_all > kMostSweepPlots) remark(fmt::format("The first {} of {} pairs; all are in sweep.csv.", kMostSweepPlots, n_all));
+  if (n_all > kMostSweepPlots)
+    remark(fmt::format("The first {} of {} pairs; all are in sweep.csv.", kMostSweepPlots, n_all));
   if (rows.size() > kMostPoints) remark(fmt::format("Plots show the first {} members.", kMostPoints));
   body.sections.push_back(std::move(plots));
   return document;

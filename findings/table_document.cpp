@@ -160,11 +160,12 @@ Section readings_section(const studies::TableStudy& study) {
                      .words = "misfit of this machine, not fitted",
                      .datum = study.computed_rms_um,
                      .unit = "um"});
-  add(section, Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
-                    "almost anything: "
-                    "they do not carry a model of ambient temperature. On the second morning the error rises while the ambient "
-                    "stands still. "
-                    "What is missing is a channel: a thermometer on the table and one on its scale."});
+  add(section,
+      Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
+           "almost anything: "
+           "they do not carry a model of ambient temperature. On the second morning the error rises while the ambient "
+           "stands still. "
+           "What is missing is a channel: a thermometer on the table and one on its scale."});
   return section;
 }
 
@@ -293,7 +294,8 @@ Section frame_section(const studies::TableStudy& study) {
   number("frame.TEMP_SHIFT_um", "TEMP_SHIFT", 1e6 * f.x.shift_m, "um");
   number("frame.shift_y_um", "shift Y", 1e6 * f.shift_y_m, "um");
   number("frame.shift_z_um", "shift Z", 1e6 * f.shift_z_m, "um");
-  number("frame.arc_out_of_round_um", "an arc in X Y of 100 mm radius is out of round by", 1e5 * std::abs(f.x.scale - 1.0), "um");
+  number("frame.arc_out_of_round_um", "an arc in X Y of 100 mm radius is out of round by", 1e5 * std::abs(f.x.scale - 1.0),
+         "um");
   number("frame.turn_urad", "turn", 1e6 * f.turn_rad, "urad");
   number("frame.tilt_urad", "tilt", 1e6 * f.tilt_rad, "urad");
   number("control.T0_degC", "T0", c.reference_K - kZeroCelsius_K, "degC");

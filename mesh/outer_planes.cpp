@@ -11,8 +11,8 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kSameDirection = 1e-3;      // of unit normals
-constexpr double kLeastShare = 0.01;         // of the smaller of two planes: what they have in common less is an edge
+constexpr double kSameDirection = 1e-3;  // of unit normals
+constexpr double kLeastShare = 0.01;     // of the smaller of two planes: what they have in common less is an edge
 
 double size_m(const Mesh& mesh) {
   return (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();

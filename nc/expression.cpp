@@ -16,8 +16,8 @@
 namespace driftwright {
 namespace {
 
-constexpr double kSame = 1e-4;  // LinuxCNC's EQ and NE
-constexpr int kDeepestBracket = 100;   // brackets in brackets
+constexpr double kSame = 1e-4;        // LinuxCNC's EQ and NE
+constexpr int kDeepestBracket = 100;  // brackets in brackets
 
 struct Operator {
   const char* text;

@@ -99,7 +99,8 @@ void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) 
 void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, int times) {
   const std::size_t own = at - 1;  // the reader stands behind it
   if (times == 0) {
-    if (returns_.size() >= kDeepestSubprogram) fail(line, fmt::format("subprograms nested more than {} deep", kDeepestSubprogram));
+    if (returns_.size() >= kDeepestSubprogram)
+      fail(line, fmt::format("subprograms nested more than {} deep", kDeepestSubprogram));
     returns_.push_back(at);
     go_to(line, label);
     return;

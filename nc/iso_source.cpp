@@ -204,7 +204,8 @@ class IsoSource::Impl {
   // --- what runs when -----------------------------------------------------------------------------------------------------------
 
   void enter(const IsoLine& line, Frame next) {
-    if (frames_.size() > kDeepestSubroutine) fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepestSubroutine));
+    if (frames_.size() > kDeepestSubroutine)
+      fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepestSubroutine));
     frames_.push_back(std::move(next));
   }
 

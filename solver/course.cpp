@@ -9,7 +9,8 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kSlowStretch = 1e-3;   // of λt: below it the integrals are differences of large numbers, and series take over
+constexpr double kSlowStretch =
+    1e-3;                        // of λt: below it the integrals are differences of large numbers, and series take over
 constexpr double kEqual = 1e-7;  // of |λ_i - λ_j| over the whole course: such a pair counts as one
 
 /// Σ (-x)^k / c_k for c_k as given, 0 <= x < kSlowStretch.

@@ -337,7 +337,8 @@ void HeatOde::solve_linear_stage(double gamma) {
     zero_fixed(residual_.data());
   }
   const Multigrid* multigrid = multigrid_for(gamma);
-  const PcgOutcome outcome = shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostPcgIterations, multigrid);
+  const PcgOutcome outcome =
+      shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostPcgIterations, multigrid);
   count(outcome);
   if (!multigrid && outcome.iterations > kManyIterations && n_ > worth_multigrid_) {
     least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);

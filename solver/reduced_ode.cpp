@@ -11,7 +11,7 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostNewtonIterations = 12;
-constexpr double kServes = 0.3;             // an exchange within so much of its value in the diagonal leaves it as it is
+constexpr double kServes = 0.3;  // an exchange within so much of its value in the diagonal leaves it as it is
 constexpr double kNewtonShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
 
 }  // namespace

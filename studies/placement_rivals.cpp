@@ -34,12 +34,14 @@ Record record_of(const PlacementModel& model, const PlacementRun& run, double no
 
 }  // namespace
 
-std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs, int n_most, double noise_K) {
+std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                        int n_most, double noise_K) {
   std::vector<Record> records;
   for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeedOfRivals + records.size()));
   std::vector<std::string> candidates;
   for (int c = 0; c < model.n_free(); ++c) candidates.push_back(fmt::format("{}", c));
-  using Select = compensation::Selection (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&, int);
+  using Select =
+      compensation::Selection (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&, int);
   const Select by_grade = [](std::span<const Record> r, const std::vector<std::string>& c, const std::string& t, int n) {
     return compensation::select_by_grey_grade(r, c, t, n);
   };
@@ -54,7 +56,8 @@ std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& mo
         std::from_chars(name.data(), name.data() + name.size(), candidate);
         set.push_back(candidate);
       }
-      if (set.size() != static_cast<std::size_t>(n + model.n_mounted)) set.clear();  // fewer clusters, or candidates that move
+      if (set.size() != static_cast<std::size_t>(n + model.n_mounted))
+        set.clear();  // fewer clusters, or candidates that move
       sets.push_back(std::move(set));
     }
     rivals.push_back(std::move(sets));

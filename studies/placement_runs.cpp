@@ -53,11 +53,14 @@ Cyclogram made(const std::vector<Drive>& drives, const std::string& name, std::u
   return c;
 }
 
-PlacementRun run_of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram, const Validation::Season& season, double step_s) {
+PlacementRun run_of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram, const Validation::Season& season,
+                    double step_s) {
   scenarios::MachineModel machine = *scenario.machine;
   machine.ambient = scenarios::ambient_in(season, machine.ambient, cyclogram.duration_s());
-  PlacementRun run{.cyclogram = cyclogram.name, .ambient = season.name, .felt = scenarios::felt_run(machine, cyclogram), .times_s = {}};
-  for (double t_s = 0.0; t_s < cyclogram.duration_s() + 1e-6; t_s += step_s) run.times_s.push_back(std::min(t_s, cyclogram.duration_s()));
+  PlacementRun run{
+      .cyclogram = cyclogram.name, .ambient = season.name, .felt = scenarios::felt_run(machine, cyclogram), .times_s = {}};
+  for (double t_s = 0.0; t_s < cyclogram.duration_s() + 1e-6; t_s += step_s)
+    run.times_s.push_back(std::min(t_s, cyclogram.duration_s()));
   return run;
 }
 
@@ -88,32 +91,37 @@ PlacementFamilies placement_families(const scenarios::Scenario& scenario, const 
   std::erase_if(families.chosen_on, [&](const Cyclogram& c) { return train.empty() && holds(families.judged_on, c.name); });
   for (const Cyclogram& c : families.judged_on) {
     if (holds(families.chosen_on, c.name))
-      throw InputError(fmt::format("'{}' is to be chosen on (--train) and judged by (--test); what was chosen on it has seen it", c.name));
+      throw InputError(fmt::format(
+          "'{}' is to be chosen on (--train) and judged by (--test); what was chosen on it has seen it", c.name));
   }
   if (test.empty() && scenario.validation) {
     for (const Validation::Family& family : scenario.validation->families) {
       for (const Cyclogram* c : {&family.cyclograms.front(), &family.cyclograms.back()}) {
-        if (families.judged_on.size() < kMostToJudgeBy && !holds(families.chosen_on, c->name) && !holds(families.judged_on, c->name))
+        if (families.judged_on.size() < kMostToJudgeBy && !holds(families.chosen_on, c->name) &&
+            !holds(families.judged_on, c->name))
           families.judged_on.push_back(*c);
       }
     }
   }
   const auto make = [&](std::vector<Cyclogram>& list, std::size_t n, const char* name, std::uint64_t purpose) {
     for (int i = 1; list.size() < n; ++i) {
-      if (drives.empty()) throw InputError("no cyclogram of the scenario drives the machine; there is nothing that would warm it");
+      if (drives.empty())
+        throw InputError("no cyclogram of the scenario drives the machine; there is nothing that would warm it");
       list.push_back(made(drives, fmt::format("{}_{}", name, i), purpose + static_cast<std::uint64_t>(i)));
       families.made.push_back(list.back().name);
     }
   };
   make(families.chosen_on, kLeastToChooseOn, "made", 100);
   if (families.judged_on.empty()) make(families.judged_on, kMadeToJudgeBy, "unseen", 200);
-  families.ambients = scenario.validation ? scenario.validation->seasons
-                                       : std::vector<Validation::Season>{{"as it is", 0.0, 0.0}, {"a day of ±3 K", 0.0, 3.0}, {"5 K colder, ±2 K", -5.0, 2.0}};
+  families.ambients = scenario.validation
+                          ? scenario.validation->seasons
+                          : std::vector<Validation::Season>{
+                                {"as it is", 0.0, 0.0}, {"a day of ±3 K", 0.0, 3.0}, {"5 K colder, ±2 K", -5.0, 2.0}};
   return families;
 }
 
 std::vector<PlacementRun> runs_in_all_ambients(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
-                                            const std::vector<Validation::Season>& ambients, int rows) {
+                                               const std::vector<Validation::Season>& ambients, int rows) {
   std::vector<PlacementRun> runs;
   for (std::size_t c = 0; c < cyclograms.size(); ++c) {
     const double step_s = std::max(60.0, 60.0 * std::floor(cyclograms[c].duration_s() / rows / 60.0));

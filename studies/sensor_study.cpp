@@ -16,8 +16,9 @@ SensorStudy study_sensors(const scenarios::Scenario& scenario, const RecordPaths
   std::vector<Record> records;
   for (const ObservedRun& run : read.train)
     records.push_back(own_rows(scored_readings(run, settings.target, settings.count_from_start), run.n_before));
-  const GreyOptions how{.image = settings.image,
-                        .quantity = settings.count_from_start ? compensation::Quantity::kRise : compensation::Quantity::kAsRecorded};
+  const GreyOptions how{
+      .image = settings.image,
+      .quantity = settings.count_from_start ? compensation::Quantity::kRise : compensation::Quantity::kAsRecorded};
   const std::string& target = settings.target;
   const int n = settings.sensors_to_choose;
 

@@ -20,11 +20,11 @@ struct Fineness {
 };
 constexpr Fineness kCoarse = {1, 2}, kFine = {3, 8};  // all are tried coarsely, the best of them finely
 constexpr std::size_t kBatch = 250;
-constexpr std::size_t kParents = 20;        // the best so far, which others are changes of
+constexpr std::size_t kParents = 20;  // the best so far, which others are changes of
 constexpr std::size_t kTriedFinely = 200;
-constexpr std::size_t kTogether = 10;    // programmes of a piece
-constexpr int kAsked = 4;                // programmes asked for, for each one that shall be tried: some come twice
-constexpr double kRandom = 0.5;          // share of all that is tried
+constexpr std::size_t kTogether = 10;  // programmes of a piece
+constexpr int kAsked = 4;              // programmes asked for, for each one that shall be tried: some come twice
+constexpr double kRandom = 0.5;        // share of all that is tried
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
 constexpr double kWork = 1.8e11;         // multiplications, some ten seconds of two cores
 constexpr double kWorthASection = 0.01;  // of the best
@@ -62,7 +62,8 @@ class Search {
           return of_piece;
         });
     n_pieces_ += n_pieces;
-    for (std::size_t i = 0; i < programmes.size(); ++i) best_.push_back({programmes[i], shares[i / kTogether][i % kTogether]});
+    for (std::size_t i = 0; i < programmes.size(); ++i)
+      best_.push_back({programmes[i], shares[i / kTogether][i % kTogether]});
     std::stable_sort(best_.begin(), best_.end(), [](const Tried& a, const Tried& b) { return a.share > b.share; });
     if (best_.size() > n_kept_) best_.resize(n_kept_);
   }
@@ -137,7 +138,8 @@ Pieces::Numbers numbers_of(const diagnosis::Prospect& p, const std::vector<doubl
   return numbers;
 }
 
-diagnosis::Prospect prospect_of(const Pieces::Numbers& numbers, const diagnosis::Question& question, std::vector<double>& by_channel) {
+diagnosis::Prospect prospect_of(const Pieces::Numbers& numbers, const diagnosis::Question& question,
+                                std::vector<double>& by_channel) {
   const auto n_laws = static_cast<Eigen::Index>(question.laws.size());
   const double* at = numbers.data();
   diagnosis::Prospect p;
@@ -157,15 +159,18 @@ diagnosis::Prospect prospect_of(const Pieces::Numbers& numbers, const diagnosis:
 }
 
 /// What tests would tell, each with what it tells without each channel of the machine's own, and with each further one.
-std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts& doubts, std::size_t n_tests, const Pieces& pieces,
-                                   const Listener& listener, const std::function<diagnosis::MeasuredRun(std::size_t)>& run_of) {
+std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts& doubts, std::size_t n_tests,
+                                   const Pieces& pieces, const Listener& listener,
+                                   const std::function<diagnosis::MeasuredRun(std::size_t)>& run_of) {
   std::vector<Pieces::Numbers> told(n_tests);
   const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
   for (std::size_t t = 0; t < n_tests; ++t) {  // each has all cores
     if (!pieces.shard.has(t)) continue;
     told[t] = pieces.of(kPlanJudged + t, [&] {
-      const std::vector<Eigen::MatrixXd> of_channels = diagnosis::information_by_channel(*p.twin, doubts, run_of(t), p.noise);
-      const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
+      const std::vector<Eigen::MatrixXd> of_channels =
+          diagnosis::information_by_channel(*p.twin, doubts, run_of(t), p.noise);
+      const Eigen::MatrixXd total =
+          std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
       std::vector<double> by_channel(of_channels.size());
       parallel_for(of_channels.size(), [&](std::size_t c) {
         const bool is_own = c < p.channels.size();
@@ -207,8 +212,8 @@ Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
 
 }  // namespace
 
-std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options, const Listener& listener,
-                                  const Pieces& pieces) {
+std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options,
+                                  const Listener& listener, const Pieces& pieces) {
   const TestLevels levels = test_levels(scenario, options.most_speed_rpm);
   const auto cyclogram = [&](const TestProgramme& p) { return cyclogram_of(p, levels, options.duration_s, "planned"); };
   std::vector<Cyclogram> like = {cyclogram(usual_test(levels)), cyclogram(stepped_test(levels))};
@@ -229,11 +234,13 @@ std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const Tes
                 .question = doubts.question};
   for (const diagnosis::MeasuredChannel& c : p.channels) plan.channels.push_back(c.name);
   const Pieces::Numbers found_numbers = pieces.of(kFound, [&] {
-    const auto doubts_of = [&](const Fineness& how) { return diagnosis::thinned(*p.twin, doubts, usual, how.most_of_a_kind); };
+    const auto doubts_of = [&](const Fineness& how) {
+      return diagnosis::thinned(*p.twin, doubts, usual, how.most_of_a_kind);
+    };
     const auto machine_of = [&](const Fineness& how, const diagnosis::Doubts& searched) {
       listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
-      return diagnosis::LevelMachine(*p.twin, searched, levels.drives, usual, options.duration_s / (kTestSlots * how.rows_per_slot),
-                                     options.interval_s, p.noise);
+      return diagnosis::LevelMachine(*p.twin, searched, levels.drives, usual,
+                                     options.duration_s / (kTestSlots * how.rows_per_slot), options.interval_s, p.noise);
     };
     const diagnosis::Doubts few = doubts_of(kCoarse), more = doubts_of(kFine);
     const diagnosis::LevelMachine coarse_machine = machine_of(kCoarse, few);
@@ -263,12 +270,11 @@ std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const Tes
   const std::size_t n_own = p.channels.size();
   const std::vector<std::pair<std::string, TestProgramme>> judged = {
       {"usual", usual_test(levels)}, {"stepped", stepped_test(levels)}, {"planned", best}};
-  const std::vector<Pieces::Numbers> told = judge(p, doubts, judged.size(), pieces, listener, [&](std::size_t i) {
-    return run_of(cyclogram(judged[i].second), all);
-  });
+  const std::vector<Pieces::Numbers> told = judge(p, doubts, judged.size(), pieces, listener,
+                                                  [&](std::size_t i) { return run_of(cyclogram(judged[i].second), all); });
   if (!pieces.shard.is_all()) return std::nullopt;
   std::vector<double> by_channel;
-  for (std::size_t i = 0; JudgedTest* test : {&plan.usual, &plan.stepped, &plan.planned}) {
+  for (std::size_t i = 0; JudgedTest * test : {&plan.usual, &plan.stepped, &plan.planned}) {
     std::vector<double> of_test;
     JudgedTest next{judged[i].first, cyclogram(judged[i].second), prospect_of(told[i], doubts.question, of_test)};
     *test = std::move(next);

@@ -23,8 +23,8 @@ using namespace compensation;
 using scenarios::Scenario;
 using scenarios::Validation;
 
-constexpr int kModesOfObserver = 12;   // the slowest of the model, beside its steady responses
-constexpr double kRounding = 0.289;  // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
+constexpr int kModesOfObserver = 12;  // the slowest of the model, beside its steady responses
+constexpr double kRounding = 0.289;   // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
 
 /// One simulation to make.
 struct Job {
@@ -244,13 +244,12 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
     }
   }
   listener.begin(fmt::format("simulating {} runs", jobs.size()));
-  parallel_for(
-      jobs.size(),
-      [&](std::size_t i) {
-        judged[i].run = simulate(scenario, model, jobs[i]);
-        judged[i].run.readings = read_in_validation(v, std::move(judged[i].run.readings), v.train.size() + i);
-      },
-      {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
+  parallel_for(jobs.size(),
+               [&](std::size_t i) {
+                 judged[i].run = simulate(scenario, model, jobs[i]);
+                 judged[i].run.readings = read_in_validation(v, std::move(judged[i].run.readings), v.train.size() + i);
+               },
+               {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
   compensation::MatrixSettings settings;
   settings.strategies = std::move(training.settings);
   settings.tolerance_um = v.tolerance_um;

@@ -10,7 +10,7 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kCorrectedTimes = 12;            // of warm-ups, from none to the longest
+constexpr int kCorrectedTimes = 12;   // of warm-ups, from none to the longest
 constexpr int kHalvings = 4;          // between two of them
 constexpr std::size_t kNoise = 1000;  // of readings: that of no run of the validation
 

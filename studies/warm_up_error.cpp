@@ -9,8 +9,8 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kErrorTimes = 16;   // of a warm-up at one speed, from none to the longest
-constexpr int kBetween = 8;  // then between the last that is not enough and the first that is
+constexpr int kErrorTimes = 16;  // of a warm-up at one speed, from none to the longest
+constexpr int kBetween = 8;      // then between the last that is not enough and the first that is
 
 /// Without what only pictures need.
 std::shared_ptr<const scenarios::Model> drawn(const scenarios::Model& model, double sigma, int seed) {

@@ -18,10 +18,10 @@ constexpr int kSpeeds = 25;              // up to the limit, of one speed
 constexpr double kBeyond = 1.2;          // of the best time so far: the least of a peak shows between times alone
 constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
 constexpr std::size_t kMostWarmUpSections = 4;
-constexpr int kEnds = 10;                // parts of the time, at whose ends one of three sections may end
-constexpr int kImproved = 3;             // of programmes with another section, the best ones
-constexpr double kFirstGain = 0.02;      // of its time, by another section
-constexpr int kScanned = 8;              // times at which two are tried where one is never enough
+constexpr int kEnds = 10;            // parts of the time, at whose ends one of three sections may end
+constexpr int kImproved = 3;         // of programmes with another section, the best ones
+constexpr double kFirstGain = 0.02;  // of its time, by another section
+constexpr int kScanned = 8;          // times at which two are tried where one is never enough
 
 bool has_less_drift(const WarmUp& a, const WarmUp& b) {
   return a.peak_um < b.peak_um;
@@ -122,8 +122,8 @@ WarmUp WarmUpSearch::constant() const {
   for (double step = 0.5 / kSpeeds; step * most_rpm_ >= 0.5 * kWarmUpStep_rpm; step *= 0.5) {
     for (bool helped = true; helped;) {
       const double at = best.sections.front().drive.speed_rpm / most_rpm_;
-      const WarmUp next = best_of({std::max(at - step, 0.0), std::min(at + step, 1.0)},
-                                  std::min(most_s_, kBeyond * best.duration_s()));
+      const WarmUp next =
+          best_of({std::max(at - step, 0.0), std::min(at + step, 1.0)}, std::min(most_s_, kBeyond * best.duration_s()));
       helped = next.is_enough && next.duration_s() < best.duration_s() && !next.sections.empty();
       if (helped) best = next;
     }
@@ -205,8 +205,9 @@ WarmUp WarmUpSearch::with_one_more(const WarmUp& known, double time_s) const {
     for (int speeds = 0; speeds < 8; ++speeds) {
       for (int i = 1; i < kEnds; ++i) {
         for (int j = i + 1; j < kEnds; ++j)
-          longer.push_back({static_cast<double>(speeds & 1), static_cast<double>((speeds >> 1) & 1), static_cast<double>(speeds >> 2),
-                            static_cast<double>(i) / kEnds, static_cast<double>(j) / kEnds});
+          longer.push_back({static_cast<double>(speeds & 1), static_cast<double>((speeds >> 1) & 1),
+                            static_cast<double>(speeds >> 2), static_cast<double>(i) / kEnds,
+                            static_cast<double>(j) / kEnds});
       }
     }
   }
@@ -307,8 +308,7 @@ WarmUp WarmUpSearch::improved(WarmUp best, double time_s, Shape& shape) const {
       }
       std::vector<WarmUp> tried(around.size());
       parallel_for(around.size(), [&](std::size_t i) { tried[i] = of(time_s, around[i]); });
-      const auto least = std::min_element(tried.begin(), tried.end(),
-                                          has_less_drift);
+      const auto least = std::min_element(tried.begin(), tried.end(), has_less_drift);
       helped = least->peak_um < best.peak_um;
       if (!helped) continue;
       shape = around[static_cast<std::size_t>(least - tried.begin())];

@@ -138,7 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Names, AmbientIsThatOfTheAmbient) {
   const auto with = [](const char* sensor) { (void)read(two_bodies("", "", sensor)); };
-  EXPECT_THAT([&] { with("{name: ambient, node: hot}"); }, ThrowsMessage<InputError>(HasSubstr("that of the ambient temperature")));
+  EXPECT_THAT([&] { with("{name: ambient, node: hot}"); },
+              ThrowsMessage<InputError>(HasSubstr("that of the ambient temperature")));
   EXPECT_NO_THROW(with("{name: ambient, node: ambient}"));
 }
 

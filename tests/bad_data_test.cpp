@@ -256,8 +256,8 @@ effects:
 ambient: [[0 min, 20 degC]]
 sensors: [{name: t_shaft, node: shaft}]
 cyclograms:
-  cycle: )" + cyclogram +
-         "\nsolver: {output_interval: 1 min}\n";
+  cycle: )" +
+         cyclogram + "\nsolver: {output_interval: 1 min}\n";
 }
 
 // One body, 1000 J/K with 1 W/K to the ambient, of which 60 W at 1000 rpm: T' = (P - T) / 1000 s. Of a hole from 100 to 164 min the first part is 32 min long: full

@@ -209,10 +209,13 @@ TEST(BadCommand, MissingFileUnknownVerbAndMissingArgumentEndWithTwo) {
 
 TEST(BadCommand, WordsThatAreNoneNameTheOneThatWasMeant) {
   for (const auto& [command, message] : {
-           std::pair{"run no_such.yaml --threds 3", "error: driftwright run has no option --threds. Did you mean '--threads'?"},
+           std::pair{"run no_such.yaml --threds 3",
+                     "error: driftwright run has no option --threds. Did you mean '--threads'?"},
            {"diagnose no_such.yaml", "error: driftwright diagnose: --measured is required"},
-           {"", "error: a verb is required"}, {"--json", "error: driftwright has no option --json"},
-           {"run scenarios/lumped_sweep.yaml", "lumped_sweep.yaml:16:3: this file is a study that varies a scenario: `driftwright sweep`"},
+           {"", "error: a verb is required"},
+           {"--json", "error: driftwright has no option --json"},
+           {"run scenarios/lumped_sweep.yaml",
+            "lumped_sweep.yaml:16:3: this file is a study that varies a scenario: `driftwright sweep`"},
            {"sweep scenarios/lumped_spindle.yaml", "lumped_spindle.yaml:15:3: this file is a scenario: `driftwright run`"},
        }) {
     const CommandOutcome outcome = run_program(command);
@@ -259,7 +262,8 @@ INSTANTIATE_TEST_SUITE_P(
         Conflict{"machine_with_model", "export no_such.yaml --fmu --model x.json", "--of observer"},
         Conflict{"materials_markdown", "list materials --markdown", "--markdown goes with effects"},
         Conflict{"separation_alone", "inject --correction x.csv --separation 5 </dev/null", "add --clocked"},
-        Conflict{"topic_alone", "follow no_such.yaml --topic speed_rpm=mill/speed </dev/null", "wants --mqtt HOST or --mtconnect"},
+        Conflict{"topic_alone", "follow no_such.yaml --topic speed_rpm=mill/speed </dev/null",
+                 "wants --mqtt HOST or --mtconnect"},
         Conflict{"two_links", "follow no_such.yaml --mqtt localhost --mtconnect http://localhost:5000",
                  "--mqtt excludes --mtconnect"},
         Conflict{"no_threads", "check no_such.yaml --threads 0", "--threads"},

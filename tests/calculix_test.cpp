@@ -189,7 +189,8 @@ TEST_P(SameMesh, Displacements) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, SameMesh,
-                         ::testing::Values(Case{CellShape::kHex8, 2}, Case{CellShape::kTet10, 1}, Case{CellShape::kHex20, 1}),
+                         ::testing::Values(Case{CellShape::kHex8, 2}, Case{CellShape::kTet10, 1},
+                                           Case{CellShape::kHex20, 1}),
                          [](const auto& test) { return fixtures::name_of(test.param.shape); });
 INSTANTIATE_TEST_SUITE_P(CellsAtLength, SameMesh, ::testing::Values(Case{CellShape::kTet4, 2}),
                          [](const auto& test) { return fixtures::name_of(test.param.shape); });

@@ -58,7 +58,8 @@ TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
     EXPECT_NEAR(first.parameters[k].value, claim.knobs[k].value(x[static_cast<Eigen::Index>(k)]), 1e-9);
   for (const Estimate& e : d.calibrated) EXPECT_FALSE(e.is_written) << e.name;
   for (const Cause& c : d.causes) EXPECT_EQ(c.is_written, c.why_not_written.empty()) << c.effect;
-  for (const Cause& c : d.causes) EXPECT_EQ(c.is_written, &c == &first) << c.effect << ": what comes and goes does not hold on the end";
+  for (const Cause& c : d.causes)
+    EXPECT_EQ(c.is_written, &c == &first) << c.effect << ": what comes and goes does not hold on the end";
   const ExtendedScenario extended =
       extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
   const TwinState read = scenarios::read_scenario(write_file("extended.yaml", extended.text)).machine->effects;

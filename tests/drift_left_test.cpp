@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-
 #include <cmath>
 #include <set>
 
@@ -24,7 +23,8 @@ Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index co
   return m;
 }
 
-std::vector<RunSensitivity> random_sensitivities(std::uint64_t seed, int n_factors, int n_candidates, int n_rows, int n_drifts) {
+std::vector<RunSensitivity> random_sensitivities(std::uint64_t seed, int n_factors, int n_candidates, int n_rows,
+                                                 int n_drifts) {
   Random random(seed);
   std::vector<RunSensitivity> runs(2);
   for (RunSensitivity& run : runs) {
@@ -83,7 +83,10 @@ TEST(RegressionLeft, IsLeastSquaresOnTheOtherGroupsOfEachMachine) {
   std::vector<RunOfCandidates> runs;
   for (int machine = 0; machine < 2; ++machine) {
     for (int group = 0; group < 3; ++group)
-      runs.push_back({.machine = machine, .group = group, .reading_K = random_matrix(random, 5, 12), .drift_um = random_matrix(random, 12, 2)});
+      runs.push_back({.machine = machine,
+                      .group = group,
+                      .reading_K = random_matrix(random, 5, 12),
+                      .drift_um = random_matrix(random, 12, 2)});
   }
   const double noise_K = 0.4;
   const std::vector<int> set = {3, 0, 2};
@@ -120,7 +123,8 @@ TEST(LeftWithLoss, IsTheMeanSquareOfAllAndOfTheWorstLoss) {
   const ObserverLeft whole(random_sensitivities(7, 6, 9, 8, 1), {0.2});
   const std::vector<int> set = {2, 5, 7};
   double worst_um = 0.0;
-  for (const std::vector<int>& rest : {std::vector<int>{5, 7}, {2, 7}, {2, 5}}) worst_um = std::max(worst_um, whole.of(rest));
+  for (const std::vector<int>& rest : {std::vector<int>{5, 7}, {2, 7}, {2, 5}})
+    worst_um = std::max(worst_um, whole.of(rest));
   const LeftWithLoss left(whole);
   EXPECT_NEAR(left.of(set), std::sqrt(0.5 * (whole.of(set) * whole.of(set) + worst_um * worst_um)), 1e-12);
   for (int a = 0; a < 9; ++a) {  // whichever's loss is the worst
@@ -141,9 +145,11 @@ TEST(LeftWithLoss, IsTheMeanSquareOfAllAndOfTheWorstLoss) {
 // One thermometer tells the drift all by itself; two worse ones tell it together. Where any one may fail, the good one alone is no answer for two.
 TEST(LeftWithLoss, ChoosesASetThatBearsTheLossOfItsBest) {
   Random random(1);
-  RunSensitivity run{.reading_K = {Eigen::MatrixXd::Zero(4, 4), Eigen::MatrixXd::Zero(4, 4)}, .drift_um = {}, .reading_K2 = 1e-4};
+  RunSensitivity run{
+      .reading_K = {Eigen::MatrixXd::Zero(4, 4), Eigen::MatrixXd::Zero(4, 4)}, .drift_um = {}, .reading_K2 = 1e-4};
   run.drift_um = {Eigen::MatrixXd::Ones(1, 4), Eigen::MatrixXd::Constant(1, 4, 0.3)};
-  run.reading_K[0].col(3) << 1.0, 1.0, 0.0, 0.97;  // candidate 0 tells both factors as the drift has them; 1 and 2 one each; 3 nearly as 0
+  run.reading_K[0].col(3) << 1.0, 1.0, 0.0,
+      0.97;  // candidate 0 tells both factors as the drift has them; 1 and 2 one each; 3 nearly as 0
   run.reading_K[1].col(3) << 0.3, 0.0, 1.0, 0.30;
   run.reading_K[0].leftCols(3).colwise() = run.reading_K[0].col(3).eval();
   run.reading_K[1].leftCols(3).colwise() = run.reading_K[1].col(3).eval();

@@ -87,7 +87,8 @@ void expect_written_and_read_back(const char* name, Places places) {
         Eigen::VectorXd x = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
         x[0] = v.all_or_nothing ? v.trial_x : 2.7182818 * v.trial_x;  // digits without end
         for (std::size_t k = 0; k < v.grid[g].size(); ++k) x[static_cast<Eigen::Index>(k + 1)] = 0.987654321 * v.grid[g][k];
-        jobs.push_back({c.effect + ", " + v.law, c.effect + " at " + c.where + ", " + v.law, change_of({0, 0, v.knobs, v.all_or_nothing}, x)});
+        jobs.push_back({c.effect + ", " + v.law, c.effect + " at " + c.where + ", " + v.law,
+                        change_of({0, 0, v.knobs, v.all_or_nothing}, x)});
       }
     }
   }
@@ -145,7 +146,8 @@ void expect_written_and_read_back(const char* name, Places places) {
   }
   EXPECT_EQ(n_wrong, 0);
   testing::Test::RecordProperty("findings", static_cast<int>(jobs.size()));
-  testing::Test::RecordProperty("largest_difference_of_allowed", std::to_string(*std::max_element(apart.begin(), apart.end())));
+  testing::Test::RecordProperty("largest_difference_of_allowed",
+                                std::to_string(*std::max_element(apart.begin(), apart.end())));
 }
 
 class EveryFinding : public testing::TestWithParam<const char*> {};
@@ -157,9 +159,9 @@ TEST_P(EveryFindingAtLength, IsWrittenAndReadBackAsTheTwinHadItAtEveryPlace) {
   expect_written_and_read_back(GetParam(), Places::kAll);
 }
 
-const auto kShipped = ::testing::Values("lumped_spindle.yaml", "fp3_spindle.yaml", "cnc_mill_13.yaml", "c_frame.yaml", "gantry_table.yaml",
-                                        "measured/heated_plate.yaml", "measured/incubator.yaml", "measured/lathe.yaml",
-                                        "measured/printer_frame.yaml", "measured/test_house.yaml");
+const auto kShipped = ::testing::Values("lumped_spindle.yaml", "fp3_spindle.yaml", "cnc_mill_13.yaml", "c_frame.yaml",
+                                        "gantry_table.yaml", "measured/heated_plate.yaml", "measured/incubator.yaml",
+                                        "measured/lathe.yaml", "measured/printer_frame.yaml", "measured/test_house.yaml");
 std::string name_of(const testing::TestParamInfo<const char*>& one) {
   std::string name = one.param;
   for (char& c : name) {

@@ -189,8 +189,7 @@ TEST(FollowSession, NoCorrectionStepsWhateverTheRowsAre) {
         ASSERT_TRUE(std::isfinite(um));
         ASSERT_GE(um, safe.lowest_um - 1e-9);
         ASSERT_LE(um, safe.highest_um + 1e-9);
-        ASSERT_LE(std::abs(um - last_um), safe.most_rate_um_s * std::max(step_s, 0.0) + 1e-9)
-            << seed << " " << i;
+        ASSERT_LE(std::abs(um - last_um), safe.most_rate_um_s * std::max(step_s, 0.0) + 1e-9) << seed << " " << i;
         last_um = um;
       }
     }

@@ -101,17 +101,19 @@ TEST(FollowVerb, LeavesARecordThatJobsStartFrom) {
   ASSERT_EQ(f.exit_code, 0) << f.words;
   std::string yaml = kHead;
   const std::string day = "[60 min, 2000 rpm], [20 min, 500 rpm], [30 min, 1000 rpm], [45 min, 2000 rpm], [25 min, 0 rpm]";
-  yaml.insert(yaml.find("solver:"), "  job: [[50 min, 1500 rpm]]\n  all: [" + day + ", [20 min, 0 rpm], [50 min, 1500 rpm]]\n");
+  yaml.insert(yaml.find("solver:"),
+              "  job: [[50 min, 1500 rpm]]\n  all: [" + day + ", [20 min, 0 rpm], [50 min, 1500 rpm]]\n");
   write_file("jobs.yaml", yaml);
   const auto predicted = [&](const std::string& out, const std::string& arguments) {
     const std::string folder = temporary_folder().string();
-    const CommandOutcome outcome = run_program("predict " + folder + "/jobs.yaml --cyclogram " + arguments + " -o " + folder +
-                                               "/" + out + " --force --quiet");
+    const CommandOutcome outcome = run_program("predict " + folder + "/jobs.yaml --cyclogram " + arguments + " -o " +
+                                               folder + "/" + out + " --force --quiet");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     return read_record_csv(folder + "/" + out + "/record.csv");
   };
   const Record whole = predicted("whole", "all");
-  const Record warm = predicted("warm", "job --start " + (temporary_folder() / "seen.csv").string() + " --after-pause '20 min'");
+  const Record warm =
+      predicted("warm", "job --start " + (temporary_folder() / "seen.csv").string() + " --after-pause '20 min'");
   const Record cold = predicted("cold", "job");
   const auto at = [](const Record& record, double time_s) {
     const auto i = std::lower_bound(record.time_s.begin(), record.time_s.end(), time_s - 1e-6) - record.time_s.begin();

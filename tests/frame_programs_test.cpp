@@ -228,8 +228,9 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   write_file("thermframe.ngc", file("linuxcnc/thermframe.ngc"));
   const std::string values =
       write_file("rs274.var", "5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 0\n5383 0\n5390 0\n");
-  EXPECT_EQ(std::system(
-                ("cd " + temporary_folder().string() + " && " + kOneHal + "rs274 -g -v rs274.var thermframe.ngc > rs274.out 2>&1").c_str()),
+  EXPECT_EQ(std::system(("cd " + temporary_folder().string() + " && " + kOneHal +
+                         "rs274 -g -v rs274.var thermframe.ngc > rs274.out 2>&1")
+                            .c_str()),
             0);
   const std::string said = read_text(temporary_folder() / "rs274.out");
   EXPECT_THAT(said, AllOf(HasSubstr("STRAIGHT_PROBE(-4775"), HasSubstr("PROGRAM_END"),

@@ -63,7 +63,8 @@ TEST(HtmlReport, BarsAreAsLongAsTheirShareOfTheLongest) {
   const std::string html =
       render_html({.title = "t",
                    .subtitle = "",
-                   .blocks = {Bars{"Evidence", {{"a<b", 8.0, "8 nats"}, {"c", 2.0, "2"}, {"d", -1.0, "-1"}}}}}).page;
+                   .blocks = {Bars{"Evidence", {{"a<b", 8.0, "8 nats"}, {"c", 2.0, "2"}, {"d", -1.0, "-1"}}}}})
+          .page;
   EXPECT_THAT(matches(html, "style=\"width:([0-9.]*)%\""), ::testing::ElementsAre("100.0", "25.0", "0.0"));
   EXPECT_THAT(html, AllOf(HasSubstr("a&lt;b"), HasSubstr("8 nats"), HasSubstr("Evidence")));
 }

@@ -177,7 +177,8 @@ TEST(LoggerImport, NamesATagThatNeverComes) {
               ThrowsMessage<InputError>(HasSubstr("no tag 'Temp_Lager_vorm'")));
 }
 
-TEST(LoggerImport, CellsAndHeadersOfAMegabyteAreNoneOfNumbersStampsAndUnits) {  // std::regex goes as deep as its text is long
+TEST(LoggerImport,
+     CellsAndHeadersOfAMegabyteAreNoneOfNumbersStampsAndUnits) {  // std::regex goes as deep as its text is long
   const std::string digits(1'000'000, '1'), letters(1'000'000, 'x');
   for (const std::string& first : {digits + ",5", digits + ":59", letters + " [K] " + letters, digits + " CET"}) {
     std::string text = "time;" + first + "\n";

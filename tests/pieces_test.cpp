@@ -24,7 +24,9 @@ TEST(Pieces, OfAShardAreAsItSaysAndEachIsSomeShards) {
     EXPECT_EQ(n, 1) << piece;
   }
   for (const char* wrong : {"0/3", "4/3", "3", "/3", "1/", "a/b", "-1/2", "1/2/3"})
-    EXPECT_THAT([&] { (void)read_shard(wrong); }, ThrowsMessage<InputError>(HasSubstr("--shard '" + std::string(wrong) + "'"))) << wrong;
+    EXPECT_THAT([&] { (void)read_shard(wrong); },
+                ThrowsMessage<InputError>(HasSubstr("--shard '" + std::string(wrong) + "'")))
+        << wrong;
 }
 
 TEST(Pieces, AreWorkedOutOnceAndFoundAgain) {
@@ -46,7 +48,8 @@ TEST(Pieces, AreWorkedOutOnceAndFoundAgain) {
     return Pieces::Numbers{static_cast<double>(i)};
   };
   const auto prepare = [&] { ++n_prepared; };
-  EXPECT_THAT(pieces("2/3").of_shard(100, 5, prepare, work), ElementsAre(IsEmpty(), ElementsAre(1.0), IsEmpty(), IsEmpty(), ElementsAre(4.0)));
+  EXPECT_THAT(pieces("2/3").of_shard(100, 5, prepare, work),
+              ElementsAre(IsEmpty(), ElementsAre(1.0), IsEmpty(), IsEmpty(), ElementsAre(4.0)));
   EXPECT_EQ(n_worked, 2);
   EXPECT_EQ(kept.count(101) + kept.count(104), 2u);
   // Another shard needs all of them: its own first, then what is missing, and not what the other has done.
@@ -57,7 +60,9 @@ TEST(Pieces, AreWorkedOutOnceAndFoundAgain) {
   EXPECT_EQ(n_prepared, 3);
   EXPECT_THAT(pieces("1/2").of(104, [&] { return work(9); }), ElementsAre(4.0));
   // What was cut short is not kept.
-  EXPECT_THAT(pieces("1/2").of(200, [&] { return work(9); }, {.on_begin = {}, .on_share = {}, .wants_end_now = [] { return true; }}), ElementsAre(9.0));
+  EXPECT_THAT(
+      pieces("1/2").of(200, [&] { return work(9); }, {.on_begin = {}, .on_share = {}, .wants_end_now = [] { return true; }}),
+      ElementsAre(9.0));
   EXPECT_FALSE(kept.contains(200));
 }
 

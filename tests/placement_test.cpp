@@ -48,7 +48,8 @@ scenarios::Scenario scenario_of(const std::string& text) {
   return scenarios::read_scenario(write_file("placement.yaml", text));
 }
 
-PlacementModel model_of(const scenarios::Scenario& scenario, const SpotRules& rules = {}, const std::vector<std::string>& mounted = {}) {
+PlacementModel model_of(const scenarios::Scenario& scenario, const SpotRules& rules = {},
+                        const std::vector<std::string>& mounted = {}) {
   std::vector<const Cyclogram*> cyclograms;
   for (const Cyclogram& c : scenario.cyclograms) cyclograms.push_back(&c);
   return placement_model(scenario, cyclograms, rules, mounted, {}, {});
@@ -65,17 +66,21 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
       runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
   ASSERT_EQ(runs.size(), 1u);
   const double noise_K = 0.1, scatter = 0.3, row_s = 300.0;
-  const std::vector<compensation::RunSensitivity> numerical = sensitivities(model, runs, factor_states(model, runs), noise_K, model.rows);
-  const double r = noise_K * noise_K + 0.1 * 0.1 * 1800.0 / row_s;  // the model misses by 0.1 K in the same way for half an hour
+  const std::vector<compensation::RunSensitivity> numerical =
+      sensitivities(model, runs, factor_states(model, runs), noise_K, model.rows);
+  const double r =
+      noise_K * noise_K + 0.1 * 0.1 * 1800.0 / row_s;  // the model misses by 0.1 K in the same way for half an hour
   EXPECT_NEAR(numerical.front().reading_K2, r, 1e-12);
   const Eigen::Index n_rows = 37;
   const auto by_hand = [&](double watt, double W_K, double J_K, double t_s) {  // ln P, ln G, ln rate
-    const double x = t_s * W_K / J_K, steady_K = watt / W_K, now_K = steady_K * (1.0 - std::exp(-x)), bend_K = steady_K * x * std::exp(-x);
+    const double x = t_s * W_K / J_K, steady_K = watt / W_K, now_K = steady_K * (1.0 - std::exp(-x)),
+                 bend_K = steady_K * x * std::exp(-x);
     return Eigen::Vector3d(now_K, bend_K - now_K, bend_K);
   };
   Eigen::MatrixXd head = Eigen::MatrixXd::Zero(n_rows, 5), base = head;  // P, G of the head, P, G of the base, rate
   for (Eigen::Index i = 0; i < n_rows; ++i) {
-    const Eigen::Vector3d h = by_hand(100.0, 5.0, 20e3, row_s * static_cast<double>(i)), b = by_hand(60.0, 4.0, 60e3, row_s * static_cast<double>(i));
+    const Eigen::Vector3d h = by_hand(100.0, 5.0, 20e3, row_s * static_cast<double>(i)),
+                          b = by_hand(60.0, 4.0, 60e3, row_s * static_cast<double>(i));
     head.row(i) << h(0), h(1), 0.0, 0.0, h(2);
     base.row(i) << 0.0, 0.0, b(0), b(1), b(2);
   }
@@ -104,12 +109,20 @@ std::string chain(int seed) {
     text += fmt::format("  - {{type: node, node: b{}, capacity: {:.3f} kJ/K}}\n", i, random.log_uniform(2.0, 40.0));
     text += fmt::format("  - {{type: link, node: b{}, to: ambient, conductance: {:.3f} W/K}}\n", i,
                         random.log_uniform(0.5, 4.0));
-    if (i > 0) text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: {:.3f} W/K}}\n", i, i - 1, random.log_uniform(2.0, 30.0));
-    if (i % 3 == 0) text += fmt::format("  - {{type: heat_source, node: b{}, power: {:.1f} W, at_speed: 1000 rpm, exponent: {:.2f}}}\n", i, random.log_uniform(20.0, 200.0), random.uniform(0.8, 2.0));
+    if (i > 0)
+      text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: {:.3f} W/K}}\n", i, i - 1,
+                          random.log_uniform(2.0, 30.0));
+    if (i % 3 == 0)
+      text += fmt::format("  - {{type: heat_source, node: b{}, power: {:.1f} W, at_speed: 1000 rpm, exponent: {:.2f}}}\n", i,
+                          random.log_uniform(20.0, 200.0), random.uniform(0.8, 2.0));
     moved += fmt::format("{}{{node: b{}, sensitivity: {:.3f} um/K}}", i > 0 ? ", " : "", i, random.normal());
   }
-  return text + fmt::format("displacements: [{{name: nose, sensitivities: [{}]}}]\ncyclograms:\n  slow: [[120 min, 500 rpm], [120 min, 0 rpm]]\n"
-                            "  fast: [[120 min, 1000 rpm], [60 min, 0 rpm]]\n  mixed: [[60 min, 1000 rpm], [60 min, 300 rpm], [60 min, 800 rpm]]\n", moved);
+  return text + fmt::format(
+                    "displacements: [{{name: nose, sensitivities: [{}]}}]\ncyclograms:\n  slow: [[120 min, 500 rpm], [120 "
+                    "min, 0 rpm]]\n"
+                    "  fast: [[120 min, 1000 rpm], [60 min, 0 rpm]]\n  mixed: [[60 min, 1000 rpm], [60 min, 300 rpm], [60 "
+                    "min, 800 rpm]]\n",
+                    moved);
 }
 
 TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
@@ -120,14 +133,17 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
     const PlacementModel model = model_of(scenario);
     const std::vector<PlacementRun> runs =
         runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
-    const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows), {0.1, 0.3});
+    const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows),
+                                              {0.1, 0.3});
     const compensation::RegressionLeft regression(
         scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
     const compensation::LeftOfBoth both(observer, regression);
     const compensation::LeftWithLoss with_loss(both);
-    for (const compensation::DriftLeft* left : {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),
-                                                static_cast<const compensation::DriftLeft*>(&both), static_cast<const compensation::DriftLeft*>(&with_loss)}) {
-      const double ratio = compensation::best_sets(*left, 3).back().left_um / compensation::best_of_all_sets(*left, 3).left_um;
+    for (const compensation::DriftLeft* left :
+         {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),
+          static_cast<const compensation::DriftLeft*>(&both), static_cast<const compensation::DriftLeft*>(&with_loss)}) {
+      const double ratio =
+          compensation::best_sets(*left, 3).back().left_um / compensation::best_of_all_sets(*left, 3).left_um;
       EXPECT_GE(ratio, 1.0 - 1e-9);
       worst = std::max(worst, ratio);
       n_equal += ratio < 1.0 + 1e-9 ? 1 : 0;
@@ -151,7 +167,8 @@ TEST(Placement, JudgedOnWhatItHasNotSeenIsBetterThanRandomAndByGrade) {
   EXPECT_GE(p.losses.front().worst.observer_um, p.losses.front().all.observer_um);
   // Cyclograms that were not chosen on; the same numbers once more.
   for (const std::string& name : p.judged_on) EXPECT_EQ(std::count(p.chosen_on.begin(), p.chosen_on.end(), name), 0) << name;
-  EXPECT_EQ(place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {})->chosen.left[2].observer_um, p.chosen.left[2].observer_um);
+  EXPECT_EQ(place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {})->chosen.left[2].observer_um,
+            p.chosen.left[2].observer_um);
   // What the observer may expect by its design, and what it does on machines that were drawn: alike within a factor of two.
   EXPECT_NEAR(std::log(p.chosen.left[2].observer_um / p.observer_um[2]), 0.0, std::log(2.0));
 }
@@ -162,7 +179,8 @@ TEST(Placement, OfShardsIsThatOfOneRun) {
   const PlacementOptions how{.n = 2, .n_most = 3};
   const Placement whole = *place_thermometers(scenario, how, {});
   KeptInMemory kept;
-  for (const char* shard : {"1/3", "2/3", "3/3"}) EXPECT_FALSE(place_thermometers(scenario, how, {}, kept.of(shard))) << shard;
+  for (const char* shard : {"1/3", "2/3", "3/3"})
+    EXPECT_FALSE(place_thermometers(scenario, how, {}, kept.of(shard))) << shard;
   const int n_worked = kept.n_worked;
   const Placement merged = *place_thermometers(scenario, how, {}, kept.of(""));
   EXPECT_EQ(kept.n_worked, n_worked);
@@ -172,13 +190,16 @@ TEST(Placement, OfShardsIsThatOfOneRun) {
   ASSERT_EQ(merged.others.size(), whole.others.size());
   for (std::size_t w = 0; w < whole.others.size(); ++w) {
     EXPECT_EQ(merged.others[w].sets, whole.others[w].sets);
-    for (std::size_t n = 0; n < whole.others[w].left.size(); ++n) EXPECT_EQ(merged.others[w].left[n].observer_um, whole.others[w].left[n].observer_um);
+    for (std::size_t n = 0; n < whole.others[w].left.size(); ++n)
+      EXPECT_EQ(merged.others[w].left[n].observer_um, whole.others[w].left[n].observer_um);
   }
   ASSERT_EQ(merged.tests.size(), whole.tests.size());
-  for (std::size_t t = 0; t < whole.tests.size(); ++t) EXPECT_EQ(merged.tests[t].left.regression_um, whole.tests[t].left.regression_um);
+  for (std::size_t t = 0; t < whole.tests.size(); ++t)
+    EXPECT_EQ(merged.tests[t].left.regression_um, whole.tests[t].left.regression_um);
   // One piece is lost: it alone is worked out again.
   kept.kept.erase(std::prev(kept.kept.end()));
-  EXPECT_EQ(place_thermometers(scenario, how, {}, kept.of(""))->tests.back().left.observer_um, whole.tests.back().left.observer_um);
+  EXPECT_EQ(place_thermometers(scenario, how, {}, kept.of(""))->tests.back().left.observer_um,
+            whole.tests.back().left.observer_um);
   EXPECT_EQ(kept.n_worked, n_worked + 1);
 }
 
@@ -195,14 +216,23 @@ TEST(Placement, CountsThermometersThatAreThere) {
 
 TEST(Placement, RefusesWhatTheMachineHasNot) {
   const scenarios::Scenario scenario = scenario_of(kTwoBodies);
-  const auto refused = [&](const PlacementOptions& options) { return [&, options] { (void)place_thermometers(scenario, options, {}); }; };
-  EXPECT_THAT(refused({.n = 1, .where = {.regions = {"haed"}}}), ThrowsMessage<InputError>(HasSubstr("--region 'haed': the machine has no such lumped node; there are head, base. Did you mean 'head'?")));
+  const auto refused = [&](const PlacementOptions& options) {
+    return [&, options] { (void)place_thermometers(scenario, options, {}); };
+  };
+  EXPECT_THAT(refused({.n = 1, .where = {.regions = {"haed"}}}),
+              ThrowsMessage<InputError>(HasSubstr(
+                  "--region 'haed': the machine has no such lumped node; there are head, base. Did you mean 'head'?")));
   EXPECT_THAT(refused({.n = 1, .where = {.excluded = {"bse"}}}), ThrowsMessage<InputError>(HasSubstr("--exclude 'bse'")));
-  EXPECT_THAT(refused({.n = 1, .where = {.excluded = {"head", "base"}}}), ThrowsMessage<InputError>(HasSubstr("no lumped node is left")));
-  EXPECT_THAT(refused({.n = 3}), ThrowsMessage<InputError>(HasSubstr("3 thermometers are to be placed, and there are 2 places")));
+  EXPECT_THAT(refused({.n = 1, .where = {.excluded = {"head", "base"}}}),
+              ThrowsMessage<InputError>(HasSubstr("no lumped node is left")));
+  EXPECT_THAT(refused({.n = 3}),
+              ThrowsMessage<InputError>(HasSubstr("3 thermometers are to be placed, and there are 2 places")));
   EXPECT_THAT(refused({.n = 1, .mounted = {"t_haed"}}), ThrowsMessage<InputError>(HasSubstr("Did you mean 't_head'?")));
-  EXPECT_THAT(refused({.n = 1, .channels = {"nsoe"}}), ThrowsMessage<InputError>(HasSubstr("--channel 'nsoe': the machine has no such displacement; there are nose.")));
-  EXPECT_THAT(refused({.n = 1, .train = {"job"}, .test = {"job"}}), ThrowsMessage<InputError>(HasSubstr("'job' is to be chosen on (--train) and judged by (--test)")));
+  EXPECT_THAT(
+      refused({.n = 1, .channels = {"nsoe"}}),
+      ThrowsMessage<InputError>(HasSubstr("--channel 'nsoe': the machine has no such displacement; there are nose.")));
+  EXPECT_THAT(refused({.n = 1, .train = {"job"}, .test = {"job"}}),
+              ThrowsMessage<InputError>(HasSubstr("'job' is to be chosen on (--train) and judged by (--test)")));
   EXPECT_THAT(refused({.n = 1, .train = {"jbo"}}), ThrowsMessage<InputError>(HasSubstr("jbo")));
 }
 
@@ -210,11 +240,13 @@ TEST(Placement, RefusesWhatTheMachineHasNot) {
 TEST(Reach, EndsAtTheFloorAndAtJoints) {
   const mesh::Mesh mesh = fixtures::column_and_head();
   const std::vector<bool> reached = mesh::reachable_nodes(mesh, mesh::skin_of(mesh));
-  const int n_column = mesh.cells.nodes(mesh.cells_in(mesh.region("head")).front())[0];  // nodes of the head come behind those of the column
+  const int n_column =
+      mesh.cells.nodes(mesh.cells_in(mesh.region("head")).front())[0];  // nodes of the head come behind those of the column
   int n_seen = 0, n_hidden = 0;
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const Eigen::Vector3d x = mesh.coords.col(node);
-    const bool in_plan = x.x() > 1e-6 && x.x() < 0.1 - 1e-6 && x.y() > 1e-6 && x.y() < 0.1 - 1e-6;  // of the column, not on its sides
+    const bool in_plan =
+        x.x() > 1e-6 && x.x() < 0.1 - 1e-6 && x.y() > 1e-6 && x.y() < 0.1 - 1e-6;  // of the column, not on its sides
     const bool is_head = node >= n_column;
     if (in_plan && (x.z() < 1e-6 || (std::abs(x.z() - 0.3) < 1e-6) || (!is_head && x.z() < 0.3))) {
       EXPECT_FALSE(reached[static_cast<std::size_t>(node)]) << x.transpose();
@@ -239,7 +271,8 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const std::string path = fixtures::write_column_and_head(folder, machine);
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
   const Placement anywhere = *place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.n_points = 60}}, {});
-  const Placement p = *place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.excluded = {"head"}, .n_points = 60}}, {});
+  const Placement p =
+      *place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.excluded = {"head"}, .n_points = 60}}, {});
   EXPECT_THAT(anywhere.regions, UnorderedElementsAre("column", "head"));
   EXPECT_LE(anywhere.objective_um[1], p.objective_um[1] * (1.0 + 1e-9));
   std::vector<std::string> entries;
@@ -263,7 +296,8 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   EXPECT_EQ(placed.machine->sensors.size(), scenario.machine->sensors.size() + 2);
   const PlacementModel model = model_of(scenario, {.n_points = 60});
   const scenarios::Model again = scenarios::open_model(placed, {}, {}, false);
-  const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(placed, again, {&placed.cyclogram("cycle")}, {});
+  const std::vector<scenarios::SimulatedRun> runs =
+      scenarios::simulate_cyclograms(placed, again, {&placed.cyclogram("cycle")}, {});
   const PlacementRun run{.cyclogram = "cycle",
                          .ambient = "",
                          .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")),
@@ -271,9 +305,11 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const Eigen::MatrixXd states = states_of(model, model.system, run);
   for (std::size_t i = 0; i < 2; ++i) {
     const int node = p.spots[static_cast<std::size_t>(p.chosen.sets[1][i])].node;
-    const Eigen::VectorXd foretold = states.transpose() * model.opened.reduced()->temperature.row(node).cast<double>().transpose();
+    const Eigen::VectorXd foretold =
+        states.transpose() * model.opened.reduced()->temperature.row(node).cast<double>().transpose();
     const std::vector<double>& simulated = runs[0].record.at(p.names[i]).values;
-    for (std::size_t k = 0; k < simulated.size(); ++k) EXPECT_NEAR(20.0 + foretold[static_cast<Eigen::Index>(k)], simulated[k], 0.03) << k;
+    for (std::size_t k = 0; k < simulated.size(); ++k)
+      EXPECT_NEAR(20.0 + foretold[static_cast<Eigen::Index>(k)], simulated[k], 0.03) << k;
   }
 }
 
@@ -295,11 +331,13 @@ TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {
 }
 
 TEST(PlacementTests, OfEquallyGoodTheShortestIsEnough) {
-  const std::vector<TriedTest> tests = {{"a", 3600.0, {1.0, 5.0}}, {"b", 7200.0, {1.05, 2.1}}, {"c", 7200.0, {1.3, 2.05}}, {"d", 14400.0, {0.97, 2.0}}};
+  const std::vector<TriedTest> tests = {
+      {"a", 3600.0, {1.0, 5.0}}, {"b", 7200.0, {1.05, 2.1}}, {"c", 7200.0, {1.3, 2.05}}, {"d", 14400.0, {0.97, 2.0}}};
   EXPECT_EQ(least_test(tests, &Residual::observer_um), 0);
   EXPECT_EQ(least_test(tests, &Residual::regression_um), 2);
   EXPECT_EQ(least_test({}, &Residual::observer_um), -1);
-  for (const Cyclogram& c : possible_tests({Drive{.speed_rpm = 500.0}, Drive{.speed_rpm = 1000.0}})) EXPECT_GT(c.duration_s(), 3599.0) << c.name;
+  for (const Cyclogram& c : possible_tests({Drive{.speed_rpm = 500.0}, Drive{.speed_rpm = 1000.0}}))
+    EXPECT_GT(c.duration_s(), 3599.0) << c.name;
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ TEST(Propagator, InACompleteBasisIsTheFullModel) {
   // Both start from 5 K everywhere.
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), 5.0);
   const Trajectory exact = evolved(reduced, kCycle, kRampingAmbient, every(300), 5.0 * reduced.ones);
-  const Trajectory full =
-      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(300),
+                                   {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
   EXPECT_GT(full.outputs.maxCoeff(), 30.0);
   RecordProperty("difference_K", std::to_string(1e9 * difference_K(exact, full)) + "e-9");
   EXPECT_LT(difference_K(exact, full), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
@@ -103,8 +103,8 @@ TEST(Propagator, ModesWithSteadyResponsesBeatModesAlone) {
   Eigen::MatrixXd more(system.size(), modes.cols() + at_rest.cols() + at_speed.cols());
   more << modes, at_rest, at_speed;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory full =
-      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(300),
+                                   {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
   const auto error_K = [&](const Eigen::MatrixXd& columns) {
     const ReducedSystem reduced = project(system, orthonormalise(system.mass, columns));
     return difference_K(evolved(reduced, kCycle, kRampingAmbient, every(300), Eigen::VectorXd::Zero(reduced.size())), full);
@@ -191,8 +191,8 @@ TEST(Propagator, FlowsAreThoseOfTheFullModel) {
   const ReducedSystem reduced = project(system, basis);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
   const Trajectory exact = evolved(reduced, kCycle, kRampingAmbient, every(300), zero);
-  const Trajectory full =
-      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, zero);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(300),
+                                   {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, zero);
   ASSERT_EQ(exact.flows.size(), full.flows.size());
   for (std::size_t j = 0; j < full.flows.size(); ++j) {
     EXPECT_EQ(exact.flows[j].name, full.flows[j].name);

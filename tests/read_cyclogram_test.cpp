@@ -37,7 +37,8 @@ TEST(ReadCyclogram, ReadsTheRowsThatItWrites) {
       "    rows: [[30 min, 2000 rpm, 1.5 m/min, 60 degC, 0 W], [1 min, 2000 rpm, 1.5 m/min, 60 degC, 0 W],\n"
       "           [90 s, 2000 rpm, 1.5 m/min, 60 degC, 123.456789 W], [1 h, 0 rpm, 0 m/s, 21.5 degC, 0 W]]\n");
   const std::string written = rows_yaml(c);
-  EXPECT_THAT(written, ::testing::StartsWith("{columns: [duration, speed, feed_z, bed_degC, heater_W], rows: [[1860 s, 2000 rpm, "));
+  EXPECT_THAT(written,
+              ::testing::StartsWith("{columns: [duration, speed, feed_z, bed_degC, heater_W], rows: [[1860 s, 2000 rpm, "));
   const Cyclogram again = read("  day: " + written + "\n");
   EXPECT_DOUBLE_EQ(again.duration_s(), c.duration_s());
   for (double t_s : {1.0, 1859.0, 1861.0, 1949.0, 1951.0, 5000.0}) {
@@ -193,8 +194,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TimeSeries ambient(const std::string& entry) {
   return read_ambient(ConfigMap::read_file(write_file("scenario.yaml", "ambient: " + entry + "\n"))
-                       .described_by({.name = "ambient of a test", .keys = {ambient_key()}}),
-                   293.15);
+                          .described_by({.name = "ambient of a test", .keys = {ambient_key()}}),
+                      293.15);
 }
 
 TEST(Ambient, OfOneTemperatureIsConstant) {
@@ -215,7 +216,8 @@ TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
 TEST(ReadAmbient, TakesAFileOfALoggerByItsColumns) {
   (void)write_file("ambient.log", "Zeit;T\n0;68\n2;77\n");
   const TimeSeries h = ambient(
-      "{csv: ambient.log, channel: t_ambient, columns: {time: {column: Zeit, unit: h}, channels: {t_ambient: {column: T, unit: "
+      "{csv: ambient.log, channel: t_ambient, columns: {time: {column: Zeit, unit: h}, channels: {t_ambient: {column: T, "
+      "unit: "
       "degF}}}}");
   EXPECT_EQ(h.time_s, (std::vector<double>{0, 7200}));
   EXPECT_NEAR(h.value[0], 0.0, 1e-9);

@@ -45,9 +45,8 @@ std::string said_by_hal(const std::filesystem::path& folder) {
   std::filesystem::permissions(folder, std::filesystem::perms::all);
   // As root, LinuxCNC runs under a user of its own, which must be able to write its pipe.
   const std::string user = geteuid() == 0 ? "RTAPI_UID=65534 " : "";
-  const std::string command =
-      fmt::format("cd {} && {}RTAPI_FIFO_PATH={} {}timeout 60 halrun -f play.hal", folder.string(), user,
-                  (folder / "rtapi").string(), kOneHal);
+  const std::string command = fmt::format("cd {} && {}RTAPI_FIFO_PATH={} {}timeout 60 halrun -f play.hal", folder.string(),
+                                          user, (folder / "rtapi").string(), kOneHal);
   std::string text;
   for (int i = 0; i < 60; ++i) {
     text = said_by(command);

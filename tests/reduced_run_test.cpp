@@ -134,7 +134,8 @@ TEST(ReducedRun, ADamagedFolderIsMadeAnew) {
   }
   const CommandOutcome again = run_program("simulate " + scenario + " -o " + (folder / "b").string());
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_THAT(again.output, AllOf(Not(HasSubstr("known from disk")), HasSubstr("damaged and made anew"), HasSubstr("exchanges.npy")));
+  EXPECT_THAT(again.output,
+              AllOf(Not(HasSubstr("known from disk")), HasSubstr("damaged and made anew"), HasSubstr("exchanges.npy")));
   expect_same_files(folder / "a", folder / "b", 5);
   EXPECT_THAT(run_program("simulate " + scenario + " -o " + (folder / "c").string()).output, HasSubstr("known from disk"));
 }

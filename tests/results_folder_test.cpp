@@ -213,7 +213,8 @@ TEST(JsonText, RoundsToSixDigitsAndWritesNanAsNull) {
   const nlohmann::ordered_json value = {
       {"z", 0.1 + 0.2}, {"a", {1234567.0, std::numeric_limits<double>::quiet_NaN()}}, {"n", 123456789}};
   EXPECT_EQ(nlohmann::ordered_json::parse(json_text(value)).dump(), R"({"z":0.3,"a":[1234570.0,null],"n":123456789})");
-  EXPECT_EQ(nlohmann::ordered_json::parse(json_text(4.9e-324)).get<double>(), 4.9e-324);  // such as the odds of what is out of the question
+  EXPECT_EQ(nlohmann::ordered_json::parse(json_text(4.9e-324)).get<double>(),
+            4.9e-324);  // such as the odds of what is out of the question
 }
 
 }  // namespace

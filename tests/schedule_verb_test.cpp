@@ -100,7 +100,8 @@ constexpr const char* kNoRs274 = "no rs274 here; Debian's linuxcnc-uspace has it
 
 Path rs274(const std::filesystem::path& program) {
   // In a folder of the test's own: the interpreter keeps its parameters in a file where it runs.
-  FILE* pipe = popen(("cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g " + program.string() + " 2>&1").c_str(), "r");
+  FILE* pipe = popen(
+      ("cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g " + program.string() + " 2>&1").c_str(), "r");
   Path path;
   char buffer[4096];
   while (std::fgets(buffer, sizeof buffer, pipe)) path.said += buffer;

@@ -75,7 +75,7 @@ TEST(SurfaceView, ACubeFromItsCornerIsAHexagonOfThreeColours) {
   EXPECT_GT(p.at(200, 100)[2], 100);
   EXPECT_EQ(p.at(200, 100)[0] + p.at(200, 100)[1], 0);
   const auto left = p.at(110, 260), right = p.at(290, 260);
-  EXPECT_GT(left[0], 80);   // looking against (1, 1, 1) with z up, +x is to the left
+  EXPECT_GT(left[0], 80);  // looking against (1, 1, 1) with z up, +x is to the left
   EXPECT_GT(right[1], 80);
   EXPECT_EQ(p.at(3, 3)[3], 0);
 }

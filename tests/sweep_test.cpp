@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "base/csv_row.hpp"
-#include "base/record.hpp"
 #include "base/file_bytes.hpp"
+#include "base/record.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright::sweep_test {

@@ -215,8 +215,8 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
   std::filesystem::permissions(folder / "script.py", perms::all);
   std::filesystem::permissions(folder / "fifo", perms::all);  // the realtime process gives root up and makes its pipe there
   const std::string command = "cd " + folder.string() +
-                              " && RTAPI_UID=65534 RTAPI_FIFO_PATH=" + (folder / "fifo" / "f").string() +
-                              " " + kOneHal + "timeout 150 linuxcnc -r sim.ini > log.txt 2>&1";
+                              " && RTAPI_UID=65534 RTAPI_FIFO_PATH=" + (folder / "fifo" / "f").string() + " " + kOneHal +
+                              "timeout 150 linuxcnc -r sim.ini > log.txt 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << read_text(folder / "log.txt");
 
   const std::string said = read_text(folder / "result.txt");

@@ -119,8 +119,10 @@ TEST(WarmUp, IsNoLongerThanAnyThatIsShownToBeEnough) {
     for (const WarmUpLevel& level : plan.levels) {
       const bool is_enough = level.staged_um <= tolerance_um;
       is_shown = is_shown || is_enough;
-      EXPECT_TRUE(!is_enough || plan.staged.duration_s() <= level.duration_s + 1.0) << tolerance_um << " um, " << level.duration_s;
-      EXPECT_TRUE(plan.staged.is_enough || 0.99 * plan.staged.peak_um <= level.staged_um) << tolerance_um << " um, " << level.duration_s;
+      EXPECT_TRUE(!is_enough || plan.staged.duration_s() <= level.duration_s + 1.0)
+          << tolerance_um << " um, " << level.duration_s;
+      EXPECT_TRUE(plan.staged.is_enough || 0.99 * plan.staged.peak_um <= level.staged_um)
+          << tolerance_um << " um, " << level.duration_s;
     }
     EXPECT_TRUE(plan.staged.is_enough || !is_shown) << tolerance_um;
   }
@@ -188,7 +190,8 @@ TEST(WarmUpAtLength, OfTwoBodiesIsTheShortestOfAllTriedOneByOne) {
   ASSERT_TRUE(plan.staged.is_enough);
   const TwoBodies machine;
   Eigen::Vector2d state_K = Eigen::Vector2d::Zero();
-  for (const auto& section : plan.staged.sections) state_K = machine.after(state_K, section.drive.speed_rpm, section.duration_s);
+  for (const auto& section : plan.staged.sections)
+    state_K = machine.after(state_K, section.drive.speed_rpm, section.duration_s);
   EXPECT_NEAR(machine.peak_um(state_K), plan.staged.peak_um, 0.01);
 
   double least_s = 1e9;
@@ -252,7 +255,8 @@ TEST(WarmUp, KeepsALimitOfHeat) {
   const WarmUpPlan plan = planned(kOneBody, {.tolerance_um = 3.0, .most_power_W = 70.4});
   EXPECT_EQ(plan.most_speed_rpm, 700.0);
   EXPECT_NEAR(plan.power_at_most_W, 70.0, 1e-9);
-  const double needed_K = 12.0 - 3.0 / (1.0 - std::exp(-7200.0 / 4000.0)), least_s = -4000.0 * std::log(1.0 - needed_K / 14.0);
+  const double needed_K = 12.0 - 3.0 / (1.0 - std::exp(-7200.0 / 4000.0)),
+               least_s = -4000.0 * std::log(1.0 - needed_K / 14.0);
   EXPECT_NEAR(plan.best().duration_s(), least_s, 0.006 * least_s + 1.0);
   EXPECT_THAT([] { (void)planned(kOneBody, {.most_power_W = 0.5}); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("--power-limit"), HasSubstr("10 rpm brings 1 W"))));
@@ -297,7 +301,8 @@ void expect_no_shorter_one(const std::string& name, double tolerance_um) {
     const double time_s = std::round(share * plan.staged.duration_s());
     std::vector<double> least_um(17 * 17, 1e9);
     parallel_for(least_um.size(), [&](std::size_t i) {
-      const double first_rpm = plan.most_speed_rpm * static_cast<double>(i % 17) / 16.0, second_rpm = plan.most_speed_rpm * static_cast<double>(i / 17) / 16.0;
+      const double first_rpm = plan.most_speed_rpm * static_cast<double>(i % 17) / 16.0,
+                   second_rpm = plan.most_speed_rpm * static_cast<double>(i / 17) / 16.0;
       for (int k = 1; k <= 20; ++k) {
         const double first_s = std::round(time_s * k / 20.0);
         std::vector<Cyclogram::Section> sections = {{first_s, {.speed_rpm = first_rpm}}};
@@ -305,7 +310,8 @@ void expect_no_shorter_one(const std::string& name, double tolerance_um) {
         least_um[i] = std::min(least_um[i], trials.tried(sections, tolerance_um).peak_um);
       }
     });
-    EXPECT_GT(*std::min_element(least_um.begin(), least_um.end()), tolerance_um) << name << ", " << share << " of the time found";
+    EXPECT_GT(*std::min_element(least_um.begin(), least_um.end()), tolerance_um)
+        << name << ", " << share << " of the time found";
   }
 }
 

@@ -17,7 +17,6 @@ namespace {
 
 using namespace compensation;
 
-
 /// From row `first` on.
 double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
   double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -13,7 +13,7 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kInterpolation_um = 1e-6;  // differences of interpolated values: far below any resolution
-constexpr double kMostParts = 1000;    // of one block
+constexpr double kMostParts = 1000;         // of one block
 constexpr int kSplitCost = 6;
 
 /// A time at which one axis may change.

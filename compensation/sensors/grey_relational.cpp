@@ -12,8 +12,8 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kNearZero = 0.05;     // of the span: kAutomatic divides by nothing smaller
-constexpr double kUndefined = 1.0e-9;  // of the span: nobody divides by anything smaller
+constexpr double kNearZero = 0.05;         // of the span: kAutomatic divides by nothing smaller
+constexpr double kUndefined = 1.0e-9;      // of the span: nobody divides by anything smaller
 constexpr double kConstantSpan = 1.0e-12;  // span over largest magnitude: rounding, not movement
 
 double span_of(const Eigen::VectorXd& x) {

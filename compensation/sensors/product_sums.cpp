@@ -11,9 +11,9 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kConstantDeviation = 1.0e-12;   // deviation over largest magnitude: rounding, not movement
-constexpr double kDependent = 1.0e-10;  // of a column's square left beside those before it
-constexpr double kMoves = 1.0e-10;      // variance in some rows, of that over all
+constexpr double kConstantDeviation = 1.0e-12;  // deviation over largest magnitude: rounding, not movement
+constexpr double kDependent = 1.0e-10;          // of a column's square left beside those before it
+constexpr double kMoves = 1.0e-10;              // variance in some rows, of that over all
 
 /// The sums of some columns, with the constant before and the target behind them.
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& sums, std::span<const int> columns) {

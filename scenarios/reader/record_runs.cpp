@@ -7,8 +7,8 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kLeastRest_s = 600.0;
-constexpr double kStill = 0.01;          // of the top speed: the spindle stands
-constexpr std::size_t kMostRuns = 8;     // as many fits of each strategy decide what it leaves open
+constexpr double kStill = 0.01;               // of the top speed: the spindle stands
+constexpr std::size_t kMostRuns = 8;          // as many fits of each strategy decide what it leaves open
 constexpr std::size_t kFewestRowsOfRun = 20;  // of a run
 constexpr double kBack = 0.05, kBack_K = 0.2, kBack_um = 0.5;
 constexpr std::size_t kMeanRows = 5;  // what noise is taken out of
