@@ -117,7 +117,7 @@ void expect_faint_causes(int n_machines, int least_faint) {
 }
 
 TEST(Chance, SeldomOffersWhatAFaintCauseHas) {
-  expect_faint_causes(8, 1);
+  expect_faint_causes(16, 2);
 }
 TEST(ChanceAtLength, SeldomOffersWhatAFaintCauseHas) {
   expect_faint_causes(32, 4);
