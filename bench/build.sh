@@ -4,6 +4,7 @@
 # COMMIT the same of that commit, and the ratio to it. Targets: all (default), or driftwright, the program alone. Takes as long as the builds do.
 set -eu
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+command -v /usr/bin/time >/dev/null || { echo "bench/build.sh: please apt-get install time" >&2; exit 1; }
 target=all commit=
 while [ $# -gt 0 ]; do
   case "$1" in

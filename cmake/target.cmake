@@ -36,7 +36,7 @@ endfunction()
 add_library(driftwright_warnings INTERFACE)
 target_compile_options(driftwright_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   $<$<BOOL:${DRIFTWRIGHT_WERROR}>:-Werror>
-  # GCC 12 sees what is not there in libraries' templates, and takes a twentieth of the time of compiling for it.
+  # GCC 12 gives these warnings for templates of libraries where nothing is wrong.
   -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
 
 function(driftwright_target name)

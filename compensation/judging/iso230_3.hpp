@@ -8,7 +8,7 @@
 
 namespace driftwright::compensation {
 
-inline constexpr double kHour_s = 3600.0;
+inline constexpr double kHour_s = 3600.0;  ///< the first 60 min, whose range the standard asks for
 
 /// Of one displacement or tilt X. Ranges are maximum minus minimum, so they do not depend on where the gauge was set to zero. NaN
 /// where the channel has no reading in that time.

@@ -62,7 +62,7 @@ std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record
   const std::size_t first = row(part.from_s), last = part.until_s >= last_s ? t.size() : row(part.until_s);
   if (last < first + kFewestRowsOfPart)
     throw InputError(
-        fmt::format("{}: the part holds {} rows; {} at least are wanted", part.words, last - first, kFewestRowsOfPart));
+        fmt::format("{}: the part holds {} rows; at least {} are required", part.words, last - first, kFewestRowsOfPart));
   return {first, last};
 }
 
