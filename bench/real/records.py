@@ -80,6 +80,15 @@ def spindle_22(data, judged):
                 scenario_target="error_um", fit_files=fit, judge_files=judge)
 
 
+def imbd_lathe(data, fit, judge, split, target):
+    def days(names):
+        return [os.path.join(data, "imbd_lathe", f"2020{d}.csv") for d in names]
+    fit, judge = days(fit), days(judge)
+    first = read(fit[0])
+    return Case("imbd_lathe", split, target, [read(f) for f in fit], [read(f) for f in judge], [n for n in first.columns if n.endswith("_degC")],
+                drive="speed_rpm", ambient="tc08_degC", from_start=True, fit_files=fit, judge_files=judge)
+
+
 def parted(record, path, split, fit_rows, judge_rows, target, thermometers, every=1, **more):
     table = read(path, every)
     if target.endswith("drift_um"):  # two homings of one file are off by 4 mm: neither fitted on nor judged by
@@ -129,4 +138,42 @@ def cases(data):
     result.append(parted("test_house", path, "second half kept out", *halves(path), "indoor_degC", ["outdoor_degC", "solar_W_m2"],
                          drive="heater_W", ambient="outdoor_degC", scenario="test_house", conversion="test_house",
                          scenario_target="indoor_degC"))
+    return result
+
+
+IMBD_DAYS = ["0615", "0616", "0617", "0701", "0702", "0703", "0708", "0709", "0710", "0713", "0727", "0729", "0730", "0805", "0807", "0813",
+             "0814", "0817", "0820"]
+IMBD_2000_RPM = ["0615", "0701", "0708", "0727", "0813", "0817", "0820"]
+IMBD_VARYING = ["0708", "0709", "0710", "0713", "0813", "0814", "0817"]
+
+
+def later_cases(data):
+    """Written on 27 November 2026, before the blend was run on any of them; what came of it is in docs/measured.md."""
+    result = []
+    for target in ("x_um", "z_um"):
+        result.append(imbd_lathe(data, IMBD_DAYS[:10], IMBD_DAYS[10:], "fit 10 days, judge the 9 after them", target))
+        result.append(imbd_lathe(data, IMBD_2000_RPM, [d for d in IMBD_DAYS if d not in IMBD_2000_RPM], "fit days at 2000 rpm alone", target))
+        result.append(imbd_lathe(data, [d for d in IMBD_DAYS if d not in IMBD_VARYING], IMBD_VARYING, "fit days of constant climate", target))
+    path = os.path.join(data, "sjtu_spindle", "first_40h.csv")
+    result.append(parted("sjtu_spindle", path, "second half kept out", *halves(path), "growth_um", [f"t{i:02d}_degC" for i in range(16)]))
+    path = os.path.join(data, "smc_stator", "dc_10a_insulated_core.csv")
+    result.append(parted("smc_stator", path, "second half kept out", *halves(path), "coil_1_degC", ["ambient_degC"], every=5, drive="power_W",
+                         ambient="ambient_degC"))
+    path = os.path.join(data, "houses_nl", "house_1.csv")
+    result.append(parted("houses_nl", path, "second half kept out", *halves(path), "indoor_degC", ["outdoor_degC", "sun_Ps"],
+                         drive="heating_Thm", ambient="outdoor_degC"))
+    tm = [f"TM{i}" for i in range(1, 7)]
+    result.append(lathe(data, tm, ["CM1", "CM2", "CM3", "BM1", "BM2", "BM3"], "duty cycles CM and BM kept out"))
+    result.append(lathe(data, tm[:3], tm[3:], "TM4 to TM6 kept out of six alike"))
+    for run in (1, 2, 3):
+        case = spindle_22(data, run)
+        case.fit, case.judge, case.fit_files, case.judge_files = case.judge, case.fit, case.judge_files, case.fit_files
+        case.split = f"fit run {run} alone"
+        result.append(case)
+    path = os.path.join(data, "fl_thermal", "first_28h.csv")
+    for split, fit, judge in (("fit 0-16 h, judge 16-28 h", between(0, 16), between(16, 99)),
+                              ("fit 8-20 h, judge 20-28 h", between(8, 20), between(20, 99))):
+        for channel in range(1, 6):
+            result.append(parted("fl_thermal", path, split, fit, judge, f"ch{channel}_um", [f"t{i}_degC" for i in range(1, 17)], every=4,
+                                 drive="speed_rpm"))
     return result
