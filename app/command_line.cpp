@@ -61,9 +61,10 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   verb->add_option("--train", options.train, "record to fit on, or a part of it: run.csv:0h..20h; may be repeated")
       ->required(!judges)
       ->allow_extra_args(false);
-  if (judges)
-    verb->add_option("--test", options.test, "record to judge on, or a part of it: run.csv:20h..28h; may be repeated")
-        ->allow_extra_args(false);
+  if (!judges) return;
+  verb->add_option("--test", options.test, "record to judge on, or a part of it: run.csv:20h..28h; may be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--target", options.target, "displacement of the records to predict, for a scenario without `study`");
 }
 
 /// What a prediction begins with.

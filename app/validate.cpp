@@ -64,7 +64,17 @@ void validate(const RecordOptions& options) {
     if (on_records && list->empty())
       throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
   }
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  if (!options.target.empty()) {
+    if (!on_records || scenario.study)
+      throw InputError("--target: it is for records of a scenario without `study`, which would name the target itself");
+    scenario.study.emplace().target = options.target;
+    scenario.study->count_from_start = scenario.machine.has_value();  // a model knows drift since the start
+  }
+  if (on_records && !scenario.study)
+    throw InputError(fmt::format(
+        "{}: `validate` must know the target: add --target CHANNEL, a displacement of the records, or the key `study`",
+        scenario.path));
   if (!on_records) {
     if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "validate");
     if (!scenario.programme && !scenario.validation) {
@@ -75,11 +85,12 @@ void validate(const RecordOptions& options) {
     }
     return validate_machine(scenario, options);
   }
-  const scenarios::Study& settings = scenarios::require_study(scenario, "validate");
+  const scenarios::Study& settings = *scenario.study;
   studies::StudyRecords records = studies::read_records(scenario, options);
   const std::vector<Record> training = studies::whole_records(records.train, settings.target);
-  std::vector<std::string> warnings =
-      studies::sensor_warnings(training, studies::candidate_sensors(settings, training.front()));
+  std::vector<std::string> warnings;
+  if (studies::has_thermometers(settings, training.front()))
+    warnings = studies::sensor_warnings(training, studies::candidate_sensors(settings, training.front()));
   warnings.insert(warnings.begin(), records.notes.begin(), records.notes.end());
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

@@ -133,7 +133,9 @@ void inject(const InjectOptions& options);
 /// `run` of a scenario with a table.
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
 
-struct RecordOptions : CommonOptions, studies::RecordPaths {};
+struct RecordOptions : CommonOptions, studies::RecordPaths {
+  std::string target;  ///< displacement of the records; empty: that of the scenario's `study`
+};
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 

@@ -1,7 +1,8 @@
 #pragma once
-// The value in the middle.
+// The value in the middle, and values that a share of others keeps.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace driftwright {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// The smallest of the values that at least this share of them does not exceed. @param values  at least one; @param share  above 0, at most 1
+[[nodiscard]] inline double quantile(std::vector<double> values, double share) {
+  const auto n = static_cast<double>(values.size());
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(std::ceil(share * n), 1.0)) - 1;
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 }  // namespace driftwright

@@ -17,7 +17,7 @@ struct AxisCorrection {
   double correction_um = 0.0;  ///< in force: what is to be taken away from the position
   double predicted_um = 0.0;   ///< as the predictor was judged by, before hold, fade and slew of the stream
   std::optional<double>
-      interval_um;  ///< half width of the 95 % interval of the drift, where the model was judged on two runs or more
+      interval_um;  ///< half width of the 95 % interval of the drift in force, over trust; none without trust, or where none was learned
   std::optional<double> deviation_um;      ///< of an observer: 1 sigma that its filter gives the drift now
   double trust = 0.0;                      ///< 0 to 1, that the prediction is multiplied by
   std::string verdict = {};                ///< of `validate`; "" where nobody has judged it

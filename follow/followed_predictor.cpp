@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/bounded_json.hpp"
 #include "base/config_map.hpp"
@@ -72,7 +73,7 @@ class FollowedPredictor final : public Followed {
         follower_(file_.predictor),
         stage_(settings_of(file_.predictor, options)) {
     require_laws_of_streams(path);
-    if (observer_ && d().ambient.empty())
+    if (d().predictor->is_driven() && d().ambient.empty())
       throw InputError(
           fmt::format("{}: cannot be followed: '{}' takes the ambient from its scenario, and a stream has none; a "
                       "thermometer of the ambient (`node: ambient`) or `ambient` in the records it is fitted on tells it",
@@ -97,7 +98,7 @@ class FollowedPredictor final : public Followed {
     if (d().fail_safe) {
       for (const FailSafe::Guard& g : d().fail_safe->guards) want(g.input, g.unit);
     }
-    if (observer_) {
+    if (d().predictor->is_driven()) {
       want(d().ambient, "degC");
       want("speed", "rpm");
     }
@@ -108,8 +109,8 @@ class FollowedPredictor final : public Followed {
   }
 
   void begin(const std::vector<Channel>& channels) override {
-    const std::string ambient = observer_ ? d().ambient : "";
-    run_.emplace(channels, ambient, observer_ ? observer_->state().system.reference_K : 273.15, observer_ != nullptr);
+    const bool is_driven = d().predictor->is_driven();
+    run_.emplace(channels, is_driven ? d().ambient : "", d().predictor->reference_K(), is_driven);
   }
 
   bool take(double run_s, const std::vector<double>& values, double step_s) override {
@@ -117,6 +118,8 @@ class FollowedPredictor final : public Followed {
     const FollowedCorrection c = follower_.next(run_->run());
     if (watch_) (void)watch_->next(run_->run());
     trust_ = c.trust;
+    axis_.interval_um = interval_in_force_um(d(), c.trust);
+    if (axis_.interval_um && !std::isfinite(*axis_.interval_um)) axis_.interval_um.reset();
     axis_.predicted_um = c.correction_um;
     stage_.take(c.correction_um, step_s);
     return true;
@@ -130,8 +133,7 @@ class FollowedPredictor final : public Followed {
     axis.trust = trust_ * stage_.state().authority;
     if (!has_begun()) axis.trust = 0.0;
     axis.doubted = follower_.doubted();
-    if (observer_ && has_begun())
-      axis.deviation_um = dynamic_cast<const ObserverFollower&>(follower_.follower()).deviation_um();
+    if (has_begun()) axis.deviation_um = follower_.follower().deviation_um();
     if (watch_ && has_begun()) {
       axis.watch_level = watch_->level();
       if (const auto& alarm = watch_->alarm())

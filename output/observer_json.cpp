@@ -37,7 +37,8 @@ Json settings_json(const ObserverSettings& s) {
           {"factor_walk", s.factor_walk},
           {"scale", s.scale},
           {"longest_step_s", s.longest_step_s},
-          {"period_s", s.period_s}};
+          {"period_s", s.period_s},
+          {"most_apart", s.most_apart}};
 }
 
 ObserverSettings settings_of(const Json& j) {
@@ -50,7 +51,8 @@ ObserverSettings settings_of(const Json& j) {
           .factor_walk = finite(j, "factor_walk"),
           .scale = finite(j, "scale"),
           .longest_step_s = positive(j, "longest_step_s"),
-          .period_s = positive(j, "period_s")};
+          .period_s = positive(j, "period_s"),
+          .most_apart = j.contains("most_apart") ? positive(j, "most_apart") : 1.0};
 }
 
 std::vector<effects::Effect> effects_of(const Json& list) {

@@ -42,7 +42,7 @@ ModalPredictor modes_for(const Scenario& scenario, const scenarios::Model& model
 /// A model follows a record only as `validate` would have let it.
 void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
                            const std::string& ambient) {
-  if (!dynamic_cast<const Observer*>(d.predictor.get())) return;
+  if (!d.predictor->is_driven()) return;
   if (!scenario.machine)
     throw InputError(fmt::format("'{}' is a model of a machine, and {} has none", d.name, scenario.path));
   if (d.ambient != ambient)

@@ -76,8 +76,10 @@ std::string ambient_channel(const Scenario& scenario, const Record& record) {
 
 constexpr double kWarm_K = 4.0;  // beside the ambient, that a model starts as warm as
 
-/// Why a run does not begin in balance with its ambient, going by its first readings; "" where it does.
+/// Why a run does not begin in balance with its ambient, going by its first readings; "" where it does, and for a machine that is warmer than
+/// its ambient at rest.
 std::string why_not_in_balance(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
+  if (machine.start == scenarios::Start::kSteady) return "";
   const double ambient_C = run.ambient.at(0.0) + machine.reference_K - kZeroCelsius_K;
   for (const scenarios::Sensor& s : machine.sensors) {
     const Channel* c = run.readings.find(s.name);
@@ -104,8 +106,10 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
   if (effects::has_reading_effects(machine.effects))
     return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
-  if (machine.start != scenarios::Start::kAmbient)
-    return {std::nullopt, "every record begins at an ambient temperature of its own; `start: ambient` is needed"};
+  if (machine.start != scenarios::Start::kAmbient && machine.start != scenarios::Start::kSteady)
+    return {std::nullopt,
+            "every record begins at an ambient temperature of its own; `start: ambient` is needed, or `start: steady` for a "
+            "machine with heat at rest"};
   std::vector<const Cyclogram*> cyclograms;
   for (const compensation::ObservedRun* run : runs) {
     if (std::string why = why_no_model_follows(machine, *run); !why.empty()) return {std::nullopt, std::move(why)};
@@ -155,13 +159,26 @@ std::optional<compensation::Physics> physics_of(const Scenario& scenario, const 
   return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, ambient_K};
 }
 
-std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
-  if (!study.candidates.empty()) return study.candidates;
+namespace {
+
+std::vector<std::string> thermometers_in(const Record& record, const std::string& target) {
   std::vector<std::string> names;
   for (const Channel& c : record.channels) {
     const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
-    if (is_temperature && &c != record.find(study.target)) names.push_back(c.name);
+    if (is_temperature && &c != record.find(target)) names.push_back(c.name);
   }
+  return names;
+}
+
+}  // namespace
+
+bool has_thermometers(const scenarios::Study& study, const Record& record) {
+  return !study.candidates.empty() || !thermometers_in(record, study.target).empty();
+}
+
+std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
+  if (!study.candidates.empty()) return study.candidates;
+  std::vector<std::string> names = thermometers_in(record, study.target);
   if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
   return names;
 }
@@ -266,7 +283,9 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   compensation::MatrixSettings settings;
   compensation::StrategySettings& how = settings.strategies;
   how.target = study.target;
-  how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
+  const bool has_drive = !records.ambient.empty() || !speed_channel(training.front()).empty();
+  if (!has_drive || has_thermometers(study, training.front()))
+    how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = study.count_from_start;
   how.image = study.image;
@@ -280,7 +299,8 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
   const Channel* elsewhere = how.ambient.empty() ? nullptr : records.test.front().readings.find(how.ambient);
-  if (elsewhere && elsewhere->unit == training.front().at(how.candidates.front()).unit) settings.elsewhere = how.ambient;
+  if (elsewhere && !how.candidates.empty() && elsewhere->unit == training.front().at(how.candidates.front()).unit)
+    settings.elsewhere = how.ambient;
   std::vector<compensation::JudgedRunOfMachine> judged;
   for (compensation::ObservedRun& run : records.test) {
     const std::string name = std::filesystem::path(run.readings.source).filename().string();

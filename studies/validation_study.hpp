@@ -41,6 +41,9 @@ struct StrategyTraining {
 [[nodiscard]] std::optional<compensation::Physics> physics_of(const scenarios::Scenario& scenario,
                                                               const scenarios::Model& model, double scatter, int seed);
 
+/// Whether there is any to choose from.
+[[nodiscard]] bool has_thermometers(const scenarios::Study& study, const Record& record);
+
 /// Thermometers of a record to choose from: the study's candidates, or every temperature channel but the target and `ambient`.
 /// @throws InputError  when there is none
 [[nodiscard]] std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record);

@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "base/errors.hpp"
@@ -18,6 +19,11 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
+
+using Fit = std::function<FittedFormula(std::span<const Record>, const std::vector<std::string>&, const std::string&)>;
+const std::vector<Fit> kFits = {
+    fit_ridge, fit_principal_components, fit_partial_least_squares,
+    [](auto records, const auto& inputs, const auto& target) { return fit_with_lags(records, inputs, target); }};
 
 std::vector<Record> three_records(int n_sensors, double noise_um) {
   std::vector<Record> records;
@@ -144,7 +150,7 @@ TEST(Formulas, SurviveASensorThatStandsStillInAllRunsButOne) {
             r.channels[0].values[i] + 3.0 * r.channels[2].values[i] + 0.1 * std::sin(9.0 * static_cast<double>(i));
     }
     const double alone_um = held_out_rmse(product_sums(records, {"X2"}, "drift_y"), std::vector<int>{0});
-    for (const auto& fit : {fit_ridge, fit_principal_components, fit_partial_least_squares, fit_with_lags})
+    for (const Fit& fit : kFits)
       EXPECT_LT(fit(records, fixtures::sensor_names(3), "drift_y").held_out_rmse, 0.2) << stands_at;  // 0.07 of the sine
     // of one sensor both are least squares, and left out the only run in which it moves it tells nothing
     for (const auto& fit : {fit_principal_components, fit_partial_least_squares})
@@ -246,7 +252,7 @@ TEST(FromSpeed, GoesOnWithoutAnAmbientThatNeverChanges) {
 TEST(Formulas, OfOneRunOrTooFewRowsAreRefused) {
   const std::vector<Record> one = {fixtures::sensor_record(1, 60, 3)},
                             few = {fixtures::sensor_record(1, 3, 3), fixtures::sensor_record(2, 60, 3)};
-  for (const auto& fit : {fit_ridge, fit_principal_components, fit_partial_least_squares, fit_with_lags}) {
+  for (const Fit& fit : kFits) {
     EXPECT_THAT([&] { (void)fit(one, fixtures::sensor_names(3), "drift_y"); },
                 ThrowsMessage<InputError>(HasSubstr("two training records")));
     EXPECT_THAT([&] { (void)fit(few, fixtures::sensor_names(3), "drift_y"); },

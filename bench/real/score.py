@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""The scoreboard of measured records: score.py PROGRAM DATA OUT [RECORD...]
+"""The scoreboard of measured records: score.py [--strategies] [--later] PROGRAM DATA OUT [RECORD...]
 
 PROGRAM is driftwright, DATA the folder of the records, OUT a folder for what is made on the way; RECORD keeps the cases whose record begins so.
+--strategies leaves the diagnosis out; --later takes the splits of records.later_cases().
 Prints a table of RMS errors on data kept out, a row a case: plain baselines written apart from the program (baselines.py), the program's strategy
-that was best on training runs left out, and the model that `diagnose` made of the training part. A diagnosis that is in OUT is kept. Standard
+that `validate` chose by the training runs, and the model that `diagnose` made of the training part. A diagnosis that is in OUT is kept. Standard
 library only.
 
-How ours is judged: `validate` gets the training runs and the judged runs. A single long record is given as eight runs, each the whole training part with
-the target in an eighth of it alone, so that lags run through; the judged run has the readings of the training part before it, without the target.
-The strategy is the one with the smallest prediction interval, which `validate` takes from training runs left out in turn; what is judged is never looked at.
+How ours is judged: `validate` gets the training runs and the judged runs, a single long record as two parts of its file. The strategy is the one that `validate`
+chooses, by the training runs alone; what is judged is never looked at.
 """
 
 import csv
@@ -22,7 +22,6 @@ import sys
 import baselines
 import records
 
-PARTS = 8  # of a single record, as in baselines.py
 CAP_S = float(os.environ.get("cap", "1800"))  # for one verb of the program
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -41,7 +40,7 @@ def write_run(case, table, path, has_target):
     names = [n for n in case.thermometers]
     with open(path, "w", newline="", encoding="utf-8") as out:
         rows = csv.writer(out, lineterminator="\n")
-        rows.writerow(["time_s", *(["speed_rpm"] if case.drive else []), *(n.replace("W_m2", "K") for n in names), base(case.target) + "_um"])
+        rows.writerow(["time_s", *(["speed_rpm"] if case.drive else []), *(n.replace("W_m2", "K").replace("_Ps", "_K") for n in names), base(case.target) + "_um"])
         for i, t in enumerate(table.time_s):
             y = table.columns[case.target][i] if has_target(i) else None
             rows.writerow([number(t), *([number(table.columns[case.drive][i])] if case.drive else []),
@@ -50,22 +49,19 @@ def write_run(case, table, path, has_target):
 
 
 def training_and_judged(case, folder):
-    """Files for `validate`: --train, --test."""
-    if len(case.fit) > 1:
+    """What `validate` is given: --train, --test. Of a single record its parts, with the target in the rows that are fitted and judged alone."""
+    if not case.fit_rows:
         every = lambda _: True  # noqa: E731
         return ([write_run(case, t, os.path.join(folder, "fit_" + t.name), every) for t in case.fit],
                 [write_run(case, t, os.path.join(folder, "judge_" + t.name), every) for t in case.judge])
     table = case.fit[0]
-    fitted = [i for i, t in enumerate(table.time_s) if case.fit_rows(t)]
-    judged = [i for i, t in enumerate(table.time_s) if case.judge_rows(t)]
-    part = table.rows([case.fit_rows(t) for t in table.time_s])
-    train = []
-    for f in range(PARTS):
-        own = range(len(fitted) * f // PARTS, len(fitted) * (f + 1) // PARTS)
-        train.append(write_run(case, part, os.path.join(folder, f"fit_{f + 1}.csv"), lambda i, own=own: i in own))
-    until = judged[-1]
-    known = table.rows([i <= until for i in range(len(table.time_s))])
-    return train, [write_run(case, known, os.path.join(folder, "judge.csv"), lambda i: i >= judged[0])]
+    path = write_run(case, table, os.path.join(folder, "record.csv"), lambda _: True)
+
+    def part(keeps):
+        times = [t - table.time_s[0] for t in table.time_s if keeps(t)]
+        return f"{path}:{times[0] / 60:.6f}min..{times[-1] / 60 + 1e-5:.6f}min"
+
+    return [part(case.fit_rows)], [part(case.judge_rows)]
 
 
 def run(arguments, log):
@@ -83,7 +79,7 @@ def why(log):
 
 
 def by_strategies(case, program, folder):
-    """Name of the strategy that was best on training runs left out, its RMS with fail-safe and without, and the best one in hindsight."""
+    """Name of the strategy that `validate` chose by the training runs, its RMS with fail-safe and without, and the best one in hindsight."""
     if not case.thermometers:
         return {"why": "no thermometer to read"}
     train, test = training_and_judged(case, folder)
@@ -100,7 +96,8 @@ def by_strategies(case, program, folder):
     if run(arguments, log) != 0:
         return {"why": why(log)}
     with open(os.path.join(folder, "validate", "summary.json"), encoding="utf-8") as file:
-        strategies = json.load(file)["validation"]["strategies"]
+        validation = json.load(file)["validation"]
+    strategies, chosen = validation["strategies"], validation.get("chosen")
     left = {}
     with open(os.path.join(folder, "validate", "strategies.csv"), encoding="utf-8") as file:
         for row in csv.DictReader(line for line in file if not line.startswith("#")):
@@ -114,15 +111,15 @@ def by_strategies(case, program, folder):
             squares[2] += n * float(bare) ** 2 if bare else math.inf
     found = []
     for s in strategies:
-        if not s["baseline"]:
+        if s["name"] in left:
             n, guarded, unguarded = left[s["name"]]
-            found.append((s["interval_95_um"], s["name"], math.sqrt(guarded / n), math.sqrt(unguarded / n)))
-    with_interval = [f for f in found if f[0] is not None]
-    if not with_interval:
-        return {"why": "no strategy has an interval: too few training runs"}
-    _, name, guarded, unguarded = min(with_interval)
-    best = min(found, key=lambda f: f[2])
-    return {"name": name, "guarded": guarded, "bare": unguarded, "hindsight": best[1], "hindsight_rms": best[2]}
+            found.append((s["name"], math.sqrt(guarded / n), math.sqrt(unguarded / n), s["covered_percent"]))
+    mine = next((f for f in found if f[0] == chosen), None)
+    if not mine:
+        return {"why": "no strategy was chosen: too little can be left out of the training runs"}
+    name, guarded, unguarded, covered = mine
+    best = min(found, key=lambda f: f[1])
+    return {"name": name, "guarded": guarded, "bare": unguarded, "covered": covered, "hindsight": best[0], "hindsight_rms": best[1]}
 
 
 def converted(case, source, path):
@@ -217,52 +214,65 @@ def by_diagnosis(case, program, folder):
     return result
 
 
+def ratio_words(values, words):
+    values = sorted(values)
+    return f"{words}: median {values[len(values) // 2]:.2f}, worst {values[-1]:.2f}" if values else f"{words}: no row"
+
+
 def main():
-    program, data, out = (os.path.abspath(p) for p in sys.argv[1:4])
-    wanted = sys.argv[4:]
-    columns = ["drift", *baselines.BASELINES, "ours", "bare", "as written", "diagnosed"]
-    print("| record | kept out | target | " + " | ".join(columns) + " | strategy | smallest |")
-    print("|" + "---|" * (len(columns) + 5))
-    better = {name: [0, 0] for name in baselines.BASELINES}  # rows in which our strategy leaves less, and rows that have both
-    wins = losses = 0
-    notes = []
-    for i, case in enumerate(records.cases(data)):
+    arguments = sys.argv[1:]
+    with_diagnosis = "--strategies" not in arguments
+    later = "--later" in arguments
+    arguments = [a for a in arguments if not a.startswith("--")]
+    program, data, out = (os.path.abspath(p) for p in arguments[:3])
+    wanted = arguments[3:]
+    columns = ["drift", *baselines.BASELINES, "ours", "bare", *(["as written", "diagnosed"] if with_diagnosis else [])]
+    print("| record | kept out | target | " + " | ".join(columns) + " | in its 95 % | strategy | over the best in hindsight |")
+    print("|" + "---|" * (len(columns) + 6))
+    over_best, over_plain, covered, notes = [], [], [], []
+    n_rows = n_worse = 0
+    for i, case in enumerate(records.later_cases(data) if later else records.cases(data)):
         if wanted and not any(case.record.startswith(w) for w in wanted):
             continue
-        folder = os.path.join(out, f"{i:02d}_{case.record.replace(' ', '_')}_{base(case.target)}")
+        folder = os.path.join(out, f"{'later_' if later else ''}{i:02d}_{case.record.replace(' ', '_')}_{base(case.target)}")
         os.makedirs(folder, exist_ok=True)
         plain = {}
         for name, predict in baselines.BASELINES.items():
             predicted = predict(case)
             plain[name] = None if predicted is None else baselines.rms(case, predicted)
         ours = by_strategies(case, program, folder)
-        twin = by_diagnosis(case, program, folder)
-        row = {"drift": baselines.rms(case, baselines.constant(case, 0.0)), **plain, "ours": ours.get("guarded"), "bare": ours.get("bare"),
+        twin = by_diagnosis(case, program, folder) if with_diagnosis else {}
+        drift = baselines.rms(case, baselines.constant(case, 0.0))
+        row = {"drift": drift, **plain, "ours": ours.get("guarded"), "bare": ours.get("bare"),
                "as written": twin.get("written"), "diagnosed": twin.get("extended")}
-        against = {n: v for n, v in plain.items() if v is not None}
-        mine = {n: v for n, v in (("ours", ours.get("guarded")), ("diagnosed", twin.get("extended"))) if v is not None}
-        smallest = min({**against, **mine}.items(), key=lambda e: e[1])[0]
-        for name, v in against.items():
-            if "ours" in mine:
-                better[name][0] += mine["ours"] < v
-                better[name][1] += 1
-        if mine:
-            wins, losses = wins + (smallest in mine), losses + (smallest not in mine)
+        against = min((v, n) for n, v in plain.items() if v is not None)
+        label = f"{case.record}, {case.split}, {base(case.target)}"
+        best = "-"
+        if "guarded" in ours:
+            n_rows += 1
+            mine = ours["guarded"]
+            hindsight = min(against, (ours["hindsight_rms"], ours["hindsight"]))
+            over_best.append(mine / hindsight[0])
+            over_plain.append(mine / against[0])
+            n_worse += mine > drift
+            if ours["covered"] is not None:
+                covered.append(ours["covered"])
+            best = f"{over_best[-1]:.2f} ({hindsight[1]} {hindsight[0]:.2f})"
+        else:
+            notes.append(f"{label}: no strategy: {ours['why']}")
+        share = ours.get("covered")
         print(f"| {case.record} | {case.split} | {base(case.target)} [{case.unit}] | "
               + " | ".join("-" if row[c] is None else f"{row[c]:.2f}" for c in columns)
-              + f" | {ours.get('name', '-')} | {'**' + smallest + '**' if smallest in mine else smallest} |", flush=True)
-        label = f"{case.record}, {case.split}, {base(case.target)}"
-        if "why" in ours:
-            notes.append(f"{label}: no strategy: {ours['why']}")
-        elif ours["hindsight"] != ours["name"]:
-            notes.append(f"{label}: in hindsight {ours['hindsight']} leaves {ours['hindsight_rms']:.2f} {case.unit}")
+              + f" | {'-' if share is None else f'{share:.0f} %'} | {ours.get('name', '-')} | {best} |", flush=True)
         if "why" in twin and case.scenario:
             notes.append(f"{label}: no diagnosed model: {twin['why']}")
         elif "verdict" in twin:
             notes.append(f"{label}: verdict of the diagnosis: {twin['verdict']}")
-    print(f"\nsmallest error by one of ours in {wins} rows, by a plain baseline in {losses}")
-    for name, (n, of) in better.items():
-        print(f"the strategy chosen leaves less than '{name}' in {n} of {of} rows")
+    print("\n" + ratio_words(over_best, "RMS of the choice over the best strategy or baseline in hindsight"))
+    print(f"rows where the choice is worse than no correction: {n_worse} of {n_rows}")
+    print(f"rows where the best of {len(baselines.BASELINES)} baselines leaves less by more than 10 %: {sum(r > 1.1 for r in over_plain)} of {n_rows}")
+    print(f"rows of the scoreboard whose 95 % interval holds in 90 to 98 % of the judged rows: {sum(90 <= c <= 98 for c in covered)} of {len(covered)}, "
+          f"in 90 % or more: {sum(c >= 90 for c in covered)}")
     print("\n".join(notes))
 
 

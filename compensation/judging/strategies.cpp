@@ -6,16 +6,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "base/errors.hpp"
+#include "base/median.hpp"
 #include "base/parallel.hpp"
+#include "compensation/judging/folds.hpp"
+#include "compensation/predictors/blended_formula.hpp"
 #include "compensation/predictors/fitted_formulas.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/memory_regression.hpp"
 #include "compensation/predictors/observability.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "compensation/predictors/score.hpp"
+#include "compensation/sensors/blocks.hpp"
 #include "compensation/sensors/sensor_selection.hpp"
 #include "solver/propagator.hpp"
 
@@ -25,18 +30,40 @@ namespace {
 using namespace compensation;
 
 constexpr double kInterval = 0.95;
+constexpr double kNoError_um = 1e-6;  // less is rounding
+constexpr double kTellsApart = 2.0;   // standard errors of a difference: by chance in one of twenty
+constexpr double kHolds =
+    0.5;  // of the drift that a part left out had: what is left may be so much where a prediction reached it
 
 /// A strategy before it is fitted.
 struct Strategy {
   std::string name;
   bool is_baseline = false;
   std::function<DeployedPredictor(std::span<const ObservedRun>)> fit;
+  bool is_blended = false;  ///< its mean with others is the blend
 };
 
+/// One record a run.
 std::vector<Record> records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
   std::vector<Record> records;
   for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, s.count_from_start));
   return records;
+}
+
+/// One record a history, however many runs were cut from it: the same rows are the same fit.
+std::vector<Record> whole_records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
+  return records_of(joined_histories(runs, s.target), s);
+}
+
+void require_thermometers(const StrategySettings& s) {
+  if (s.candidates.empty()) throw InputError("there is no thermometer to choose from");
+}
+
+/// The ambient is one of them.
+std::vector<std::string> thermometers_of(const StrategySettings& s) {
+  std::vector<std::string> names = s.candidates;
+  if (!s.ambient.empty() && std::find(names.begin(), names.end(), s.ambient) == names.end()) names.push_back(s.ambient);
+  return names;
 }
 
 DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor, const StrategySettings& s) {
@@ -71,7 +98,8 @@ DeployedPredictor of_formula(DriftModel model, std::string reason, const Strateg
 Strategy regression_on(const std::string& name, const StrategySettings& s,
                        std::function<Selection(std::span<const ObservedRun>, const std::vector<Record>&)> select) {
   return {name, false, [s, select](std::span<const ObservedRun> training) {
-            const std::vector<Record> records = records_of(training, s);
+            require_thermometers(s);
+            const std::vector<Record> records = in_blocks(whole_records_of(training, s), s.target);
             const Selection selection = select(training, records);
             if (selection.sensors.empty()) throw InputError("no sensor was chosen");
             return of_formula(as_drift_model(fit_regression(records, selection.sensors, s.target)),
@@ -82,9 +110,22 @@ Strategy regression_on(const std::string& name, const StrategySettings& s,
 using FormulaFit = FittedFormula (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&);
 Strategy formula_of_all(const std::string& name, const StrategySettings& s, FormulaFit fit) {
   return {name, false, [s, fit](std::span<const ObservedRun> training) {
-            FittedFormula f = fit(records_of(training, s), s.candidates, s.target);
+            require_thermometers(s);
+            FittedFormula f = fit(in_blocks(whole_records_of(training, s), s.target), thermometers_of(s), s.target);
             return of_formula(std::move(f.model), std::move(f.reason), s);
           }};
+}
+
+Strategy remembering(const std::string& name, const StrategySettings& s, Columns columns, int n_modes = 0,
+                     bool needs = true) {
+  return {name, false,
+          [s, columns, n_modes, needs](std::span<const ObservedRun> training) {
+            if (needs) require_thermometers(s);
+            FittedFormula f = fit_with_memories(whole_records_of(training, s), s.candidates, s.speed, s.ambient, s.target,
+                                                columns, n_modes);
+            return of_formula(std::move(f.model), std::move(f.reason), s);
+          },
+          true};
 }
 
 /// The factors that are known best, against their own prior.
@@ -129,7 +170,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
             if (learns) {
               observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
-              observer = observer.with_sensors(selection.sensors);
+              observer = observer.with_sensors(selection.sensors).calibrated(histories);
             }
             f.target = s.target;
             f.from_start = true;
@@ -173,27 +214,33 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
         }));
   }
   list.push_back(formula_of_all("ridge, all sensors", s, fit_ridge));
+  list.back().is_blended = true;
   list.push_back(formula_of_all("principal components, all sensors", s, fit_principal_components));
   list.push_back(formula_of_all("partial least squares, all sensors", s, fit_partial_least_squares));
   list.push_back({"regression with lags", false, [s](std::span<const ObservedRun> training) {
-                    const std::vector<Record> records = records_of(training, s);
+                    require_thermometers(s);
+                    const std::vector<Record> whole = whole_records_of(training, s), records = in_blocks(whole, s.target);
                     const Selection selection = select_forward(records, s.candidates, s.target, s.n_sensors);
-                    FittedFormula f = fit_with_lags(records, selection.sensors, s.target);
+                    FittedFormula f = fit_with_lags(records, selection.sensors, s.target, longest_lag_s(whole, s.target));
                     return of_formula(std::move(f.model),
                                       fmt::format("{}; {}", fmt::join(selection.sensors, ", "), f.reason), s);
                   }});
   if (!s.speed.empty()) {
     list.push_back({"transfer functions from speed", false, [s](std::span<const ObservedRun> training) {
-                      FittedFormula f = fit_from_speed(records_of(training, s), s.speed, s.ambient, s.target);
+                      const std::vector<Record> whole = whole_records_of(training, s);
+                      FittedFormula f = fit_from_speed(in_blocks(whole, s.target), s.speed, s.ambient, s.target,
+                                                       longest_lag_s(whole, s.target));
                       return of_formula(std::move(f.model), std::move(f.reason), s);
                     }});
+    StrategySettings open = s;
+    open.candidates.clear();
+    list.push_back(remembering("drive and ambient, memories", open, Columns::kAndMemories, 0, false));
+    list.back().is_blended = s.candidates.empty();
+    list.push_back(remembering("thermometers and drive", s, Columns::kAndDrive));
   }
-  list.push_back({"thermometers and memories", false, [s](std::span<const ObservedRun> training) {
-                    // runs cut from one record are one again: its own blocks tell more of it than two or three runs
-                    const std::vector<Record> records = records_of(joined_histories(training, s.target), s);
-                    FittedFormula f = fit_with_memories(records, s.candidates, s.speed, s.ambient, s.target);
-                    return of_formula(std::move(f.model), std::move(f.reason), s);
-                  }});
+  for (const int n_modes : {3, 4})
+    list.push_back(remembering(fmt::format("{} common modes and memories", n_modes), s, Columns::kModes, n_modes));
+  list.push_back(remembering("thermometers and memories", s, Columns::kAndMemories));
   if (s.physics) {
     list.push_back(observing("thermal modes of the model", s, false, false));
     list.push_back(observing("model fitted to the training runs", s, false, true));
@@ -202,51 +249,112 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   return list;
 }
 
-double quantile(std::vector<double> x, double share) {
-  std::sort(x.begin(), x.end());
-  return x[static_cast<std::size_t>(std::ceil(share * static_cast<double>(x.size()))) - 1];
-}
-
-/// Magnitudes of measured - predicted of a run, without missing ones.
-std::vector<double> misses(const DeployedPredictor& f, const ObservedRun& run, const StrategySettings& s) {
-  const std::vector<double> predicted = live(*f.predictor, run);
-  const std::vector<double> measured = scored_readings(run, s.target, s.count_from_start).at(s.target).values;
+/// Predicted targets of the rows of a fold, as hidden from the fit, in the order of runs and rows; 0 for what the predictor says nothing of.
+std::vector<double> predicted_of(const DeployedPredictor& f, std::span<const ObservedRun> runs, const Fold& fold) {
   std::vector<double> result;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    if (std::isfinite(measured[i] - predicted[i])) result.push_back(std::abs(measured[i] - predicted[i]));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (std::none_of(fold.hidden[r].begin(), fold.hidden[r].end(), [](bool is) { return is; })) continue;
+    const std::vector<double> predicted = live(*f.predictor, runs[r]);
+    for (std::size_t i = 0; i < predicted.size(); ++i) {
+      if (fold.hidden[r][i]) result.push_back(std::isfinite(predicted[i]) ? predicted[i] : 0.0);
+    }
   }
   return result;
 }
 
-std::optional<double> interval(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
-  if (training.size() < 2) return std::nullopt;
-  double half = 0.0;
-  for (std::size_t left_out = 0; left_out < training.size(); ++left_out) {
-    std::vector<ObservedRun> rest;
-    for (std::size_t r = 0; r < training.size(); ++r) {
-      if (r != left_out) rest.push_back(training[r]);
-    }
-    try {
-      const std::vector<double> off = misses(strategy.fit(rest), training[left_out], s);
-      if (!off.empty()) half = std::max(half, quantile(off, kInterval));
-    } catch (const InputError&) {
-      return std::nullopt;  // two runs, of which one alone leaves nothing to decide by
+/// Measured targets of the rows of a fold.
+std::vector<double> measured_of(std::span<const ObservedRun> runs, const Fold& fold, const StrategySettings& s) {
+  std::vector<double> result;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::vector<double> measured = scored_readings(runs[r], s.target, s.count_from_start).at(s.target).values;
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (fold.hidden[r][i]) result.push_back(measured[i]);
     }
   }
-  return half;
+  return result;
 }
 
-DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
-  DeployedPredictor f = strategy.fit(training);
-  f.name = strategy.name;
-  f.is_baseline = strategy.is_baseline;
-  f.ambient = s.ambient;
-  f.interval_um = interval(strategy, s, training);
-  if (f.is_baseline) return f;
+/// Training runs with what is left out of them, and what was measured there.
+struct Folds {
+  std::vector<ObservedRun> runs;  ///< one a history
+  std::vector<Fold> folds;
+  std::vector<std::vector<ObservedRun>> rest;  ///< of each fold: what is fitted to
+  std::vector<std::vector<double>> measured;   ///< of each fold [um]
+};
+
+Folds folds_for(const StrategySettings& s, std::span<const ObservedRun> training) {
+  Folds f{.runs = joined_histories(training, s.target), .folds = {}, .rest = {}, .measured = {}};
+  f.folds = folds_of(f.runs, {.target = s.target, .thermometers = thermometers_of(s), .speed = s.speed});
+  for (const Fold& fold : f.folds) {
+    f.rest.push_back(without(f.runs, fold, s.target));
+    f.measured.push_back(measured_of(f.runs, fold, s));
+  }
+  return f;
+}
+
+/// What a strategy says of each fold, fitted to the rest; nothing where it cannot be fitted to the rest of one.
+using LeftOutPredictions = std::vector<std::vector<double>>;
+LeftOutPredictions left_out_predictions(const Strategy& strategy, const Folds& f) {
+  LeftOutPredictions predictions;
+  try {
+    for (std::size_t k = 0; k < f.folds.size(); ++k)
+      predictions.push_back(predicted_of(strategy.fit(f.rest[k]), f.runs, f.folds[k]));
+  } catch (const InputError&) {  // too little is left to decide by
+    return {};
+  } catch (const SolveError&) {
+    return {};
+  }
+  return predictions;
+}
+
+/// Sets errors and interval.
+void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const Folds& f) {
+  for (std::size_t k = 0; k < predictions.size(); ++k) {
+    std::vector<double> off;
+    for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured[k][i] - predictions[k][i]));
+    d.left_out.push_back({f.folds[k].kind, f.folds[k].name, score(off).rmse, quantile(off, kInterval)});
+    d.interval_um = std::max(d.interval_um.value_or(0.0), d.left_out.back().within_um);
+  }
+}
+
+/// How far beyond what it was fitted on each input may go, because there the predictor has been seen to hold: of the folds that it was fitted
+/// without, and left less than kHolds of the drift, the most by which the hidden rows go beyond the others.
+std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& s, const Folds& folds) {
+  std::vector<Record> readings;
+  for (const ObservedRun& run : folds.runs) readings.push_back(scored_readings(run, s.target, s.count_from_start));
+  std::vector<Reach> reach;
+  for (const Input& input : f.predictor->inputs()) {
+    Reach r{.input = input.name};
+    for (std::size_t k = 0; k < f.left_out.size(); ++k) {
+      if (!(f.left_out[k].rms_um <= kHolds * score(folds.measured[k]).rmse)) continue;
+      constexpr double kFar = std::numeric_limits<double>::infinity();
+      double low = kFar, high = -kFar, hidden_low = kFar, hidden_high = -kFar;
+      for (std::size_t n = 0; n < folds.runs.size(); ++n) {
+        const std::vector<double>&x = readings[n].at(input.name).values, &drift = readings[n].at(s.target).values;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          if (!std::isfinite(x[i]) || !std::isfinite(drift[i])) continue;
+          double &least = folds.folds[k].hidden[n][i] ? hidden_low : low,
+                 &most = folds.folds[k].hidden[n][i] ? hidden_high : high;
+          least = std::min(least, x[i]);
+          most = std::max(most, x[i]);
+        }
+      }
+      r.below = std::max(r.below, low - hidden_low);
+      r.above = std::max(r.above, hidden_high - high);
+    }
+    reach.push_back(std::move(r));
+  }
+  return reach;
+}
+
+/// Learns its fail-safe.
+void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const Folds& folds) {
   std::vector<std::vector<double>> predicted;
   // an observer looks after its sensors itself
   std::vector<std::string> guarded;
-  if (const DriftModel* formula = as_formula(*f.predictor)) guarded = formula->inputs();
+  if (!f.predictor->looks_after_inputs()) {
+    for (const Input& input : f.predictor->inputs()) guarded.push_back(input.name);
+  }
   std::vector<Record> readings;
   // a run's lead-in is followed, and bounds nothing: its rows may be those that are judged
   for (const ObservedRun& run : training) {
@@ -254,19 +362,65 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
     predicted.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
     readings.push_back(own_rows(s.count_from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
   }
-  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true);
+  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true, reach_of(f, s, folds));
+}
+
+/// A strategy fitted, without errors on what is left out and fail-safe.
+DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
+  DeployedPredictor f = strategy.fit(training);
+  f.name = strategy.name;
+  f.is_baseline = strategy.is_baseline;
+  f.ambient = s.ambient;
   return f;
+}
+
+/// What a blend is made of.
+struct Member {
+  DeployedPredictor deployed;
+  LeftOutPredictions predictions;
+};
+
+/// The mean of those members whose error on what was left out is alike the best one's; none where that is one alone.
+std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folds& folds, const StrategySettings& s,
+                                       std::span<const ObservedRun> training) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Member& m : members) least = std::min(least, left_out_um(m.deployed));
+  std::erase_if(members, [&](const Member& m) { return !(left_out_um(m.deployed) <= kAlike * least); });
+  if (members.size() < 2) return std::nullopt;
+  const double share = 1.0 / static_cast<double>(members.size());
+  LeftOutPredictions mean = members.front().predictions;
+  std::vector<DriftModel> models;
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      for (std::size_t i = 0; i < mean[k].size(); ++i)
+        mean[k][i] = (m == 0 ? 0.0 : mean[k][i]) + share * members[m].predictions[k][i];
+    }
+    models.push_back(*as_formula(*members[m].deployed.predictor));
+    names.push_back(members[m].deployed.name);
+  }
+  DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
+  d.name = kBlend;
+  d.ambient = s.ambient;
+  set_left_out(d, mean, folds);
+  guard(d, s, training, folds);
+  return d;
 }
 
 }  // namespace
 
 FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
   const std::vector<Strategy> list = strategies(settings);
+  const Folds folds = folds_for(settings, training);
   std::vector<std::optional<DeployedPredictor>> fitted(list.size());
+  std::vector<LeftOutPredictions> predictions(list.size());
   std::vector<std::string> why(list.size());
   parallel_for(list.size(), [&](std::size_t i) {
     try {
       fitted[i] = fit_one(list[i], settings, training);
+      predictions[i] = left_out_predictions(list[i], folds);
+      set_left_out(*fitted[i], predictions[i], folds);
+      if (!fitted[i]->is_baseline) guard(*fitted[i], settings, training, folds);
     } catch (const InputError& e) {
       why[i] = e.what();
     } catch (const SolveError& e) {  // a model that has no solution there
@@ -274,16 +428,92 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
     }
   });
   FittedStrategies result;
+  std::vector<Member> members;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (fitted[i]) {
-      result.strategies.push_back(std::move(*fitted[i]));
-    } else {
+    if (!fitted[i]) {
       result.left_out.push_back({list[i].name, why[i]});
+      continue;
     }
+    if (list[i].is_blended && !predictions[i].empty()) members.push_back({*fitted[i], predictions[i]});
+    result.strategies.push_back(std::move(*fitted[i]));
   }
+  if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training))
+    result.strategies.push_back(std::move(*mean));
   if (!settings.physics && !settings.without_physics.empty())
     result.left_out.push_back({"thermal modes, fitted model and observer", settings.without_physics});
+  choose(result);
   return result;
+}
+
+double left_out_um(const DeployedPredictor& strategy) {
+  std::map<std::string, std::pair<double, int>> squares_of;  // and how many
+  for (const FoldError& e : strategy.left_out) {
+    squares_of[e.kind].first += e.rms_um * e.rms_um;
+    ++squares_of[e.kind].second;
+  }
+  if (squares_of.empty()) return std::numeric_limits<double>::infinity();
+  double logarithms = 0.0;
+  for (const auto& [kind, squares] : squares_of)
+    logarithms += 0.5 * std::log(std::max(squares.first / squares.second, kNoError_um * kNoError_um));
+  return std::exp(logarithms / static_cast<double>(squares_of.size()));
+}
+
+namespace {
+
+/// By how many of its standard errors the mean square of one is above that of another, fold by fold; both have the same folds.
+double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
+  const auto n = static_cast<double>(a.left_out.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < a.left_out.size(); ++k) {
+    const double more = std::pow(a.left_out[k].rms_um, 2) - std::pow(b.left_out[k].rms_um, 2);
+    sum += more;
+    squares += more * more;
+  }
+  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
+  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
+/// The first of those that count whose mean square is within one standard error of one of them.
+const DeployedPredictor& simplest_near(const std::vector<DeployedPredictor>& list, const DeployedPredictor& best,
+                                       const std::function<bool(const DeployedPredictor&)>& counts) {
+  for (const DeployedPredictor& d : list) {
+    if (&d == &best || (counts(d) && d.left_out.size() == best.left_out.size() && standard_errors_above(d, best) <= 1.0))
+      return d;
+  }
+  return best;
+}
+
+}  // namespace
+
+void choose(FittedStrategies& fitted) {
+  const DeployedPredictor *best = nullptr, *mean = nullptr, *physics = nullptr;
+  for (const DeployedPredictor& d : fitted.strategies) {
+    if (d.left_out.empty()) continue;
+    if (!best || left_out_um(d) < left_out_um(*best)) best = &d;
+    if (d.name == kBlend) mean = &d;
+    if (d.predictor && d.predictor->is_driven() && (!physics || left_out_um(d) < left_out_um(*physics))) physics = &d;
+  }
+  if (!best) return;
+  const auto is_alike = [&](const DeployedPredictor& d) { return left_out_um(d) <= kAlike * left_out_um(*best); };
+  const auto said = [](const DeployedPredictor& d) { return fmt::format("'{}' leaves {:.3g} µm", d.name, left_out_um(d)); };
+  const auto set = [&](const DeployedPredictor& d, const std::string& words) {
+    fitted.chosen = d.name;
+    fitted.why_chosen =
+        fmt::format("on the parts of the training runs that were left out it leaves {:.3g} µm, {}", left_out_um(d), words);
+  };
+  const auto rest = [&](const DeployedPredictor& d) {
+    return &d == best ? std::string("the least of all") : said(*best) + ", too little less to tell them apart";
+  };
+  if (physics && is_alike(*physics)) {
+    const DeployedPredictor& simplest = simplest_near(
+        fitted.strategies, *physics, [](const DeployedPredictor& d) { return d.predictor && d.predictor->is_driven(); });
+    return set(simplest, rest(simplest) + "; it is a model of the machine, which holds where no training run went");
+  }
+  if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return set(*mean, rest(*mean));
+  const DeployedPredictor& simplest = simplest_near(fitted.strategies, *best, is_alike);
+  set(simplest,
+      (&simplest == best ? "the least of all" : "the simplest within one standard error of the least; " + said(*best)) +
+          (mean ? "; " + said(*mean) : ""));
 }
 
 }  // namespace driftwright::compensation

@@ -267,19 +267,16 @@ const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::s
   return nullptr;
 }
 
-const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
-  const JudgedStrategy* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+const JudgedStrategy* chosen_strategy(const StrategyMatrix& matrix) {
   for (const JudgedStrategy& s : matrix.strategies) {
-    if (s.fitted.is_baseline) continue;
-    const Worst w = worst_of(s, [](const Case& c) { return c.failed.empty(); });
-    if (!w.peak) continue;
-    if (!best || s.safety < best->safety || (s.safety == best->safety && w.left < least)) {
-      least = w.left;
-      best = &s;
-    }
+    if (s.fitted.name == matrix.chosen) return &s;
   }
-  return best;
+  return nullptr;
+}
+
+const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix) {
+  return *std::min_element(matrix.strategies.begin(), matrix.strategies.end(),
+                           [](const JudgedStrategy& a, const JudgedStrategy& b) { return overall_rms(a) < overall_rms(b); });
 }
 
 Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
@@ -295,7 +292,7 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
     ++n;
-    if (strategy.interval_um && std::abs(off) <= *strategy.interval_um) ++n_inside;
+    if (strategy.interval_um && std::abs(off) <= *interval_in_force_um(strategy, correction.trust[i])) ++n_inside;
   }
   c.before = score(drift_um);
   c.after = score(left);
@@ -315,6 +312,8 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
       .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
   FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
   matrix.left_out = std::move(fitted.left_out);
+  matrix.chosen = std::move(fitted.chosen);
+  matrix.why_chosen = std::move(fitted.why_chosen);
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
     const std::string& target = settings.strategies.target;

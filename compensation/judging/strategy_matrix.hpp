@@ -31,8 +31,8 @@ struct Case {
   double rms_unguarded_um = 0.0;   ///< the same, of the rows that it predicts
   double harm_um = 0.0;            ///< the most by which it leaves more than there would be without it, at one moment
   double first_hour_um = 0.0,
-         whole_um = 0.0;            ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
-  double covered = 0.0;             ///< share of rows whose drift is inside the prediction interval; NaN without one
+         whole_um = 0.0;  ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
+  double covered = 0.0;   ///< share of rows whose drift is inside the prediction interval in force; NaN without one
   std::vector<std::string> events;  ///< of the fail-safe
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
@@ -60,7 +60,8 @@ struct StrategyMatrix {
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
   MatrixSettings settings;
-  std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
+  std::vector<std::string> findings = {};    ///< about the records themselves, a sentence each
+  std::string chosen = {}, why_chosen = {};  ///< name of the strategy to deploy, by training runs alone (FittedStrategies)
 };
 
 /// A case with its course, per row of the run's readings.
@@ -99,7 +100,9 @@ struct Worst {
 
 /// The simplest strategy, no baseline and not unsafe, that keeps the tolerance in a family with intact sensors in all seasons; null: none.
 [[nodiscard]] const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family);
-/// Of those with the best verdict, the one that leaves the smallest share in its worst case with intact sensors; null: there is none.
-[[nodiscard]] const JudgedStrategy* best_strategy(const StrategyMatrix& matrix);
+/// The one that was chosen by the training runs; null: none was.
+[[nodiscard]] const JudgedStrategy* chosen_strategy(const StrategyMatrix& matrix);
+/// The one with the least RMS over the judged rows, known once they are; it says how good the choice was.
+[[nodiscard]] const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix);
 
 }  // namespace driftwright::compensation

@@ -80,7 +80,8 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
       drift_repair(&table_->safe, &repair_, inputs_.data(), room_.data(), read_.data(), dt_s, repaired_.data());
   for (std::size_t k = 0; k < channel_.size(); ++k) readings.channels[channel_[k]].values[last] = repaired_[k];
   const double drift_um = follower_->next(run);
-  const double correction_um = drift_guarded_um(&table_->safe, &guard_, deserved, drift_um, dt_s);
+  const double correction_um =
+      drift_guarded_um(&table_->safe, &guard_, std::min(deserved, follower_->deserved_trust()), drift_um, dt_s);
   return {.prediction_um = drift_um, .correction_um = correction_um, .trust = guard_.trust};
 }
 
@@ -90,6 +91,7 @@ std::vector<std::string> DeployedFollower::doubted() const {
     if (inputs_[k].is_doubted) names.push_back(deployed_.fail_safe->guards[k].input);
   }
   for (std::string& name : follower_->given_up()) names.push_back(std::move(name));
+  if (follower_->deserved_trust() < 1.0) names.emplace_back("the model: its thermometers keep away from what it expects");
   return names;
 }
 

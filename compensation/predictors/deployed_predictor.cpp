@@ -1,15 +1,28 @@
 #include "compensation/predictors/deployed_predictor.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace driftwright::compensation {
 
+std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust) {
+  if (!deployed.interval_um) return std::nullopt;
+  return trust > 0.0 ? *deployed.interval_um / trust : std::numeric_limits<double>::infinity();
+}
+
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
   if (deployed.fail_safe) {
-    const Repaired repair = repaired(*deployed.fail_safe, run.readings);
+    Repaired repair = repaired(*deployed.fail_safe, run.readings);
     ObservedRun mended = run;
     mended.readings = repair.readings;
-    return guarded(*deployed.fail_safe, repair, live(*deployed.predictor, mended));
+    const std::unique_ptr<Follower> follower = deployed.predictor->follow();
+    std::vector<double> predicted_um;
+    for (double& deserved : repair.deserved) {
+      predicted_um.push_back(follower->next(mended));
+      deserved = std::min(deserved, follower->deserved_trust());
+    }
+    return guarded(*deployed.fail_safe, repair, predicted_um);
   }
   GuardedCorrection c{.correction_um = live(*deployed.predictor, run),
                       .trust = std::vector<double>(run.readings.n_samples(), 1.0),

@@ -8,6 +8,13 @@
 
 namespace driftwright::compensation {
 
+/// What a predictor of the same kind misses where it was not fitted: on one part of the training runs, fitted to the rest.
+struct FoldError {
+  std::string kind, name;  ///< "run", "run 2.csv" (judging/folds.hpp)
+  double rms_um = 0.0;     ///< a row that it says nothing of counts as uncorrected
+  double within_um = 0.0;  ///< the error that 95 % of the rows keep
+};
+
 struct DeployedPredictor {
   std::string name;          ///< "ridge, all sensors"
   std::string target;        ///< displacement that it tells, in um
@@ -18,10 +25,15 @@ struct DeployedPredictor {
   std::string ambient = {};               ///< channel of the ambient in its training runs; "" where there was none
   std::string reason = {};                ///< what the fit decided, one sentence; may be empty
   std::optional<FailSafe> fail_safe = {};
-  /// Half width of the 95 % prediction interval [um]: of each training run left out in turn the error that 95 % of its rows keep, the
-  /// largest of those. None where only one run was given.
+  /// Half width of the 95 % prediction interval [um]: of each part of the training runs that was left out in turn the error that 95 % of its rows
+  /// keep, the largest of those. None where no part could be left out.
   std::optional<double> interval_um = {};
+  std::vector<FoldError> left_out = {};  ///< what the interval is made of, as fitted; in no file
 };
+
+/// @return the half width of the prediction interval in force [um]: interval_um over trust, for what is trusted by half says half as much;
+///         infinite without trust, none where there is no interval
+[[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);
 
 /// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);

@@ -17,6 +17,7 @@ class DrivenPredictor final : public Predictor {
                                                   const std::vector<double>& time_s)>;
   explicit DrivenPredictor(Drift drift_um) : drift_um_(std::move(drift_um)) {}
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
+  [[nodiscard]] bool is_driven() const override { return true; }
   /// Asks for the drift of all rows that the run has, and again when it has grown.
   /// @throws std::logic_error  from next(), for a drift of another length than the times; and what the drift itself throws
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;

@@ -113,7 +113,8 @@ double step_s(const std::vector<double>& time_s, std::size_t row) {
 }  // namespace
 
 FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
-                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted) {
+                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted,
+                         const std::vector<Reach>& reach) {
   std::vector<Record> training(as_given.begin(), as_given.end());
   if (from_start && !is_counted) {
     for (Record& record : training) record = counted_from_start(std::move(record), {});
@@ -161,8 +162,9 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
     }
     const double largest = std::max(std::abs(range.low), std::abs(range.high));
     const double room = std::max(kRangeRoom * range.width(), is_speed ? kLeastRoomOfDrive * largest : kLeastRoom_K);
-    g.low = range.low - room;
-    g.high = range.high + room;
+    const auto seen = std::find_if(reach.begin(), reach.end(), [&](const Reach& r) { return r.input == input; });
+    g.low = range.low - (seen == reach.end() ? room : std::max(room, seen->below));
+    g.high = range.high + (seen == reach.end() ? room : std::max(room, seen->above));
     g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
     std::vector<std::string> others;
     for (const std::string& other : inputs) {

@@ -36,15 +36,22 @@ struct FailSafe {
   double stale_s = 300.0;  ///< after so long without a reading an input is doubted; until then its last one holds
 };
 
+/// How far beyond its range in the training records a reading may go, for there a prediction has been seen to hold.
+struct Reach {
+  std::string input;
+  double below = 0.0, above = 0.0;  ///< unit of the input, >= 0
+};
+
 /// @param training    as the machine gave them
 /// @param inputs      channels of the model; drives (rpm) have a range alone
 /// @param predicted   by the model on each training record, per row
 /// @param from_start  temperatures count from the first row of each record
 /// @param is_counted  they do so already in `training`: rows may have been cut off since
+/// @param reach       of some inputs; without it the range has a fifth of its width as room
 /// @throws InputError  as complete_rows() and fit_regression(), and for training records of one row
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
                                        const std::vector<std::vector<double>>& predicted, bool from_start,
-                                       bool is_counted = false);
+                                       bool is_counted = false, const std::vector<Reach>& reach = {});
 
 /// Readings with what is doubted replaced by what the other inputs lead to.
 ///

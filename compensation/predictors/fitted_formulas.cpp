@@ -129,6 +129,17 @@ FittedFormula by_components(std::span<const Record> records, const std::vector<s
           least};
 }
 
+/// Those of the lags that are no longer. @throws InputError  when none is
+std::vector<double> lags_min(double longest_s) {
+  std::vector<double> lags;
+  for (double lag_min : kLags_min) {
+    if (60.0 * lag_min <= longest_s) lags.push_back(lag_min);
+  }
+  if (lags.empty())
+    throw InputError(fmt::format("no lag is shorter than {:.2g} min, a third of the shortest record", longest_s / 60.0));
+  return lags;
+}
+
 struct Choice {
   std::vector<int> columns;
   double penalty = 0.0, error = std::numeric_limits<double>::infinity();
@@ -183,10 +194,11 @@ FittedFormula fit_partial_least_squares(std::span<const Record> records, const s
 }
 
 FittedFormula fit_with_lags(std::span<const Record> records, const std::vector<std::string>& inputs,
-                            const std::string& target) {
+                            const std::string& target, double longest_s) {
+  const std::vector<double> kept_min = lags_min(longest_s);
   std::vector<DriftModel::Term> terms;
   for (const std::string& input : inputs) terms.push_back({.input = input, .unit = {}});
-  for (double lag_min : kLags_min) {
+  for (double lag_min : kept_min) {
     for (const std::string& input : inputs) terms.push_back({.input = input, .unit = {}, .lag_s = 60.0 * lag_min});
   }
   const TermColumns channels = term_columns(records, terms, target);
@@ -194,26 +206,27 @@ FittedFormula fit_with_lags(std::span<const Record> records, const std::vector<s
   const int m = static_cast<int>(inputs.size());
   Choice best;
   double best_lag_min = 0.0;
-  for (std::size_t l = 0; l < kLags_min.size(); ++l) {
+  for (std::size_t l = 0; l < kept_min.size(); ++l) {
     std::vector<int> columns(static_cast<std::size_t>(2 * m));
     std::iota(columns.begin(), columns.begin() + m, 0);
     std::iota(columns.begin() + m, columns.end(), m * static_cast<int>(l + 1));
     const double before = best.error;
     try_columns(sums, columns, best);
-    if (best.error < before) best_lag_min = kLags_min[l];
+    if (best.error < before) best_lag_min = kept_min[l];
   }
   return formula_of(sums, best, channels.terms, "regression with lags", fmt::format("a lag of {:g} min", best_lag_min));
 }
 
 FittedFormula fit_from_speed(std::span<const Record> records, const std::string& drive, const std::string& ambient,
-                             const std::string& target) {
-  const auto n_lags = static_cast<int>(kLags_min.size());
+                             const std::string& target, double longest_s) {
+  const std::vector<double> kept_min = lags_min(longest_s);
+  const auto n_lags = static_cast<int>(kept_min.size());
   std::vector<DriftModel::Term> terms;
-  for (double lag_min : kLags_min) {
+  for (double lag_min : kept_min) {
     for (int power : {1, 2}) terms.push_back({.input = drive, .unit = {}, .power = power, .lag_s = 60.0 * lag_min});
   }
   if (!ambient.empty()) {
-    for (double lag_min : kLags_min) terms.push_back({.input = ambient, .unit = {}, .lag_s = 60.0 * lag_min});
+    for (double lag_min : kept_min) terms.push_back({.input = ambient, .unit = {}, .lag_s = 60.0 * lag_min});
   }
   const TermColumns channels = term_columns(records, terms, target);
   const ProductSums sums = product_sums(channels.records, channels.names, target);
@@ -245,7 +258,7 @@ FittedFormula fit_from_speed(std::span<const Record> records, const std::string&
     if (n == 1 && has_ambient) ambient_columns = {2 * n_lags + with_ambient};
   }
   std::string words;
-  for (int l : lags) words += fmt::format("{}{:g}", words.empty() ? "" : ", ", kLags_min[static_cast<std::size_t>(l)]);
+  for (int l : lags) words += fmt::format("{}{:g}", words.empty() ? "" : ", ", kept_min[static_cast<std::size_t>(l)]);
   return formula_of(sums, best, channels.terms, "transfer functions from speed", fmt::format("lags of {} min", words));
 }
 

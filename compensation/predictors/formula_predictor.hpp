@@ -12,6 +12,7 @@ class FormulaPredictor final : public Predictor {
   explicit FormulaPredictor(DriftModel model) : model_(std::move(model)) {}
   [[nodiscard]] const DriftModel& model() const { return model_; }
   [[nodiscard]] std::vector<Input> inputs() const override;
+  [[nodiscard]] bool is_driven() const override { return false; }
   /// Row by row what DriftModel::predict() gives of the whole record.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 

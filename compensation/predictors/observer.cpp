@@ -19,6 +19,10 @@ constexpr double kOutlier = 6.0;     // deviations of one innovation: that readi
 constexpr double kMemory = 0.9;      // of the mean innovation from row to row
 constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
 static_assert(kReturn < kRowsBack);
+constexpr std::size_t kWarm = 10;           // rows before a mean means anything
+constexpr std::size_t kAgain = 10;          // rows until a sensor that was taken back may be given up again
+constexpr double kChance = 3.0902;          // deviations of a normal number that one of a thousand is above
+constexpr double kRoom = 2.0;               // beside what the training runs kept
 constexpr double kZero = 2.0;               // of an indicator's deviation: what its zero may be off by
 constexpr double kAmbientJump_K = 3.0;      // that no ambient changes by from row to row
 constexpr double kAmbientJumpIn_s = 600.0;  // of rows further apart, in so long
@@ -64,11 +68,40 @@ class Observer::Run final : public ObserverFollower {
     judge_ambient(run, row_);
     take_row(run, row_);
     if (!gives_up_) return 1e6 * drift_m(row_++);
-    if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
+    if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
+      give_up(run, static_cast<std::size_t>(suspect));
     return 1e6 * drift_m(row_++);
   }
 
-  [[nodiscard]] double deviation_um() const override {
+  /// How far the sensors that count keep away from the model, over what chance has in one of a thousand rows: the sum of squares of their mean
+  /// innovations, chi-squared where the model is right, without the worst of them as long as it may be the sensor's own fault.
+  [[nodiscard]] double apart() const {
+    const double variance = (1.0 - kMemory) / (1.0 + kMemory);  // of the mean of white innovations
+    double sum = 0.0, worst = 0.0;
+    int n = 0;
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      if (!live_[k]) continue;
+      const double square = mean_innovation_[k] * mean_innovation_[k] / variance;
+      sum += square;
+      worst = std::max(worst, square);
+      ++n;
+    }
+    if (row_ < kWarm || n == 0) return 0.0;
+    if (n > 1 && may_drop() > 0) {
+      sum -= worst;
+      --n;
+    }
+    const double third = 2.0 / (9.0 * n);  // Wilson & Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684
+    return sum / (n * std::pow(1.0 - third + kChance * std::sqrt(third), 3));
+  }
+  [[nodiscard]] double deserved_trust() const override {
+    if (live_.empty()) return 1.0;  // of a model that nothing is held against
+    if (std::none_of(live_.begin(), live_.end(), [](bool is) { return is; })) return 0.0;
+    const double beyond = apart() / o_.settings_.most_apart;
+    return beyond > 1.0 ? 1.0 / beyond : 1.0;
+  }
+
+  [[nodiscard]] std::optional<double> deviation_um() const override {
     const Eigen::VectorXd h = drift_gradient();
     return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
   }
@@ -128,6 +161,16 @@ class Observer::Run final : public ObserverFollower {
     Belief belief;  // before that row's step and readings
   };
 
+  /// All that giving up a sensor changes.
+  struct Kept {
+    Belief belief;
+    std::vector<bool> live;
+    std::vector<double> dropped_s, mean_innovation, last_s;
+    double last_drift_s;
+    std::vector<std::string> distrusted;
+    std::deque<Snapshot> history;
+  };
+
   void find_channels(const ObservedRun& run) {
     has_channels_ = true;
     const auto channel = [&](const std::string& name, const char* unit) {
@@ -173,6 +216,28 @@ class Observer::Run final : public ObserverFollower {
   [[nodiscard]] double ambient_K(const ObservedRun& run, std::size_t i, double t_s) const {
     const std::size_t k = i - first_ambient_row_;
     return is_ambient_doubted_[k] || is_ambient_doubted_[k - 1] ? ambient_K_[k] : run.ambient.at(t_s);
+  }
+
+  /// Up to a third of the sensors, one at least: more that keep away speak against the model.
+  [[nodiscard]] int may_drop() const {
+    const auto n_dropped = static_cast<int>(std::count(live_.begin(), live_.end(), false));
+    return std::max(1, static_cast<int>(live_.size() / 3)) - n_dropped;
+  }
+
+  /// Follows the last rows without a sensor. Where the others then agree with the model, it stays given up; else it is the model that is wrong.
+  void give_up(const ObservedRun& run, std::size_t sensor) {
+    const Kept before{belief_, live_, dropped_s_, mean_innovation_, last_s_, last_drift_s_, distrusted_, history_};
+    drop(run, sensor);
+    if (apart() <= o_.settings_.most_apart) return;
+    belief_ = before.belief;
+    live_ = before.live;
+    dropped_s_ = before.dropped_s;
+    mean_innovation_ = before.mean_innovation;
+    last_s_ = before.last_s;
+    last_drift_s_ = before.last_drift_s;
+    distrusted_ = before.distrusted;
+    history_ = before.history;
+    again_row_ = row_ + kAgain;
   }
 
   /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
@@ -233,7 +298,6 @@ class Observer::Run final : public ObserverFollower {
 
   /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
   [[nodiscard]] int worst_suspect(std::size_t i) const {
-    constexpr std::size_t kWarm = 10;  // rows before a mean means anything
     if (i < kWarm) return -1;
     const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
     int worst = -1;
@@ -360,7 +424,7 @@ class Observer::Run final : public ObserverFollower {
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
-  std::size_t row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
+  std::size_t row_ = 0, again_row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
@@ -408,6 +472,21 @@ void Observer::learn(std::span<const ObservedRun> runs) {
   }
 }
 
+Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
+  Observer other = *this;
+  other.settings_.most_apart = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const ObservedRun& run : runs) {
+    Run pass(other, false);
+    for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
+      (void)pass.next(run);
+      most = std::max(most, pass.apart());
+    }
+  }
+  other.settings_.most_apart = std::max(1.0, kRoom * most);
+  return other;
+}
+
 Observer Observer::with_sensors(std::vector<std::string> sensors) const {
   Observer other(system_, start_, start_ambient_K_, std::move(sensors), drift_, settings_);
   other.factors_ = factors_;
@@ -421,7 +500,7 @@ Observation Observer::observe(const ObservedRun& run) const {
   seen.outputs.resize(system_.outputs.state.cols(), static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i) {
     seen.drift_um.push_back(pass.next(run));
-    seen.deviation_um.push_back(pass.deviation_um());
+    seen.deviation_um.push_back(*pass.deviation_um());
     seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs();
   }
   seen.distrusted = pass.given_up();

@@ -22,6 +22,8 @@ struct ObserverSettings {
   double scale = 0.05;           ///< of each displacement
   double longest_step_s = 60.0;  ///< of the filter between readings
   double period_s = 60.0;        ///< that the first readings of a run stand for; learn() takes it from its first run
+  /// How far sensors may keep away from the model before it is trusted less, over what chance has in one of a thousand rows; at least 1.
+  double most_apart = 1.0;
 };
 
 struct Observation {
@@ -34,8 +36,6 @@ struct Observation {
 /// An observer on its way through a run: after each row what its filter says of that row.
 class ObserverFollower : public Follower {
  public:
-  /// That the filter gives the drift, 1 sigma.
-  [[nodiscard]] virtual double deviation_um() const = 0;
   /// All outputs of the model in the state believed, in K, m, rad.
   [[nodiscard]] virtual Eigen::VectorXd outputs() const = 0;
   /// Reading minus what was expected of it, of each sensor [K]; NaN where it has none.
@@ -49,7 +49,8 @@ class ObserverFollower : public Follower {
 ///
 /// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
 /// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
-/// goes back to before it began. An ambient that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+/// goes back to before it began. Where others stay away without that sensor, too, it is the model that is wrong: the sensor counts again, and the trust
+/// that the model deserves is 1 over how far their means are beyond what chance in a thousand rows, or the training runs, had (`most_apart`). An ambient that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
 class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied
@@ -68,11 +69,16 @@ class Observer final : public Predictor {
 
   /// Its sensors, in degC.
   [[nodiscard]] std::vector<Input> inputs() const override;
+  [[nodiscard]] bool is_driven() const override { return true; }
+  [[nodiscard]] double reference_K() const override { return system_.reference_K; }
+  [[nodiscard]] bool looks_after_inputs() const override { return true; }
   /// Row by row what observe() gives of the whole run.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
   /// A follower that gives up no sensor and tells what it sees on its way: one that is wrong shows in its innovations. It outlives no observer.
   [[nodiscard]] std::unique_ptr<ObserverFollower> watch() const;
 
+  /// The same, that trusts its model as far as twice what its sensors kept away from it in these runs.
+  [[nodiscard]] Observer calibrated(std::span<const ObservedRun> runs) const;
   /// The same, with what it has learned, reading other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
 

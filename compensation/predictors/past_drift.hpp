@@ -13,6 +13,7 @@ class ConstantPredictor final : public Predictor {
   explicit ConstantPredictor(double drift_um) : drift_um_(drift_um) {}
   [[nodiscard]] double drift_um() const { return drift_um_; }
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
+  [[nodiscard]] bool is_driven() const override { return false; }
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
  private:
@@ -28,6 +29,7 @@ class EarlierRunsPredictor final : public Predictor {
   /// One record a run, with one channel.
   [[nodiscard]] const std::vector<Record>& runs() const { return runs_; }
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
+  [[nodiscard]] bool is_driven() const override { return false; }
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
  private:

@@ -4,6 +4,7 @@
 // `validate` judges and keeps in a file; what `run` fits, and modes of `compensate --model modes`, are judged on their run and kept in none.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ class Follower {
   /// @throws std::logic_error  for one that knows no such thing, and for the memory of another
   [[nodiscard]] virtual std::vector<double> memory() const = 0;
   virtual void recall(std::span<const double> memory) = 0;
+  /// 1 sigma of the drift that it gave last [um], where it knows it.
+  [[nodiscard]] virtual std::optional<double> deviation_um() const { return std::nullopt; }
+  /// Trust that what it reads gives its model, 0 to 1: 1 while they agree, and for one that has no model to be wrong.
+  [[nodiscard]] virtual double deserved_trust() const { return 1.0; }
   /// What it reads and has given up, and from when: "t05 from 31 min".
   [[nodiscard]] virtual std::vector<std::string> given_up() const { return {}; }
 };
@@ -39,6 +44,12 @@ class Predictor {
   virtual ~Predictor() = default;
   /// What it reads, each once. Drive and ambient of the run, which a model looks at, are no channels.
   [[nodiscard]] virtual std::vector<Input> inputs() const = 0;
+  /// Whether it looks at drive and ambient of the run: who follows it must know them.
+  [[nodiscard]] virtual bool is_driven() const = 0;
+  /// Of a driven one: what its ambient temperatures are counted from [K].
+  [[nodiscard]] virtual double reference_K() const { return 273.15; }
+  /// Whether it doubts its own inputs; those of any other are watched by a fail-safe.
+  [[nodiscard]] virtual bool looks_after_inputs() const { return false; }
   /// At the start of a run. The follower outlives no predictor.
   [[nodiscard]] virtual std::unique_ptr<Follower> follow() const = 0;
 };

@@ -1,0 +1,172 @@
+#include "compensation/judging/folds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "base/dense.hpp"
+#include "base/errors.hpp"
+#include "base/median.hpp"
+#include "compensation/sensors/blocks.hpp"
+#include "compensation/sensors/product_sums.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr std::size_t kLeastRows = 10;
+constexpr double kLeastShareOfSpeed = 0.05;
+constexpr double kSpeedStep = 0.01;  // of the largest: speeds nearer than that are one
+
+/// Rows of a run that have a target of its own.
+std::vector<std::size_t> own_targets(const ObservedRun& run, const std::string& target) {
+  const std::vector<double>& drift = run.readings.at(target).values;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = run.n_before; i < drift.size(); ++i) {
+    if (std::isfinite(drift[i])) rows.push_back(i);
+  }
+  return rows;
+}
+
+/// The first principal component of the thermometers per run and row, with which they rise; NaN where one is missing. Empty where none moves.
+std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const FoldSettings& s) {
+  if (s.thermometers.empty()) return {};
+  std::vector<Record> records;
+  for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, false));
+  try {
+    const ProductSums sums = product_sums(records, s.thermometers, s.target);
+    const auto n = static_cast<Eigen::Index>(s.thermometers.size());
+    const dense::SymmetricEigen eigen(Eigen::MatrixXd(sums.total().block(1, 1, n, n)));
+    Eigen::VectorXd share = eigen.eigenvectors().col(n - 1);
+    if (share.sum() < 0.0) share = -share;
+    std::vector<std::vector<double>> result;
+    for (const Record& record : records) {
+      std::vector<double> warm(record.n_samples(), 0.0);
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const std::vector<double>& read = record.at(s.thermometers[static_cast<std::size_t>(j)]).values;
+        for (std::size_t i = 0; i < read.size(); ++i) warm[i] += share(j) * (read[i] - sums.mean(j)) / sums.deviation(j);
+      }
+      result.push_back(std::move(warm));
+    }
+    return result;
+  } catch (const InputError&) {  // no row in which all thermometers read something
+    return {};
+  }
+}
+
+/// Folds of some runs, one by one.
+class FoldMaker {
+ public:
+  FoldMaker(std::span<const ObservedRun> runs, const std::string& target) : runs_(runs) {
+    for (const ObservedRun& run : runs) own_.push_back(own_targets(run, target));
+  }
+  [[nodiscard]] const std::vector<std::vector<std::size_t>>& own() const { return own_; }
+
+  /// Takes the fold of the rows that `is_hidden` of, by run, place among its own targets and row; not where it would be none.
+  void add(const std::string& kind, const std::string& name, bool whole_runs,
+           const std::function<bool(std::size_t run, std::size_t place, std::size_t row)>& is_hidden) {
+    Fold fold{kind, name, {}};
+    std::size_t n_hidden = 0, n_left = 0;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      fold.hidden.emplace_back(runs_[r].readings.n_samples(), false);
+      for (std::size_t k = 0; k < own_[r].size(); ++k) {
+        const bool is = (whole_runs || k > 0) && is_hidden(r, k, own_[r][k]);
+        fold.hidden[r][own_[r][k]] = is;
+        ++(is ? n_hidden : n_left);
+      }
+    }
+    if (n_hidden >= kLeastRows && n_left >= kLeastRows) folds.push_back(std::move(fold));
+  }
+
+  std::vector<Fold> folds;
+
+ private:
+  std::span<const ObservedRun> runs_;
+  std::vector<std::vector<std::size_t>> own_;
+};
+
+void add_speeds(FoldMaker& make, std::span<const ObservedRun> runs, const std::string& speed) {
+  double largest = 0.0;
+  const auto each = [&](const auto& visit) {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      const Channel* channel = runs[r].readings.find(speed);
+      for (std::size_t row : make.own()[r]) {
+        if (channel && std::isfinite(channel->values[row])) visit(std::abs(channel->values[row]));
+      }
+    }
+  };
+  each([&](double rpm) { largest = std::max(largest, rpm); });
+  if (!(largest > 0.0)) return;
+  const auto level = [&](double rpm) { return std::lround(std::abs(rpm) / (kSpeedStep * largest)); };
+  std::map<long, std::size_t> n_of;
+  std::size_t n = 0;
+  each([&](double rpm) {
+    ++n_of[level(rpm)];
+    ++n;
+  });
+  n_of.erase(0);
+  std::erase_if(n_of,
+                [&](const auto& e) { return static_cast<double>(e.second) < kLeastShareOfSpeed * static_cast<double>(n); });
+  if (n_of.size() < 2) return;
+  for (const auto& [at, count] : n_of) {
+    make.add("speed", fmt::format("speed {:.0f} rpm", static_cast<double>(at) * kSpeedStep * largest), true,
+             [&, at = at](std::size_t r, std::size_t, std::size_t row) {
+               const Channel* channel = runs[r].readings.find(speed);
+               return channel && std::isfinite(channel->values[row]) && level(channel->values[row]) == at;
+             });
+  }
+}
+
+}  // namespace
+
+std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings& s) {
+  FoldMaker make(runs, s.target);
+  const auto& own = make.own();
+  if (runs.size() == 1) {
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      make.add("block", fmt::format("eighth {}", b + 1), false, [&](std::size_t r, std::size_t k, std::size_t) {
+        return k >= own[r].size() * b / kBlocks && k < own[r].size() * (b + 1) / kBlocks;
+      });
+    }
+  } else {
+    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out)
+      make.add("run", runs[left_out].readings.source, true,
+               [&](std::size_t r, std::size_t, std::size_t) { return r == left_out; });
+  }
+  if (!s.speed.empty()) add_speeds(make, runs, s.speed);
+  make.add("end", "last third of each run", false,
+           [&](std::size_t r, std::size_t k, std::size_t) { return 3 * k >= 2 * own[r].size(); });
+  make.add("beginning", "first third of each run", false,
+           [&](std::size_t r, std::size_t k, std::size_t) { return 3 * k < own[r].size(); });
+  const std::vector<std::vector<double>> warm = warmth(runs, s);
+  std::vector<double> all;
+  for (std::size_t r = 0; r < warm.size(); ++r) {
+    for (std::size_t row : own[r]) {
+      if (std::isfinite(warm[r][row])) all.push_back(warm[r][row]);
+    }
+  }
+  if (all.size() < 3) return std::move(make.folds);
+  const double low = quantile(all, 1.0 / 3.0), high = quantile(all, 2.0 / 3.0);
+  make.add("warm", "warmest third", false, [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] > high; });
+  make.add("cold", "coldest third", false, [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] < low; });
+  return std::move(make.folds);
+}
+
+std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& fold, const std::string& target) {
+  std::vector<ObservedRun> rest;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    ObservedRun run = runs[r];
+    std::vector<double>& drift =
+        run.readings.channels[static_cast<std::size_t>(&run.readings.at(target) - run.readings.channels.data())].values;
+    for (std::size_t i = 0; i < drift.size(); ++i) {
+      if (fold.hidden[r][i]) drift[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!own_targets(run, target).empty()) rest.push_back(std::move(run));
+  }
+  return rest;
+}
+
+}  // namespace driftwright::compensation
