@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -87,6 +88,36 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
   }
 }
 
+/// The highest speed that the scenario says anything of: of its cyclograms, or that a law states its heat or growth at [rpm]; 0: none.
+double known_speed_rpm(const scenarios::Scenario& scenario) {
+  double top_rpm = 0.0;
+  for (const Cyclogram& c : scenario.cyclograms) {
+    for (const auto& section : c.sections) top_rpm = std::max(top_rpm, section.drive.speed_rpm);
+  }
+  for (const effects::Effect& e : scenario.machine->effects) {
+    if (e.has("at_speed") && std::isfinite(e["at_speed"])) top_rpm = std::max(top_rpm, e["at_speed"]);
+  }
+  return top_rpm;
+}
+
+/// @throws InputError  with the line, for a speed that the scenario says nothing of
+void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& program) {
+  constexpr double kRounding = 1.0 + 1e-9;
+  const double top_rpm = known_speed_rpm(scenario);
+  double t_s = 0.0;
+  for (const NcMove& move : program.moves) {
+    t_s += move.duration_s;
+    if (!(move.speed_rpm > top_rpm * kRounding)) continue;
+    const auto step = std::find_if(program.steps.begin(), program.steps.end(),
+                                   [&](const NcStep& s) { return s.end_s >= t_s && s.end_s > s.start_s; });
+    const std::string what = fmt::format(
+        "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned there would be made up. "
+        "Give a cyclogram that reaches it, correct the S word, or add --beyond",
+        move.speed_rpm, scenario.path, top_rpm);
+    throw step == program.steps.end() ? InputError(what) : InputError(step->where, what);
+  }
+}
+
 }  // namespace
 
 void schedule(const ScheduleVerbOptions& options) {
@@ -108,6 +139,7 @@ void schedule(const ScheduleVerbOptions& options) {
   if (!options.between.empty() && parts == 1)
     throw InputError("--between is the time between two parts, and there is one: give --parts, or `parts` in the schedule");
   series.program = read_nc_program(options.program, settings.nc);
+  if (!options.beyond) require_known_speeds(scenario, series.program);
   const std::string bytes = read_bytes(options.program);
   series.cyclogram = scenarios::cyclogram_of(series.program, std::filesystem::path(series.file).stem().string(),
                                              settings.resolution_s, settings.cutting_power_W);

@@ -103,6 +103,7 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string policy;   ///< empty: the scenario's
   std::string dialect;  ///< empty: the scenario's
   bool split = false;   ///< divide blocks that cannot keep the tolerance
+  bool beyond = false;  ///< plan at speeds that the scenario says nothing of, too
   std::string start;    ///< these as in PredictOptions
   std::string after_pause;
   std::string model;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/bounded_json.hpp"
 #include "base/config_map.hpp"
@@ -118,8 +117,7 @@ class FollowedPredictor final : public Followed {
     const FollowedCorrection c = follower_.next(run_->run());
     if (watch_) (void)watch_->next(run_->run());
     trust_ = c.trust;
-    axis_.interval_um = interval_in_force_um(d(), c.trust);
-    if (axis_.interval_um && !std::isfinite(*axis_.interval_um)) axis_.interval_um.reset();
+    axis_.interval_um = c.interval_um;
     axis_.predicted_um = c.correction_um;
     stage_.take(c.correction_um, step_s);
     return true;

@@ -292,7 +292,10 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
     ++n;
-    if (strategy.interval_um && std::abs(off) <= *interval_in_force_um(strategy, correction.trust[i])) ++n_inside;
+    if (strategy.interval_um &&
+        std::abs(off) <=
+            interval_in_force_um(strategy, correction.trust[i]).value_or(std::numeric_limits<double>::infinity()))
+      ++n_inside;
   }
   c.before = score(drift_um);
   c.after = score(left);

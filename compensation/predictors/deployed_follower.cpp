@@ -69,7 +69,10 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
   const double dt_s = last > 0 ? readings.time_s[last] - readings.time_s[last - 1] : 0.0;
   if (!table_) {
     const double drift_um = follower_->next(run);
-    return {.prediction_um = drift_um, .correction_um = std::isfinite(drift_um) ? drift_um : 0.0, .trust = 1.0};
+    return {.prediction_um = drift_um,
+            .correction_um = std::isfinite(drift_um) ? drift_um : 0.0,
+            .trust = 1.0,
+            .interval_um = deployed_.interval_um};
   }
   if (channel_.empty()) {
     for (const FailSafe::Guard& g : deployed_.fail_safe->guards)
@@ -80,9 +83,12 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
       drift_repair(&table_->safe, &repair_, inputs_.data(), room_.data(), read_.data(), dt_s, repaired_.data());
   for (std::size_t k = 0; k < channel_.size(); ++k) readings.channels[channel_[k]].values[last] = repaired_[k];
   const double drift_um = follower_->next(run);
-  const double correction_um =
-      drift_guarded_um(&table_->safe, &guard_, std::min(deserved, follower_->deserved_trust()), drift_um, dt_s);
-  return {.prediction_um = drift_um, .correction_um = correction_um, .trust = guard_.trust};
+  const double now = std::min(deserved, follower_->deserved_trust());
+  const double correction_um = drift_guarded_um(&table_->safe, &guard_, now, drift_um, dt_s);
+  least_trust_ = std::min({now, guard_.trust, 1.0 + (least_trust_ - 1.0) * std::exp(-dt_s / kRemembersDoubt_s)});
+  std::optional<double> interval_um = interval_in_force_um(deployed_, least_trust_);
+  if (interval_um) *interval_um += std::abs(guard_.prediction_um - correction_um);
+  return {.prediction_um = drift_um, .correction_um = correction_um, .trust = guard_.trust, .interval_um = interval_um};
 }
 
 std::vector<std::string> DeployedFollower::doubted() const {
@@ -96,7 +102,7 @@ std::vector<std::string> DeployedFollower::doubted() const {
 }
 
 std::vector<double> DeployedFollower::memory() const {
-  std::vector<double> m;
+  std::vector<double> m = {least_trust_};
   const auto add = [&](const auto& numbers) {
     for (double x : numbers) m.push_back(x);
   };
@@ -108,12 +114,14 @@ std::vector<double> DeployedFollower::memory() const {
 }
 
 void DeployedFollower::recall(std::span<const double> memory) {
-  const std::size_t own = 2 * kNumbersOfState + kNumbersOfInput * inputs_.size();
+  const std::size_t own = 1 + 2 * kNumbersOfState + kNumbersOfInput * inputs_.size();
   if (memory.size() < own) throw std::logic_error("the memory of another predictor");
-  repair_ = state_of(memory.data());
-  guard_ = state_of(memory.data() + kNumbersOfState);
+  least_trust_ = memory[0];
+  const std::span<const double> rest = memory.subspan(1);
+  repair_ = state_of(rest.data());
+  guard_ = state_of(rest.data() + kNumbersOfState);
   for (std::size_t k = 0; k < inputs_.size(); ++k)
-    inputs_[k] = input_of(memory.data() + 2 * kNumbersOfState + kNumbersOfInput * k);
+    inputs_[k] = input_of(rest.data() + 2 * kNumbersOfState + kNumbersOfInput * k);
   follower_->recall(memory.subspan(own));
 }
 

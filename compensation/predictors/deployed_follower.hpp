@@ -11,7 +11,14 @@ struct FollowedCorrection {
   double prediction_um = 0.0;  ///< NaN where nothing can be said
   double correction_um = 0.0;  ///< in force, guarded
   double trust = 1.0;          ///< 0 to 1, that the prediction was multiplied by
+  /// Half width of the 95 % interval of the drift about the correction [um]: that of the predictor over the least trust that its inputs gave it lately, and by how
+  /// much the correction stays behind the prediction, faded, clamped or slewed. A model that was found wrong is believed to its own interval again after
+  /// some kRemembersDoubt_s. None without trust, and where none was learned.
+  std::optional<double> interval_um = {};
 };
+
+/// Time constant with which a doubt is forgotten: a shift. What was wrong with a model is still wrong with it when its filter has adapted.
+inline constexpr double kRemembersDoubt_s = 8.0 * 3600.0;
 
 /// A deployed predictor on its way through one run. The predictor outlives it.
 class DeployedFollower {
@@ -35,6 +42,7 @@ class DeployedFollower {
   const DeployedPredictor& deployed_;
   std::unique_ptr<Follower> follower_;
   std::optional<FailSafeTable> table_;
+  double least_trust_ = 1.0;  ///< of lately
   drift_state repair_{}, guard_{};
   std::vector<drift_input_state> inputs_;
   std::vector<double> room_, read_, repaired_;

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace driftwright::compensation {
 
 std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust) {
   if (!deployed.interval_um) return std::nullopt;
-  return trust > 0.0 ? *deployed.interval_um / trust : std::numeric_limits<double>::infinity();
+  return trust > 0.0 ? std::optional(*deployed.interval_um / trust) : std::nullopt;
 }
 
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {

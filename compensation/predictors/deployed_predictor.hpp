@@ -32,7 +32,7 @@ struct DeployedPredictor {
 };
 
 /// @return the half width of the prediction interval in force [um]: interval_um over trust, for what is trusted by half says half as much;
-///         infinite without trust, none where there is no interval
+///         none without trust, and where there is no interval
 [[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);
 
 /// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.

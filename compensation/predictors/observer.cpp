@@ -20,6 +20,7 @@ constexpr double kMemory = 0.9;      // of the mean innovation from row to row
 constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
 static_assert(kReturn < kRowsBack);
 constexpr std::size_t kWarm = 10;           // rows before a mean means anything
+constexpr double kFoundWrong = 2.0;         // times most_apart: no chance, and no passing disagreement
 constexpr std::size_t kAgain = 10;          // rows until a sensor that was taken back may be given up again
 constexpr double kChance = 3.0902;          // deviations of a normal number that one of a thousand is above
 constexpr double kRoom = 2.0;               // beside what the training runs kept
@@ -70,13 +71,16 @@ class Observer::Run final : public ObserverFollower {
     if (!gives_up_) return 1e6 * drift_m(row_++);
     if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
+    is_model_wrong_ = is_model_wrong_ || (row_ >= kWarm && apart() > kFoundWrong * o_.settings_.most_apart);
     return 1e6 * drift_m(row_++);
   }
 
   /// How far the sensors that count keep away from the model, over what chance has in one of a thousand rows: the sum of squares of their mean
   /// innovations, chi-squared where the model is right, without the worst of them as long as it may be the sensor's own fault.
   [[nodiscard]] double apart() const {
-    const double variance = (1.0 - kMemory) / (1.0 + kMemory);  // of the mean of white innovations
+    // of the mean of white innovations, which began at 0
+    const double variance =
+        (1.0 - kMemory) / (1.0 + kMemory) * (1.0 - std::pow(kMemory, 2.0 * static_cast<double>(n_in_means())));
     double sum = 0.0, worst = 0.0;
     int n = 0;
     for (std::size_t k = 0; k < live_.size(); ++k) {
@@ -86,7 +90,7 @@ class Observer::Run final : public ObserverFollower {
       worst = std::max(worst, square);
       ++n;
     }
-    if (row_ < kWarm || n == 0) return 0.0;
+    if (n == 0) return 0.0;
     if (n > 1 && may_drop() > 0) {
       sum -= worst;
       --n;
@@ -94,6 +98,7 @@ class Observer::Run final : public ObserverFollower {
     const double third = 2.0 / (9.0 * n);  // Wilson & Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684
     return sum / (n * std::pow(1.0 - third + kChance * std::sqrt(third), 3));
   }
+  [[nodiscard]] std::size_t n_in_means() const { return std::max<std::size_t>(row_ - means_from_, 1); }
   [[nodiscard]] double deserved_trust() const override {
     if (live_.empty()) return 1.0;  // of a model that nothing is held against
     if (std::none_of(live_.begin(), live_.end(), [](bool is) { return is; })) return 0.0;
@@ -113,7 +118,7 @@ class Observer::Run final : public ObserverFollower {
   [[nodiscard]] std::vector<double> memory() const override {
     const auto n = belief_.mean.size();
     std::vector<double> m = {static_cast<double>(row_), start_ambient_K_, ambient_K_.back(),
-                             static_cast<double>(is_ambient_doubted_.back())};
+                             static_cast<double>(is_ambient_doubted_.back()), static_cast<double>(is_model_wrong_)};
     for (std::size_t k = 0; k < live_.size(); ++k)
       m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
     m.insert(m.end(), start_state_.begin(), start_state_.end());
@@ -126,7 +131,7 @@ class Observer::Run final : public ObserverFollower {
   void recall(std::span<const double> memory) override {
     const auto n = belief_.mean.size();
     const std::size_t n_sensors = live_.size();
-    if (memory.size() != 4 + 4 * n_sensors + static_cast<std::size_t>(n_ + n + n * (n + 1) / 2))
+    if (memory.size() != 5 + 4 * n_sensors + static_cast<std::size_t>(n_ + n + n * (n + 1) / 2))
       throw std::logic_error("the memory of another observer");
     auto at = memory.begin();
     const auto take = [&] { return *at++; };
@@ -134,6 +139,7 @@ class Observer::Run final : public ObserverFollower {
     start_ambient_K_ = take();
     ambient_K_ = {take()};
     is_ambient_doubted_ = {take() != 0.0};
+    is_model_wrong_ = take() != 0.0;
     first_ambient_row_ = row_ - 1;
     for (std::size_t k = 0; k < n_sensors; ++k) {
       live_[k] = take() != 0.0;
@@ -169,6 +175,7 @@ class Observer::Run final : public ObserverFollower {
     double last_drift_s;
     std::vector<std::string> distrusted;
     std::deque<Snapshot> history;
+    std::size_t means_from;
   };
 
   void find_channels(const ObservedRun& run) {
@@ -218,15 +225,18 @@ class Observer::Run final : public ObserverFollower {
     return is_ambient_doubted_[k] || is_ambient_doubted_[k - 1] ? ambient_K_[k] : run.ambient.at(t_s);
   }
 
-  /// Up to a third of the sensors, one at least: more that keep away speak against the model.
+  /// Up to a third of the sensors, one at least: more that keep away speak against the model. None of a model that was found wrong in this run: the
+  /// sensor that sees best what is wrong with it would go first.
   [[nodiscard]] int may_drop() const {
+    if (is_model_wrong_) return 0;
     const auto n_dropped = static_cast<int>(std::count(live_.begin(), live_.end(), false));
     return std::max(1, static_cast<int>(live_.size() / 3)) - n_dropped;
   }
 
   /// Follows the last rows without a sensor. Where the others then agree with the model, it stays given up; else it is the model that is wrong.
   void give_up(const ObservedRun& run, std::size_t sensor) {
-    const Kept before{belief_, live_, dropped_s_, mean_innovation_, last_s_, last_drift_s_, distrusted_, history_};
+    const Kept before{belief_,       live_,       dropped_s_, mean_innovation_, last_s_,
+                      last_drift_s_, distrusted_, history_,   means_from_};
     drop(run, sensor);
     if (apart() <= o_.settings_.most_apart) return;
     belief_ = before.belief;
@@ -237,6 +247,7 @@ class Observer::Run final : public ObserverFollower {
     last_drift_s_ = before.last_drift_s;
     distrusted_ = before.distrusted;
     history_ = before.history;
+    means_from_ = before.means_from;
     again_row_ = row_ + kAgain;
   }
 
@@ -247,6 +258,7 @@ class Observer::Run final : public ObserverFollower {
     distrusted_.push_back(words_of_dropped(sensor));
     belief_ = history_.front().belief;
     mean_innovation_.assign(mean_innovation_.size(), 0.0);
+    means_from_ = history_.front().row;
     last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
     last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t k = history_.front().row; k <= row_; ++k) take_row(run, k);
@@ -418,13 +430,13 @@ class Observer::Run final : public ObserverFollower {
 
   const Observer& o_;
   const solver::ReducedSystem& s_;
-  bool with_drift_, gives_up_;
+  bool with_drift_, gives_up_, is_model_wrong_ = false;
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
   Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
-  std::size_t row_ = 0, again_row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
+  std::size_t row_ = 0, again_row_ = 0, means_from_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
