@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include "app/results.hpp"
 #include "app/schedule_files.hpp"
@@ -95,7 +96,10 @@ double known_speed_rpm(const scenarios::Scenario& scenario) {
     for (const auto& section : c.sections) top_rpm = std::max(top_rpm, section.drive.speed_rpm);
   }
   for (const effects::Effect& e : scenario.machine->effects) {
-    if (e.has("at_speed") && std::isfinite(e["at_speed"])) top_rpm = std::max(top_rpm, e["at_speed"]);
+    for (std::size_t k = 0; k < e.values.size(); ++k) {
+      if (e.kind->parameters[k].name == std::string_view("at_speed") && std::isfinite(e.values[k]))
+        top_rpm = std::max(top_rpm, e.values[k]);
+    }
   }
   return top_rpm;
 }
