@@ -80,12 +80,10 @@ def why(log):
 
 def by_strategies(case, program, folder):
     """Name of the strategy that `validate` chose by the training runs, its RMS with fail-safe and without, and the best one in hindsight."""
-    if not case.thermometers:
-        return {"why": "no thermometer to read"}
     train, test = training_and_judged(case, folder)
     scenario = os.path.join(folder, "study.yaml")
     with open(scenario, "w", encoding="utf-8") as out:
-        out.write(f"name: scoreboard\nstudy:\n  target: {base(case.target)}\n  sensors_to_choose: {min(case.sensors_to_choose, len(case.thermometers))}\n"
+        out.write(f"name: scoreboard\nstudy:\n  target: {base(case.target)}\n  sensors_to_choose: {max(1, min(case.sensors_to_choose, len(case.thermometers)))}\n"
                   f"  count_from_start: {str(case.from_start).lower()}\n  tolerance: 10 um\n")
     arguments = [program, "validate", scenario, "-o", os.path.join(folder, "validate")]
     for file in train:
