@@ -52,7 +52,8 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 
 /// What verbs take whose work several processes may share. @param parts  that the work has, in words
 void add_shards(CLI::App* verb, app::ShardOptions& options, const std::string& parts) {
-  verb->add_option("--shard", options.shard, "i/n: do the i-th of n parts of " + parts + " alone, as a task of a job array does");
+  verb->add_option("--shard", options.shard,
+                   "i/n: do the i-th of n parts of " + parts + " alone, as a task of a job array does");
   verb->add_flag("--merge", options.merge, "put together what all shards have done");
 }
 
@@ -293,8 +294,8 @@ void add_list(CLI::App& cli, app::ListOptions& options) {
 void refuse_control_characters(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     if (has_control_character(argv[i]))
-      throw InputError(
-          fmt::format("argument {} holds a line break or another control character: '{}'; rename the file", i, clean_name(argv[i])));
+      throw InputError(fmt::format("argument {} holds a line break or another control character: '{}'; rename the file", i,
+                                   clean_name(argv[i])));
   }
 }
 
@@ -421,10 +422,12 @@ int app::command_line(int argc, const char* const* argv) {
                   "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
   verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
   verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
-  CLI::Option* margin = verb->add_option(
-      "--margin", warmup.margin, "share of the tolerance that is kept free for what the model does not know, such as '20 %' [none]");
+  CLI::Option* margin =
+      verb->add_option("--margin", warmup.margin,
+                       "share of the tolerance that is kept free for what the model does not know, such as '20 %' [none]");
   verb->add_option("--model-error", warmup.model_error,
-                   "of each source, film, joint and link, such as '20 %': the margin is then so large that 95 of 100 such machines keep the tolerance")
+                   "of each source, film, joint and link, such as '20 %': the margin is then so large that 95 of 100 such "
+                   "machines keep the tolerance")
       ->excludes(margin);
   verb->add_option("--speed-limit", warmup.speed_limit,
                    "of the warm-up, such as '3000 rpm' [the fastest of the scenario and the job]");

@@ -115,7 +115,8 @@ void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& 
     const auto step = std::find_if(program.steps.begin(), program.steps.end(),
                                    [&](const NcStep& s) { return s.end_s >= t_s && s.end_s > s.start_s; });
     const std::string what = fmt::format(
-        "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned there would be made up. "
+        "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned there would be "
+        "made up. "
         "Give a cyclogram that reaches it, correct the S word, or add --beyond",
         move.speed_rpm, scenario.path, top_rpm);
     throw step == program.steps.end() ? InputError(what) : InputError(step->where, what);
@@ -131,8 +132,8 @@ void schedule(const ScheduleVerbOptions& options) {
   CorrectedSeries series{.file = file_name(given.stem().string(), given.extension().string()),
                          .settings = require_schedule(scenario),
                          .split = options.split};
-  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv",         "report.html",
-                                             "summary.json", "figures",      "tables",             output::kManifestName};
+  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "report.html", "summary.json",
+                                          "figures", "tables", output::kManifestName};
       ours.contains(series.file))
     throw InputError(
         fmt::format("{}: `schedule` writes a file or folder of this name of its own; rename the program", options.program));
@@ -165,9 +166,10 @@ void schedule(const ScheduleVerbOptions& options) {
   series.iso = studies::iso_figures(prediction);
   progress.begin("planning corrections");
   correct(series, bytes);
-  const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, clean_name(options.program),
-                                       series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",
-                                       prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
+  const std::string what =
+      fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, clean_name(options.program),
+                  series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",
+                  prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
   for (const CorrectedProgram& program : series.programs) folder.write_text(program.file, program.corrected.text);
   folder.write_text("record.csv", record_csv(prediction.record, provenance_lines(folder.made_by(), what)));
   const std::string notation = schedule_notation(series);

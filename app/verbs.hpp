@@ -72,16 +72,16 @@ struct WarmUpVerbOptions : CommonOptions {
 void warmup(const WarmUpVerbOptions& options);
 
 struct PlaceOptions : CommonOptions, ShardOptions {
-  std::optional<int> count;            ///< thermometers to place; none: the study's, else 4
-  std::optional<int> points;           ///< of a mesh that are tried; none: 400
-  std::vector<std::string> regions;    ///< that may carry them; empty: all
-  std::vector<std::string> excluded;   ///< regions that may not
-  std::vector<std::string> mounted;    ///< sensors of the scenario that are there already
-  std::vector<std::string> channels;   ///< displacements; empty: the study's target, else all
+  std::optional<int> count;              ///< thermometers to place; none: the study's, else 4
+  std::optional<int> points;             ///< of a mesh that are tried; none: 400
+  std::vector<std::string> regions;      ///< that may carry them; empty: all
+  std::vector<std::string> excluded;     ///< regions that may not
+  std::vector<std::string> mounted;      ///< sensors of the scenario that are there already
+  std::vector<std::string> channels;     ///< displacements; empty: the study's target, else all
   std::vector<std::string> train, test;  ///< cyclograms to choose on and to judge by
-  std::string placed_for = "both";     ///< or observer, regression
-  bool none_fails = false;             ///< count only the case in which all of them work
-  std::string noise;                   ///< of a reading, such as "0.1 K"; empty: the scenario's, else 0.1 K
+  std::string placed_for = "both";       ///< or observer, regression
+  bool none_fails = false;               ///< count only the case in which all of them work
+  std::string noise;                     ///< of a reading, such as "0.1 K"; empty: the scenario's, else 0.1 K
 };
 /// Where thermometers tell most of the drift.
 void place(const PlaceOptions& options);

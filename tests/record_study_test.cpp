@@ -81,8 +81,8 @@ TEST(TooFewSamples, AreNamedByEveryModel) {
   const std::vector<std::string> all = fixtures::sensor_names(6);
   EXPECT_THAT([&] { (void)compensation::fit_regression(std::span(few).first(1), all, "drift_y"); },
               ThrowsMessage<InputError>(HasSubstr("7 unknowns but only 3 complete rows")));
-  for (const auto& fit : {compensation::fit_ridge, compensation::fit_principal_components,
-                          compensation::fit_partial_least_squares})
+  for (const auto& fit :
+       {compensation::fit_ridge, compensation::fit_principal_components, compensation::fit_partial_least_squares})
     EXPECT_THAT([&] { (void)fit(few, all, "drift_y"); }, ThrowsMessage<InputError>(HasSubstr("complete rows")));
   EXPECT_THAT([&] { (void)compensation::fit_with_lags(few, all, "drift_y"); },
               ThrowsMessage<InputError>(HasSubstr("complete rows")));

@@ -282,7 +282,8 @@ TEST(ScheduleVerb, RefusesASpeedThatTheScenarioSaysNothingOf) {
   const std::string fast = "G21 G90 G54\nS2000 M3\nG0 X0 Z5\nS60000 M3\nG1 X100 F5\nG0 Z9\nM30\n";
   const Scheduled refused = run_schedule("too_fast", fast);
   EXPECT_EQ(refused.outcome.exit_code, 2);
-  EXPECT_THAT(refused.outcome.output, AllOf(HasSubstr("part.ngc:5"), HasSubstr("turns at 60000 rpm"), HasSubstr("--beyond")));
+  EXPECT_THAT(refused.outcome.output,
+              AllOf(HasSubstr("part.ngc:5"), HasSubstr("turns at 60000 rpm"), HasSubstr("--beyond")));
   EXPECT_FALSE(std::filesystem::exists(refused.folder / "part.ngc"));
   EXPECT_EQ(run_schedule("beyond", fast, "--beyond").outcome.exit_code, 0);
 }

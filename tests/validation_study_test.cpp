@@ -80,7 +80,7 @@ TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) 
   double intact = 0.0, failed = 0.0, exchanged = 0.0, drifting_ambient = 0.0;
   for (const CsvRow& r : rows_) {
     if (r.strategy != "observer") continue;
-    double& worst = is_intact(r)                                       ? intact
+    double& worst = is_intact(r)                                      ? intact
                     : r.failed.find("exchanged") != std::string::npos ? exchanged
                     : r.failed.starts_with("X1 drifting")             ? drifting_ambient
                                                                       : failed;
