@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/bounded_json.hpp"
 #include "base/config_map.hpp"
@@ -84,7 +85,6 @@ class FollowedPredictor final : public Followed {
       watch_.emplace(*observer_, read_watch(options.watch, content_hash(read_bytes(path))));
     }
     axis_.name = d().target;
-    axis_.interval_um = d().interval_um;
   }
 
   [[nodiscard]] std::vector<WantedChannel> wanted() const override {
@@ -130,6 +130,8 @@ class FollowedPredictor final : public Followed {
     axis.correction_um = stage_.state().correction_um;
     axis.trust = trust_ * stage_.state().authority;
     if (!has_begun()) axis.trust = 0.0;
+    if (!(axis.trust > 0.0)) axis.interval_um.reset();
+    if (axis.interval_um) *axis.interval_um += std::abs(axis.predicted_um - axis.correction_um);
     axis.doubted = follower_.doubted();
     if (has_begun()) axis.deviation_um = follower_.follower().deviation_um();
     if (watch_ && has_begun()) {

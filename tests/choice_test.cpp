@@ -56,7 +56,7 @@ TEST(Folds, HideRunsSpeedsEndsAndTheWarmest) {
   EXPECT_TRUE(folds[5].hidden[0][59]);
   EXPECT_EQ(n_hidden(folds[6], 0), 19u);  // the first row says what the drift counts from
   EXPECT_FALSE(folds[6].hidden[0][0]);
-  EXPECT_EQ(n_hidden(folds[7], 1), 59u);  // "b" is the warm one
+  EXPECT_EQ(n_hidden(folds[7], 1), 60u);  // "b" is the warm one, and wholly
   EXPECT_EQ(n_hidden(folds[7], 0), 0u);
   EXPECT_EQ(n_hidden(folds[8], 1), 0u);
 
@@ -68,6 +68,21 @@ TEST(Folds, HideRunsSpeedsEndsAndTheWarmest) {
   EXPECT_TRUE(std::isnan(cut[0].readings.at("tip_z").values[40]));
   EXPECT_EQ(cut[0].readings.at("tip_z").values[39], 19.5);
   EXPECT_EQ(cut[0].readings.at("bed").values[40], 24.0);  // readings are never hidden
+}
+
+// A run that begins at the speed that is hidden, and goes on at another: what its drift counts from stays.
+TEST(Folds, OfSpeedsKeepWhatTheDriftCountsFrom) {
+  std::vector<ObservedRun> runs = {run_of("a", 1000.0, 20.0), run_of("b", 2000.0, 20.0)};
+  std::vector<double>& speed = runs[0].readings.channels[0].values;
+  std::fill(speed.begin() + 30, speed.end(), 2000.0);
+  for (const Fold& f : folds_of(runs, kSettings)) {
+    if (f.name != "speed 1000 rpm") continue;
+    EXPECT_FALSE(f.hidden[0][0]);
+    EXPECT_EQ(n_hidden(f, 0), 29u);
+    EXPECT_EQ(without(runs, f, "tip_z")[0].readings.at("tip_z").values[0], 0.0);
+    return;
+  }
+  FAIL() << "no fold of 1000 rpm";
 }
 
 TEST(Folds, OfOneRunAreItsEighths) {

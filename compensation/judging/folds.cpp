@@ -65,18 +65,26 @@ class FoldMaker {
   }
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& own() const { return own_; }
 
-  /// Takes the fold of the rows that `is_hidden` of, by run, place among its own targets and row; not where it would be none.
-  void add(const std::string& kind, const std::string& name, bool whole_runs,
+  /// Takes the fold of the rows that `is_hidden` of, by run, place among its own targets and row; not where it would be none. The first target of a
+  /// run, which its drift counts from, is hidden with all others alone.
+  void add(const std::string& kind, const std::string& name,
            const std::function<bool(std::size_t run, std::size_t place, std::size_t row)>& is_hidden) {
     Fold fold{kind, name, {}};
     std::size_t n_hidden = 0, n_left = 0;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       fold.hidden.emplace_back(runs_[r].readings.n_samples(), false);
+      std::size_t n = 0;
       for (std::size_t k = 0; k < own_[r].size(); ++k) {
-        const bool is = (whole_runs || k > 0) && is_hidden(r, k, own_[r][k]);
+        const bool is = is_hidden(r, k, own_[r][k]);
         fold.hidden[r][own_[r][k]] = is;
-        ++(is ? n_hidden : n_left);
+        n += is ? 1 : 0;
       }
+      if (n > 0 && n < own_[r].size() && fold.hidden[r][own_[r].front()]) {
+        fold.hidden[r][own_[r].front()] = false;
+        --n;
+      }
+      n_hidden += n;
+      n_left += own_[r].size() - n;
     }
     if (n_hidden >= kLeastRows && n_left >= kLeastRows) folds.push_back(std::move(fold));
   }
@@ -112,7 +120,7 @@ void add_speeds(FoldMaker& make, std::span<const ObservedRun> runs, const std::s
                 [&](const auto& e) { return static_cast<double>(e.second) < kLeastShareOfSpeed * static_cast<double>(n); });
   if (n_of.size() < 2) return;
   for (const auto& [at, count] : n_of) {
-    make.add("speed", fmt::format("speed {:.0f} rpm", static_cast<double>(at) * kSpeedStep * largest), true,
+    make.add("speed", fmt::format("speed {:.0f} rpm", static_cast<double>(at) * kSpeedStep * largest),
              [&, at = at](std::size_t r, std::size_t, std::size_t row) {
                const Channel* channel = runs[r].readings.find(speed);
                return channel && std::isfinite(channel->values[row]) && level(channel->values[row]) == at;
@@ -127,19 +135,19 @@ std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings
   const auto& own = make.own();
   if (runs.size() == 1) {
     for (std::size_t b = 0; b < kBlocks; ++b) {
-      make.add("block", fmt::format("eighth {}", b + 1), false, [&](std::size_t r, std::size_t k, std::size_t) {
+      make.add("block", fmt::format("eighth {}", b + 1), [&](std::size_t r, std::size_t k, std::size_t) {
         return k >= own[r].size() * b / kBlocks && k < own[r].size() * (b + 1) / kBlocks;
       });
     }
   } else {
     for (std::size_t left_out = 0; left_out < runs.size(); ++left_out)
-      make.add("run", runs[left_out].readings.source, true,
+      make.add("run", runs[left_out].readings.source,
                [&](std::size_t r, std::size_t, std::size_t) { return r == left_out; });
   }
   if (!s.speed.empty()) add_speeds(make, runs, s.speed);
-  make.add("end", "last third of each run", false,
+  make.add("end", "last third of each run",
            [&](std::size_t r, std::size_t k, std::size_t) { return 3 * k >= 2 * own[r].size(); });
-  make.add("beginning", "first third of each run", false,
+  make.add("beginning", "first third of each run",
            [&](std::size_t r, std::size_t k, std::size_t) { return 3 * k < own[r].size(); });
   const std::vector<std::vector<double>> warm = warmth(runs, s);
   std::vector<double> all;
@@ -150,8 +158,8 @@ std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings
   }
   if (all.size() < 3) return std::move(make.folds);
   const double low = quantile(all, 1.0 / 3.0), high = quantile(all, 2.0 / 3.0);
-  make.add("warm", "warmest third", false, [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] > high; });
-  make.add("cold", "coldest third", false, [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] < low; });
+  make.add("warm", "warmest third", [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] > high; });
+  make.add("cold", "coldest third", [&](std::size_t r, std::size_t, std::size_t row) { return warm[r][row] < low; });
   return std::move(make.folds);
 }
 

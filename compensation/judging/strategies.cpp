@@ -170,7 +170,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
             if (learns) {
               observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
-              observer = observer.with_sensors(selection.sensors).calibrated(histories);
+              observer = observer.with_sensors(selection.sensors).calibrated(without_others_readings(histories, s));
             }
             f.target = s.target;
             f.from_start = true;
@@ -326,7 +326,11 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
   for (const Input& input : f.predictor->inputs()) {
     Reach r{.input = input.name};
     for (std::size_t k = 0; k < f.left_out.size(); ++k) {
-      if (!(f.left_out[k].rms_um <= kHolds * score(folds.measured[k]).rmse)) continue;
+      // about its mean: an offset of the target is no drift that a prediction would have to reach
+      std::vector<double> drift_um = folds.measured[k];
+      const double mean_um = score(drift_um).mean;
+      for (double& um : drift_um) um -= mean_um;
+      if (!(f.left_out[k].rms_um <= kHolds * score(drift_um).rmse)) continue;
       constexpr double kFar = std::numeric_limits<double>::infinity();
       double low = kFar, high = -kFar, hidden_low = kFar, hidden_high = -kFar;
       for (std::size_t n = 0; n < folds.runs.size(); ++n) {
@@ -339,6 +343,7 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
           most = std::max(most, x[i]);
         }
       }
+      if (!std::isfinite(low - hidden_low)) continue;  // nothing was read on one side of the fold
       r.below = std::max(r.below, low - hidden_low);
       r.above = std::max(r.above, hidden_high - high);
     }

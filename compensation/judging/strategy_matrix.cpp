@@ -291,11 +291,11 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
     const double off = drift_um[i] - predicted[i];
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
-    ++n;
-    if (strategy.interval_um &&
-        std::abs(off) <=
-            interval_in_force_um(strategy, correction.trust[i]).value_or(std::numeric_limits<double>::infinity()))
-      ++n_inside;
+    // without trust nothing is promised, and nothing kept
+    if (const std::optional<double> interval_um = interval_in_force_um(strategy, correction.trust[i])) {
+      ++n;
+      if (std::abs(off) <= *interval_um) ++n_inside;
+    }
   }
   c.before = score(drift_um);
   c.after = score(left);

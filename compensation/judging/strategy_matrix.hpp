@@ -32,7 +32,7 @@ struct Case {
   double harm_um = 0.0;            ///< the most by which it leaves more than there would be without it, at one moment
   double first_hour_um = 0.0,
          whole_um = 0.0;  ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
-  double covered = 0.0;   ///< share of rows whose drift is inside the prediction interval in force; NaN without one
+  double covered = 0.0;   ///< of the rows with a prediction interval in force, the share whose drift is inside; NaN without any
   std::vector<std::string> events;  ///< of the fail-safe
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }

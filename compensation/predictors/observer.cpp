@@ -10,6 +10,7 @@
 
 #include "base/dense.hpp"
 #include "base/errors.hpp"
+#include "base/median.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -71,7 +72,9 @@ class Observer::Run final : public ObserverFollower {
     if (!gives_up_) return 1e6 * drift_m(row_++);
     if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
-    is_model_wrong_ = is_model_wrong_ || (row_ >= kWarm && apart() > kFoundWrong * o_.settings_.most_apart);
+    // of one sensor alone nobody knows whether it or the model is wrong
+    is_model_wrong_ =
+        is_model_wrong_ || (live_.size() > 1 && row_ >= kWarm && apart() > kFoundWrong * o_.settings_.most_apart);
     return 1e6 * drift_m(row_++);
   }
 
@@ -487,15 +490,15 @@ void Observer::learn(std::span<const ObservedRun> runs) {
 Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
   Observer other = *this;
   other.settings_.most_apart = std::numeric_limits<double>::infinity();
-  double most = 0.0;
+  std::vector<double> apart;  // a mean of few rows, or one row in a thousand, is no bound
   for (const ObservedRun& run : runs) {
     Run pass(other, false);
     for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
       (void)pass.next(run);
-      most = std::max(most, pass.apart());
+      if (i >= kWarm) apart.push_back(pass.apart());
     }
   }
-  other.settings_.most_apart = std::max(1.0, kRoom * most);
+  other.settings_.most_apart = apart.empty() ? 1.0 : std::max(1.0, kRoom * quantile(std::move(apart), 0.999));
   return other;
 }
 
