@@ -106,7 +106,7 @@ double known_speed_rpm(const scenarios::Scenario& scenario) {
 
 /// @throws InputError  with the line, for a speed that the scenario says nothing of
 void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& program) {
-  constexpr double kRounding = 1.0 + 1e-9;
+  constexpr double kRounding = 1.0 + 1e-9;  // of units: 2000 rpm through 1/s and back
   const double top_rpm = known_speed_rpm(scenario);
   if (top_rpm == 0.0) return;  // nothing of the machine is stated at a speed
   double t_s = 0.0;
@@ -117,8 +117,7 @@ void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& 
                                    [&](const NcStep& s) { return s.end_s >= t_s && s.end_s > s.start_s; });
     const std::string what = fmt::format(
         "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned there would be "
-        "made up. "
-        "Give a cyclogram that reaches it, correct the S word, or add --beyond",
+        "made up. Give a cyclogram that reaches it, correct the S word, or add --beyond",
         move.speed_rpm, scenario.path, top_rpm);
     throw step == program.steps.end() ? InputError(what) : InputError(step->where, what);
   }

@@ -213,14 +213,14 @@ Table folds_table(const StrategyMatrix& m) {
       .columns = {{.key = "strategy", .title = "strategy"}},
       .detail = true};
   const auto fullest = std::max_element(m.strategies.begin(), m.strategies.end(), [](const auto& a, const auto& b) {
-    return a.fitted.left_out.size() < b.fitted.left_out.size();
+    return a.fitted.fold_errors.size() < b.fitted.fold_errors.size();
   });
   if (fullest == m.strategies.end()) return table;
-  for (const FoldError& e : fullest->fitted.left_out) table.columns.push_back(um_column(e.name, e.name));
+  for (const FoldError& e : fullest->fitted.fold_errors) table.columns.push_back(um_column(e.name, e.name));
   for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.left_out.empty()) continue;
+    if (s.fitted.fold_errors.empty()) continue;
     std::vector<Datum> row = {s.fitted.name};
-    for (const FoldError& e : s.fitted.left_out) row.emplace_back(e.rms_um);
+    for (const FoldError& e : s.fitted.fold_errors) row.emplace_back(e.rms_um);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -332,7 +332,7 @@ output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen
           .text = fmt::format("Chosen by the training runs alone: {}. On the runs it is judged by it leaves {:.3g} µm RMS, "
                               "{:.0f} % of the peak in its "
                               "worst run{}{}. Why: {}.",
-                              m.why_chosen, overall_rms(chosen), 100.0 * intact.left,
+                              m.choice.why, overall_rms(chosen), 100.0 * intact.left,
                               failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "",
                               &best == &chosen ? "; no other leaves less"
                                                : fmt::format("; in hindsight '{}' leaves {:.3g} µm RMS", best.fitted.name,
@@ -429,7 +429,7 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                               failed.peak ? Datum(failed.peak->after.peak_abs) : Datum(),
                               failed.peak ? Datum(100.0 * failed.left) : Datum(),
                               overall_rms(s),
-                              s.fitted.left_out.empty() ? Datum() : Datum(left_out_um(s.fitted)),
+                              s.fitted.fold_errors.empty() ? Datum() : Datum(left_out_um(s.fitted)),
                               s.fitted.interval_um,
                               covers ? Datum(100.0 * intact.mean_covered) : Datum(),
                               base ? Datum("baseline") : Datum(word(s.safety)),
@@ -451,7 +451,7 @@ Section strategy_section(const StrategyMatrix& m) {
   section.key = "validation";
   if (const JudgedStrategy* chosen = chosen_strategy(m)) {
     add(section, Value{.key = "chosen", .datum = chosen->fitted.name});
-    add(section, Value{.key = "why_chosen", .datum = m.why_chosen});
+    add(section, Value{.key = "why_chosen", .datum = m.choice.why});
     add(section, verdict_of(m, *chosen));
   }
   add(section, intact_map(m));

@@ -1,5 +1,7 @@
 // What is left out of training runs in turn, and which strategy is chosen by it.
 
+#include "compensation/judging/choice.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +9,6 @@
 #include <limits>
 
 #include "compensation/judging/folds.hpp"
-#include "compensation/judging/strategies.hpp"
 #include "compensation/predictors/blended_formula.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/driven_predictor.hpp"
@@ -34,7 +35,7 @@ ObservedRun run_of(const std::string& name, double speed_rpm, double start_degC)
   return run;
 }
 
-const FoldSettings kSettings{.target = "tip_z", .thermometers = {"bed"}, .speed = "speed"};
+const FoldSettings kSettings{.target = "tip_z", .from_start = true, .thermometers = {"bed"}, .speed = "speed"};
 
 std::size_t n_hidden(const Fold& fold, std::size_t run) {
   return static_cast<std::size_t>(std::count(fold.hidden[run].begin(), fold.hidden[run].end(), true));
@@ -131,7 +132,7 @@ DeployedPredictor with_errors(const std::string& name, const std::vector<double>
   DeployedPredictor d;
   d.name = name;
   const char* kinds[] = {"run", "run", "run", "end"};
-  for (std::size_t k = 0; k < rms_um.size(); ++k) d.left_out.push_back({kinds[k], "", rms_um[k], 2.0 * rms_um[k]});
+  for (std::size_t k = 0; k < rms_um.size(); ++k) d.fold_errors.push_back({kinds[k], "", rms_um[k], 2.0 * rms_um[k]});
   return d;
 }
 
@@ -143,10 +144,8 @@ DeployedPredictor model_with_errors(const std::string& name, const std::vector<d
   return d;
 }
 
-std::string chosen_of(std::vector<DeployedPredictor> list) {
-  FittedStrategies f{.strategies = std::move(list), .left_out = {}, .chosen = {}, .why_chosen = {}};
-  choose(f);
-  return f.chosen;
+std::string chosen_of(const std::vector<DeployedPredictor>& list) {
+  return choose(list).name;
 }
 
 TEST(Choice, WeighsKindsAlikeHoweverManyFoldsTheyHave) {

@@ -8,11 +8,10 @@
 #include <limits>
 #include <map>
 
-#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "base/median.hpp"
 #include "compensation/sensors/blocks.hpp"
-#include "compensation/sensors/product_sums.hpp"
+#include "compensation/sensors/principal_components.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -37,20 +36,9 @@ std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const
   std::vector<Record> records;
   for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, false));
   try {
-    const ProductSums sums = product_sums(records, s.thermometers, s.target);
-    const auto n = static_cast<Eigen::Index>(s.thermometers.size());
-    const dense::SymmetricEigen eigen(Eigen::MatrixXd(sums.total().block(1, 1, n, n)));
-    Eigen::VectorXd share = eigen.eigenvectors().col(n - 1);
-    if (share.sum() < 0.0) share = -share;
+    const PrincipalComponents common = principal_components(records, s.thermometers, s.target, 1);
     std::vector<std::vector<double>> result;
-    for (const Record& record : records) {
-      std::vector<double> warm(record.n_samples(), 0.0);
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const std::vector<double>& read = record.at(s.thermometers[static_cast<std::size_t>(j)]).values;
-        for (std::size_t i = 0; i < read.size(); ++i) warm[i] += share(j) * (read[i] - sums.mean(j)) / sums.deviation(j);
-      }
-      result.push_back(std::move(warm));
-    }
+    for (const Record& record : records) result.push_back(common.values(record, 0));
     return result;
   } catch (const InputError&) {  // no row in which all thermometers read something
     return {};
@@ -175,6 +163,36 @@ std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& 
     if (!own_targets(run, target).empty()) rest.push_back(std::move(run));
   }
   return rest;
+}
+
+FoldedRuns folded(std::span<const ObservedRun> training, const FoldSettings& s) {
+  FoldedRuns f{.runs = joined_histories(training, s.target), .folds = {}, .rest = {}, .measured_um = {}};
+  f.folds = folds_of(f.runs, s);
+  std::vector<std::vector<double>> targets;
+  for (const ObservedRun& run : f.runs) targets.push_back(scored_readings(run, s.target, s.from_start).at(s.target).values);
+  for (const Fold& fold : f.folds) {
+    f.rest.push_back(without(f.runs, fold, s.target));
+    std::vector<double>& measured_um = f.measured_um.emplace_back();
+    for (std::size_t r = 0; r < f.runs.size(); ++r) {
+      for (std::size_t i = 0; i < targets[r].size(); ++i) {
+        if (fold.hidden[r][i]) measured_um.push_back(targets[r][i]);
+      }
+    }
+  }
+  return f;
+}
+
+std::vector<double> FoldedRuns::predicted_um(const Predictor& predictor, std::size_t fold) const {
+  std::vector<double> result;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::vector<bool>& hidden = folds[fold].hidden[r];
+    if (std::find(hidden.begin(), hidden.end(), true) == hidden.end()) continue;
+    const std::vector<double> predicted = live(predictor, runs[r]);
+    for (std::size_t i = 0; i < predicted.size(); ++i) {
+      if (hidden[i]) result.push_back(std::isfinite(predicted[i]) ? predicted[i] : 0.0);
+    }
+  }
+  return result;
 }
 
 }  // namespace driftwright::compensation

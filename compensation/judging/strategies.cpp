@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 
 #include "base/errors.hpp"
@@ -30,10 +29,8 @@ namespace {
 using namespace compensation;
 
 constexpr double kInterval = 0.95;
-constexpr double kNoError_um = 1e-6;  // less is rounding
-constexpr double kTellsApart = 2.0;   // standard errors of a difference: by chance in one of twenty
-constexpr double kHolds =
-    0.5;  // of the drift that a part left out had: what is left may be so much where a prediction reached it
+// Of the drift that a part left out had: a prediction that leaves more of it has not reached there, and taking three quarters of it back would leave less.
+constexpr double kHolds = 0.5;
 
 /// A strategy before it is fitted.
 struct Strategy {
@@ -249,56 +246,13 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   return list;
 }
 
-/// Predicted targets of the rows of a fold, as hidden from the fit, in the order of runs and rows; 0 for what the predictor says nothing of.
-std::vector<double> predicted_of(const DeployedPredictor& f, std::span<const ObservedRun> runs, const Fold& fold) {
-  std::vector<double> result;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (std::none_of(fold.hidden[r].begin(), fold.hidden[r].end(), [](bool is) { return is; })) continue;
-    const std::vector<double> predicted = live(*f.predictor, runs[r]);
-    for (std::size_t i = 0; i < predicted.size(); ++i) {
-      if (fold.hidden[r][i]) result.push_back(std::isfinite(predicted[i]) ? predicted[i] : 0.0);
-    }
-  }
-  return result;
-}
-
-/// Measured targets of the rows of a fold.
-std::vector<double> measured_of(std::span<const ObservedRun> runs, const Fold& fold, const StrategySettings& s) {
-  std::vector<double> result;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const std::vector<double> measured = scored_readings(runs[r], s.target, s.count_from_start).at(s.target).values;
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (fold.hidden[r][i]) result.push_back(measured[i]);
-    }
-  }
-  return result;
-}
-
-/// Training runs with what is left out of them, and what was measured there.
-struct Folds {
-  std::vector<ObservedRun> runs;  ///< one a history
-  std::vector<Fold> folds;
-  std::vector<std::vector<ObservedRun>> rest;  ///< of each fold: what is fitted to
-  std::vector<std::vector<double>> measured;   ///< of each fold [um]
-};
-
-Folds folds_for(const StrategySettings& s, std::span<const ObservedRun> training) {
-  Folds f{.runs = joined_histories(training, s.target), .folds = {}, .rest = {}, .measured = {}};
-  f.folds = folds_of(f.runs, {.target = s.target, .thermometers = thermometers_of(s), .speed = s.speed});
-  for (const Fold& fold : f.folds) {
-    f.rest.push_back(without(f.runs, fold, s.target));
-    f.measured.push_back(measured_of(f.runs, fold, s));
-  }
-  return f;
-}
-
 /// What a strategy says of each fold, fitted to the rest; nothing where it cannot be fitted to the rest of one.
 using LeftOutPredictions = std::vector<std::vector<double>>;
-LeftOutPredictions left_out_predictions(const Strategy& strategy, const Folds& f) {
+LeftOutPredictions left_out_predictions(const Strategy& strategy, const FoldedRuns& f) {
   LeftOutPredictions predictions;
   try {
     for (std::size_t k = 0; k < f.folds.size(); ++k)
-      predictions.push_back(predicted_of(strategy.fit(f.rest[k]), f.runs, f.folds[k]));
+      predictions.push_back(f.predicted_um(*strategy.fit(f.rest[k]).predictor, k));
   } catch (const InputError&) {  // too little is left to decide by
     return {};
   } catch (const SolveError&) {
@@ -308,29 +262,29 @@ LeftOutPredictions left_out_predictions(const Strategy& strategy, const Folds& f
 }
 
 /// Sets errors and interval.
-void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const Folds& f) {
+void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f) {
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     std::vector<double> off;
-    for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured[k][i] - predictions[k][i]));
-    d.left_out.push_back({f.folds[k].kind, f.folds[k].name, score(off).rmse, quantile(off, kInterval)});
-    d.interval_um = std::max(d.interval_um.value_or(0.0), d.left_out.back().within_um);
+    for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured_um[k][i] - predictions[k][i]));
+    d.fold_errors.push_back({f.folds[k].kind, f.folds[k].name, score(off).rmse, quantile(off, kInterval)});
+    d.interval_um = std::max(d.interval_um.value_or(0.0), d.fold_errors.back().within_um);
   }
 }
 
 /// How far beyond what it was fitted on each input may go, because there the predictor has been seen to hold: of the folds that it was fitted
 /// without, and left less than kHolds of the drift, the most by which the hidden rows go beyond the others.
-std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& s, const Folds& folds) {
+std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& s, const FoldedRuns& folds) {
   std::vector<Record> readings;
   for (const ObservedRun& run : folds.runs) readings.push_back(scored_readings(run, s.target, s.count_from_start));
   std::vector<Reach> reach;
   for (const Input& input : f.predictor->inputs()) {
     Reach r{.input = input.name};
-    for (std::size_t k = 0; k < f.left_out.size(); ++k) {
+    for (std::size_t k = 0; k < f.fold_errors.size(); ++k) {
       // about its mean: an offset of the target is no drift that a prediction would have to reach
-      std::vector<double> drift_um = folds.measured[k];
+      std::vector<double> drift_um = folds.measured_um[k];
       const double mean_um = score(drift_um).mean;
       for (double& um : drift_um) um -= mean_um;
-      if (!(f.left_out[k].rms_um <= kHolds * score(drift_um).rmse)) continue;
+      if (!(f.fold_errors[k].rms_um <= kHolds * score(drift_um).rmse)) continue;
       constexpr double kFar = std::numeric_limits<double>::infinity();
       double low = kFar, high = -kFar, hidden_low = kFar, hidden_high = -kFar;
       for (std::size_t n = 0; n < folds.runs.size(); ++n) {
@@ -353,7 +307,7 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
 }
 
 /// Learns its fail-safe.
-void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const Folds& folds) {
+void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const FoldedRuns& folds) {
   std::vector<std::vector<double>> predicted;
   // an observer looks after its sensors itself
   std::vector<std::string> guarded;
@@ -386,7 +340,7 @@ struct Member {
 };
 
 /// The mean of those members whose error on what was left out is alike the best one's; none where that is one alone.
-std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folds& folds, const StrategySettings& s,
+std::optional<DeployedPredictor> blend(std::vector<Member> members, const FoldedRuns& folds, const StrategySettings& s,
                                        std::span<const ObservedRun> training) {
   double least = std::numeric_limits<double>::infinity();
   for (const Member& m : members) least = std::min(least, left_out_um(m.deployed));
@@ -416,7 +370,10 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folds&
 
 FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
   const std::vector<Strategy> list = strategies(settings);
-  const Folds folds = folds_for(settings, training);
+  const FoldedRuns folds = folded(training, {.target = settings.target,
+                                             .from_start = settings.count_from_start,
+                                             .thermometers = thermometers_of(settings),
+                                             .speed = settings.speed});
   std::vector<std::optional<DeployedPredictor>> fitted(list.size());
   std::vector<LeftOutPredictions> predictions(list.size());
   std::vector<std::string> why(list.size());
@@ -446,79 +403,8 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
     result.strategies.push_back(std::move(*mean));
   if (!settings.physics && !settings.without_physics.empty())
     result.left_out.push_back({"thermal modes, fitted model and observer", settings.without_physics});
-  choose(result);
+  result.choice = choose(result.strategies);
   return result;
-}
-
-double left_out_um(const DeployedPredictor& strategy) {
-  std::map<std::string, std::pair<double, int>> squares_of;  // and how many
-  for (const FoldError& e : strategy.left_out) {
-    squares_of[e.kind].first += e.rms_um * e.rms_um;
-    ++squares_of[e.kind].second;
-  }
-  if (squares_of.empty()) return std::numeric_limits<double>::infinity();
-  double logarithms = 0.0;
-  for (const auto& [kind, squares] : squares_of)
-    logarithms += 0.5 * std::log(std::max(squares.first / squares.second, kNoError_um * kNoError_um));
-  return std::exp(logarithms / static_cast<double>(squares_of.size()));
-}
-
-namespace {
-
-/// By how many of its standard errors the mean square of one is above that of another, fold by fold; both have the same folds.
-double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
-  const auto n = static_cast<double>(a.left_out.size());
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t k = 0; k < a.left_out.size(); ++k) {
-    const double more = std::pow(a.left_out[k].rms_um, 2) - std::pow(b.left_out[k].rms_um, 2);
-    sum += more;
-    squares += more * more;
-  }
-  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
-  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
-/// The first of those that count whose mean square is within one standard error of one of them.
-const DeployedPredictor& simplest_near(const std::vector<DeployedPredictor>& list, const DeployedPredictor& best,
-                                       const std::function<bool(const DeployedPredictor&)>& counts) {
-  for (const DeployedPredictor& d : list) {
-    if (&d == &best || (counts(d) && d.left_out.size() == best.left_out.size() && standard_errors_above(d, best) <= 1.0))
-      return d;
-  }
-  return best;
-}
-
-}  // namespace
-
-void choose(FittedStrategies& fitted) {
-  const DeployedPredictor *best = nullptr, *mean = nullptr, *physics = nullptr;
-  for (const DeployedPredictor& d : fitted.strategies) {
-    if (d.left_out.empty()) continue;
-    if (!best || left_out_um(d) < left_out_um(*best)) best = &d;
-    if (d.name == kBlend) mean = &d;
-    if (d.predictor && d.predictor->is_driven() && (!physics || left_out_um(d) < left_out_um(*physics))) physics = &d;
-  }
-  if (!best) return;
-  const auto is_alike = [&](const DeployedPredictor& d) { return left_out_um(d) <= kAlike * left_out_um(*best); };
-  const auto said = [](const DeployedPredictor& d) { return fmt::format("'{}' leaves {:.3g} µm", d.name, left_out_um(d)); };
-  const auto set = [&](const DeployedPredictor& d, const std::string& words) {
-    fitted.chosen = d.name;
-    fitted.why_chosen =
-        fmt::format("on the parts of the training runs that were left out it leaves {:.3g} µm, {}", left_out_um(d), words);
-  };
-  const auto rest = [&](const DeployedPredictor& d) {
-    return &d == best ? std::string("the least of all") : said(*best) + ", too little less to tell them apart";
-  };
-  if (physics && is_alike(*physics)) {
-    const DeployedPredictor& simplest = simplest_near(
-        fitted.strategies, *physics, [](const DeployedPredictor& d) { return d.predictor && d.predictor->is_driven(); });
-    return set(simplest, rest(simplest) + "; it is a model of the machine, which holds where no training run went");
-  }
-  if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return set(*mean, rest(*mean));
-  const DeployedPredictor& simplest = simplest_near(fitted.strategies, *best, is_alike);
-  set(simplest,
-      (&simplest == best ? "the least of all" : "the simplest within one standard error of the least; " + said(*best)) +
-          (mean ? "; " + said(*mean) : ""));
 }
 
 }  // namespace driftwright::compensation

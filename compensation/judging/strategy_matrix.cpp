@@ -269,7 +269,7 @@ const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::s
 
 const JudgedStrategy* chosen_strategy(const StrategyMatrix& matrix) {
   for (const JudgedStrategy& s : matrix.strategies) {
-    if (s.fitted.name == matrix.chosen) return &s;
+    if (s.fitted.name == matrix.choice.name) return &s;
   }
   return nullptr;
 }
@@ -315,8 +315,7 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
       .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
   FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
   matrix.left_out = std::move(fitted.left_out);
-  matrix.chosen = std::move(fitted.chosen);
-  matrix.why_chosen = std::move(fitted.why_chosen);
+  matrix.choice = std::move(fitted.choice);
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
     const std::string& target = settings.strategies.target;

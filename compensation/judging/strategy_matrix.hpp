@@ -32,7 +32,8 @@ struct Case {
   double harm_um = 0.0;            ///< the most by which it leaves more than there would be without it, at one moment
   double first_hour_um = 0.0,
          whole_um = 0.0;  ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
-  double covered = 0.0;   ///< of the rows with a prediction interval in force, the share whose drift is inside; NaN without any
+  double covered =
+      0.0;  ///< of the rows with a prediction interval in force, the share whose drift is inside; NaN without any
   std::vector<std::string> events;  ///< of the fail-safe
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
@@ -60,8 +61,8 @@ struct StrategyMatrix {
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
   MatrixSettings settings;
-  std::vector<std::string> findings = {};    ///< about the records themselves, a sentence each
-  std::string chosen = {}, why_chosen = {};  ///< name of the strategy to deploy, by training runs alone (FittedStrategies)
+  std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
+  Choice choice = {};                      ///< of the strategy to deploy, by training runs alone
 };
 
 /// A case with its course, per row of the run's readings.

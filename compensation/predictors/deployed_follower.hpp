@@ -11,9 +11,9 @@ struct FollowedCorrection {
   double prediction_um = 0.0;  ///< NaN where nothing can be said
   double correction_um = 0.0;  ///< in force, guarded
   double trust = 1.0;          ///< 0 to 1, that the prediction was multiplied by
-  /// Half width of the 95 % interval of the drift about the correction [um]: that of the predictor over the least trust that its inputs gave it lately, and by how
-  /// much the correction stays behind the prediction, faded, clamped or slewed. A model that was found wrong is believed to its own interval again after
-  /// some kRemembersDoubt_s. None without trust, and where none was learned.
+  /// Half width of the 95 % interval of the drift about the correction [um]. It is the predictor's own half width divided by the least trust of the last
+  /// hours (kRemembersDoubt_s), plus the distance from the prediction to the correction, which may be faded, clamped or slewed. None without trust, and where none
+  /// was learned.
   std::optional<double> interval_um = {};
 };
 

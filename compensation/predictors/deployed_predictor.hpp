@@ -28,7 +28,7 @@ struct DeployedPredictor {
   /// Half width of the 95 % prediction interval [um]: of each part of the training runs that was left out in turn the error that 95 % of its rows
   /// keep, the largest of those. None where no part could be left out.
   std::optional<double> interval_um = {};
-  std::vector<FoldError> left_out = {};  ///< what the interval is made of, as fitted; in no file
+  std::vector<FoldError> fold_errors = {};  ///< what the interval is made of, as fitted; in no file
 };
 
 /// @return the half width of the prediction interval in force [um]: interval_um over trust, for what is trusted by half says half as much;

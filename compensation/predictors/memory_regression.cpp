@@ -7,10 +7,11 @@
 #include <limits>
 #include <numeric>
 
-#include "base/dense.hpp"
 #include "base/errors.hpp"
+#include "compensation/predictors/blended_formula.hpp"
 #include "compensation/predictors/term_columns.hpp"
 #include "compensation/sensors/blocks.hpp"
+#include "compensation/sensors/principal_components.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -21,71 +22,27 @@ constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
 // The least keeps levels that were never tried from being made up out of differences of columns that are nearly alike.
 constexpr double kPenalties[] = {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0};
 
-/// Thermometers and modes: what the columns are made of.
-struct Readings {
-  std::vector<std::string> names;
-  std::vector<Record> records;  ///< with a channel of each name, the drive and the target
-  Eigen::MatrixXd share;        ///< of kModes: names x modes, 1 / K; else empty
-  Eigen::VectorXd mean;         ///< of the names [K]
-};
-
 std::string mode_name(Eigen::Index k) {
   return fmt::format("mode_{}", k + 1);
 }
 
-/// Principal components of thermometers in the rows that have the target, as further channels of the records.
-Readings with_modes(Readings r, const std::string& target, int n_modes) {
-  const auto n = static_cast<Eigen::Index>(r.names.size());
-  if (n_modes < 1 || n_modes >= n)
-    throw InputError(fmt::format("{} common modes need {} thermometers at least; there are {}", n_modes, n_modes + 1, n));
-  const ProductSums sums = product_sums(r.records, r.names, target);
-  const Eigen::MatrixXd total = sums.total();
-  const dense::SymmetricEigen eigen(Eigen::MatrixXd(total.block(1, 1, n, n)));
-  r.share = eigen.eigenvectors().rightCols(n_modes).rowwise().reverse();
-  r.mean = sums.mean.head(n).transpose();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    if (sums.is_constant[static_cast<std::size_t>(j)])
-      r.share.row(j).setZero();
-    else
-      r.share.row(j) /= sums.deviation(j);
-  }
-  for (Record& record : r.records) {
-    for (Eigen::Index k = 0; k < n_modes; ++k) {
-      Channel mode{.name = mode_name(k), .unit = "K", .values = std::vector<double>(record.n_samples(), 0.0)};
-      for (Eigen::Index j = 0; j < n; ++j) {
-        if (r.share(j, k) == 0.0) continue;
-        const std::vector<double>& read = record.at(r.names[static_cast<std::size_t>(j)]).values;
-        for (std::size_t i = 0; i < read.size(); ++i) mode.values[i] += r.share(j, k) * (read[i] - r.mean(j));
-      }
-      record.channels.push_back(std::move(mode));
-    }
-  }
-  return r;
-}
-
 /// A formula of modes as one of thermometers: lags are linear, and a constant goes through them as it is.
-DriftModel of_thermometers(const DriftModel& of_modes, const Readings& r, const std::string& unit) {
+DriftModel of_thermometers(const DriftModel& of_modes, const PrincipalComponents& modes, const std::string& unit) {
   DriftModel model = of_modes;
   model.terms.clear();
   for (const DriftModel::Term& t : of_modes.terms) {
     Eigen::Index k = 0;
-    while (k < r.share.cols() && t.input != mode_name(k)) ++k;
-    if (k == r.share.cols()) {
+    while (k < modes.share.cols() && t.input != mode_name(k)) ++k;
+    if (k == modes.share.cols()) {
       model.terms.push_back(t);
       continue;
     }
-    for (std::size_t j = 0; j < r.names.size(); ++j) {
+    for (std::size_t j = 0; j < modes.inputs.size(); ++j) {
       const auto row = static_cast<Eigen::Index>(j);
-      const double slope = t.coefficient * r.share(row, k);
+      const double slope = t.coefficient * modes.share(row, k);
       if (slope == 0.0) continue;
-      model.intercept -= slope * r.mean(row);
-      const auto same = std::find_if(model.terms.begin(), model.terms.end(), [&](const DriftModel::Term& known) {
-        return known.input == r.names[j] && known.lag_s == t.lag_s;
-      });
-      if (same != model.terms.end())
-        same->coefficient += slope;
-      else
-        model.terms.push_back({.input = r.names[j], .unit = unit, .coefficient = slope, .power = 1, .lag_s = t.lag_s});
+      model.intercept -= slope * modes.mean(row);
+      add_term(model, {.input = modes.inputs[j], .unit = unit, .coefficient = slope, .power = 1, .lag_s = t.lag_s});
     }
   }
   return model;
@@ -144,17 +101,25 @@ FittedFormula fit_with_memories(std::span<const Record> given, const std::vector
                                 Columns made_of, int n_modes) {
   if (made_of == Columns::kAndDrive && drive.empty())
     throw InputError("nothing says what drove the machine: the records have no speed that changes");
-  Readings r{.names = sensors, .records = {given.begin(), given.end()}, .share = {}, .mean = {}};
-  if (!ambient.empty() && std::find(sensors.begin(), sensors.end(), ambient) == sensors.end()) r.names.push_back(ambient);
-  const double longest_s = longest_lag_s(r.records, target);
-  std::vector<std::string> temperatures = r.names;
+  std::vector<Record> records(given.begin(), given.end());
+  std::vector<std::string> thermometers = sensors;
+  if (!ambient.empty() && std::find(sensors.begin(), sensors.end(), ambient) == sensors.end())
+    thermometers.push_back(ambient);
+  PrincipalComponents modes;
+  std::vector<std::string> temperatures = thermometers;
   if (made_of == Columns::kModes) {
-    r = with_modes(std::move(r), target, n_modes);
+    if (n_modes < 1 || static_cast<std::size_t>(n_modes) >= thermometers.size())
+      throw InputError(fmt::format("{} common modes need {} thermometers at least; there are {}", n_modes, n_modes + 1,
+                                   thermometers.size()));
+    modes = principal_components(records, thermometers, target, n_modes);
     temperatures.clear();
-    for (Eigen::Index k = 0; k < n_modes; ++k) temperatures.push_back(mode_name(k));
+    for (Eigen::Index k = 0; k < n_modes; ++k) {
+      temperatures.push_back(mode_name(k));
+      for (Record& record : records) record.channels.push_back({mode_name(k), "K", modes.values(record, k)});
+    }
   }
-  const TermColumns columns =
-      term_columns(r.records, terms_of(temperatures, drive, made_of != Columns::kAndDrive, longest_s), target);
+  const TermColumns columns = term_columns(
+      records, terms_of(temperatures, drive, made_of != Columns::kAndDrive, longest_lag_s(records, target)), target);
   if (columns.terms.empty())
     throw InputError(fmt::format("the regression of '{}' was given no thermometer and no drive", target));
   const bool is_single = columns.records.size() == 1;
@@ -174,7 +139,7 @@ FittedFormula fit_with_memories(std::span<const Record> given, const std::vector
                   fmt::format("{} readings and lags, ridge penalty {:g}: RMS error {:.3g} {} on {} left out", all.size(),
                               best.penalty, best.error, sums.target_unit, is_single ? "eighths of the record" : "runs"),
                   best.error};
-  if (made_of == Columns::kModes) f.model = of_thermometers(f.model, r, given.front().at(r.names.front()).unit);
+  if (made_of == Columns::kModes) f.model = of_thermometers(f.model, modes, given.front().at(thermometers.front()).unit);
   std::erase_if(f.model.terms, [](const DriftModel::Term& t) { return t.coefficient == 0.0; });  // of what never moved
   return f;
 }

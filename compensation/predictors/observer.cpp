@@ -20,9 +20,9 @@ constexpr double kOutlier = 6.0;     // deviations of one innovation: that readi
 constexpr double kMemory = 0.9;      // of the mean innovation from row to row
 constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
 static_assert(kReturn < kRowsBack);
-constexpr std::size_t kWarm = 10;           // rows before a mean means anything
+constexpr std::size_t kWarm =
+    10;  // rows that a mean remembers, 1 / (1 - kMemory): before, and until a sensor is tried again, it says nothing new
 constexpr double kFoundWrong = 2.0;         // times most_apart: no chance, and no passing disagreement
-constexpr std::size_t kAgain = 10;          // rows until a sensor that was taken back may be given up again
 constexpr double kChance = 3.0902;          // deviations of a normal number that one of a thousand is above
 constexpr double kRoom = 2.0;               // beside what the training runs kept
 constexpr double kZero = 2.0;               // of an indicator's deviation: what its zero may be off by
@@ -251,7 +251,7 @@ class Observer::Run final : public ObserverFollower {
     distrusted_ = before.distrusted;
     history_ = before.history;
     means_from_ = before.means_from;
-    again_row_ = row_ + kAgain;
+    again_row_ = row_ + kWarm;
   }
 
   /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
