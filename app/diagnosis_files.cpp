@@ -12,6 +12,8 @@
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/line_diff.hpp"
+#include "diagnosis/judge.hpp"
+#include "diagnosis/output_error.hpp"
 #include "output/vtk_fields.hpp"
 
 namespace driftwright::app {
@@ -79,7 +81,8 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studie
     return extended;
   }
   folder.write_text(file, extended.text);
-  const std::string diff = unified_diff(read_bytes(m.scenario.path), extended.text, clean_name(m.scenario.path), stem + ".yaml");
+  const std::string diff =
+      unified_diff(read_bytes(m.scenario.path), extended.text, clean_name(m.scenario.path), stem + ".yaml");
   folder.write_text(stem + ".diff", diff);
   if (difference) *difference = diff;
   return extended;
@@ -89,21 +92,16 @@ void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedS
   const diagnosis::TwinState state = scenario_of(extended.text, m.scenario.path).machine->effects;
   const diagnosis::Twin& twin = *m.twin;
   diagnosis::Twin::Workspace workspace(twin);
-  std::map<std::string, std::pair<double, double>> squares;  // and rows
   d.extended.clear();
-  for (const diagnosis::MeasuredRun& run : m.runs) {
-    const Eigen::MatrixXd& readings = d.extended.emplace_back(twin.read(state, run, twin.respond(state, run, workspace)));
-    for (const diagnosis::MeasuredChannel& c : run.channels) {
-      auto& [sum, rows] = squares[c.name];
-      for (Eigen::Index i = 0; i < c.value.size(); ++i) {
-        if (std::isnan(c.value[i])) continue;
-        sum += std::pow((c.unit == "K" ? 1.0 : 1e6) * (c.value[i] - readings(c.output, i)), 2);
-        rows += 1.0;
-      }
-    }
+  for (const diagnosis::MeasuredRun& run : m.runs)
+    d.extended.push_back(twin.read(state, run, twin.respond(state, run, workspace)));
+  const auto before = diagnosis::output_errors(m.runs, d.as_written), after = diagnosis::output_errors(m.runs, d.extended);
+  for (diagnosis::ChannelGain& g : d.gain) {
+    if (!before.contains(g.name)) continue;
+    const double scale = diagnosis::shown_scale(g.unit == "K" ? "K" : "m");
+    g.rmse_all_before = scale * before.at(g.name).rms;
+    g.rmse_written = scale * after.at(g.name).rms;
   }
-  for (diagnosis::ChannelGain& g : d.gain)
-    g.rmse_written = std::sqrt(squares[g.name].first / std::max(1.0, squares[g.name].second));
 }
 
 bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<findings::MissingHeat>& heat,

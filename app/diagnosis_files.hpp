@@ -22,7 +22,7 @@ namespace driftwright::app {
                                                          std::string* difference);
 
 /// Runs the scenario that was written over the whole of each record, by the twin, with the effects as its text has them: Diagnosis::extended and
-/// ChannelGain::rmse_written.
+/// ChannelGain::rmse_all_before and rmse_written.
 /// @throws InputError  as read_scenario()
 void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended, diagnosis::Diagnosis& d);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "diagnosis/calibration.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/missing_data.hpp"
@@ -17,7 +18,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kFewestReadings = 60;     // of all channels together: below, a verdict would be guessing
 constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
 /// And, where it follows time in any shape, of what the best of these explains: better by less, it follows what that one's law leaves.
 constexpr double kBetterOfCause = 0.1;
@@ -84,25 +84,6 @@ Written written_of(const Fitter& fitter, const SearchResult& result, const HeldO
     if (why.empty()) why = w.why_nothing;
   }
   return w;
-}
-
-/// The scenario's own numbers as fitted. @param known_to  1 sigma of each
-std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit, const std::vector<double>& known_to) {
-  std::vector<Estimate> numbers;
-  const Twin& twin = fitter.twin();
-  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
-    const Knob& k = fitter.scatter()[i];
-    const auto at = static_cast<Eigen::Index>(i);
-    const double x = fit.x[at], sd = std::sqrt(fit.covariance(at, at));
-    TwinState turned = twin.as_written();
-    k.set(turned, k.value(x));
-    std::string of;  // one of several sensitivities of a body
-    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
-      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
-    numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x), k.value(x - 1.96 * sd),
-                       k.value(x + 1.96 * sd), x / known_to[i], known_to[i], k.scale == Knob::Scale::kLog});
-  }
-  return numbers;
 }
 
 void leave_out(Cause& cause, const std::string& why) {
@@ -248,14 +229,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (!waiting.wants_end()) stage = work;
     waiting.begin(work);
   };
-  for (const MeasuredRun& run : runs) {
-    for (const DataFinding& f : run.findings)
-      d.data.push_back({f.channel, runs.size() > 1 ? run.name + ": " + f.what : f.what, f.leaves_out});
-  }
-  Eigen::Index n_readings = 0;
-  for (const MeasuredRun& run : runs) {
-    for (const MeasuredChannel& c : run.channels) n_readings += (c.value.array() == c.value.array()).count();
-  }
+  d.data = data_findings(runs);
+  const Eigen::Index n_readings = readings_of(runs);
   const std::vector<Candidate> standing = candidates(twin, runs, options.without);
 
   d.scatter = scatter(twin);
@@ -342,7 +317,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.extended =
       d.written.keeps_numbers ? fitter.predict_machine(d.written.hypothesis, d.written.fit.x, workspace) : d.as_written;
   if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, listener);
-  d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
+  d.calibrated = fitted_numbers(fitter, d.written.fit.x, d.written.fit.covariance, known_to);
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   // what came back once others were no longer held is no cause
   std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
@@ -369,7 +344,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   if (d.verdict == Verdict::kUnexplained) {
     doubt_all(d, "more is left than it explains");
-    if (runs.size() == 1 && options.most_effects > 0) {
+    if (runs.size() == 1) {
       const std::optional<CausesAlone> alone =
           listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
       if (alone) {

@@ -79,8 +79,8 @@ struct ChannelGain {
   double peak_before = 0.0, peak_after = 0.0;
   /// Of regressions that know nothing of the machine, on the same kept-out rows (plain_regression.hpp): what drove it and the ambient; thermometers too.
   double rmse_of_drive = 0.0, rmse_of_readings = 0.0;
-  double rmse_written =
-      0.0;  ///< of the file extended.yaml over the whole of all records, its own rows; NaN where nobody simulated it
+  /// Over the whole of all records, the rows that numbers were fitted to: of the scenario as written; of the file that is written, NaN where nobody simulated it.
+  double rmse_all_before = 0.0, rmse_written = 0.0;
   /// On kept-out rows as rmse_after: the causes that are named, with the scenario's numbers fitted beside them; and what the searches without these rows found, whatever
   /// of it is written, which these rows had no say in. NaN where there is none.
   double rmse_named = std::numeric_limits<double>::quiet_NaN(), rmse_found = std::numeric_limits<double>::quiet_NaN();

@@ -191,6 +191,20 @@ double Judge::squares_over_noise(const std::vector<Prediction>& predicted) const
   return sum;
 }
 
+std::vector<double> Judge::over_noise_by_fold(const std::vector<Prediction>& predicted, Of channels) const {
+  std::vector<double> misses;
+  for (std::size_t f = 0; f < folds_.size(); ++f) {
+    double squares = 0.0, n = 0.0;
+    for_each_miss_of(f, predicted[f], [&](const MeasuredChannel& c, double miss) {
+      if (channels == Of::kDisplacements && c.unit != "m") return;
+      squares += std::pow(miss / noise_.at(c.name).total(), 2);
+      n += 1.0;
+    });
+    misses.push_back(n > 0.0 ? std::sqrt(squares / n) : std::numeric_limits<double>::quiet_NaN());
+  }
+  return misses;
+}
+
 Prediction Judge::filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const {
   Prediction predicted = written_;
   if (x.size() == 0) return predicted;
@@ -231,6 +245,7 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
                                : c.unit == "m" ? "um"
                                                : "urad",
                        .noise_floor = shown_scale(c.unit) * noise.at(c.name).total(),
+                       .rmse_all_before = std::numeric_limits<double>::quiet_NaN(),
                        .rmse_written = std::numeric_limits<double>::quiet_NaN()});
     }
   }

@@ -61,20 +61,25 @@ class Judge {
   [[nodiscard]] double over_noise(const std::vector<Prediction>& predicted) const;
   /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const;
+  enum class Of { kAll, kDisplacements };
+  /// over_noise() of each fold, of all channels or of displacements alone.
+  [[nodiscard]] std::vector<double> over_noise_by_fold(const std::vector<Prediction>& predicted, Of channels) const;
   template <class Work>
   void for_each_miss(const std::vector<Prediction>& predicted, const Work& work) const {
-    for (std::size_t f = 0; f < folds_.size(); ++f) {
-      for (std::size_t r = 0; r < folds_[f].kept_out.size(); ++r) {
-        for (const MeasuredChannel& c : folds_[f].kept_out[r].channels) {
-          for (Eigen::Index i = 0; i < c.value.size(); ++i) {
-            if (!std::isnan(c.value[i])) work(c, c.value[i] - predicted[f][r](c.output, i));
-          }
+    for (std::size_t f = 0; f < folds_.size(); ++f) for_each_miss_of(f, predicted[f], work);
+  }
+
+ private:
+  template <class Work>
+  void for_each_miss_of(std::size_t fold, const Prediction& predicted, const Work& work) const {
+    for (std::size_t r = 0; r < folds_[fold].kept_out.size(); ++r) {
+      for (const MeasuredChannel& c : folds_[fold].kept_out[r].channels) {
+        for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+          if (!std::isnan(c.value[i])) work(c, c.value[i] - predicted[r](c.output, i));
         }
       }
     }
   }
-
- private:
   /// Whether what a search without some rows found is a claim, of the same lasting_kind(), or its effect at a place that the claim's is not told from.
   [[nodiscard]] bool is_told_as(std::size_t claim, const Candidate& found) const;
   /// @param x  empty: no numbers fit, and the scenario stays as it is written

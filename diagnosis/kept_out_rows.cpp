@@ -11,6 +11,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
+constexpr int kThirds = 3;             // of a single run
 constexpr int kBlocks = 6;             // of a run, every other one kept out
 // Of the greatest speed, by which speeds of the same rank differ in the mean. Days of one lathe that went through one cycle lie 0.00 to 0.11 apart (one of them stopped
 // for five hours of twenty-four), those of two cycles 0.30 to 0.60; runs of speeds drawn at random 0.08 to 0.28.
@@ -105,6 +106,26 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
                                 ? "; of a record in which alone something happened, sixths, every other one kept out"
                                 : "");
   }
+  return folds;
+}
+
+Folds folds_of_numbers(const std::vector<MeasuredRun>& runs) {
+  Folds folds;
+  for (int third = 0; third < kThirds; ++third)
+    folds.list.push_back(fold_of(runs, [&](std::size_t r, double t_s) {
+      return std::min(static_cast<int>(kThirds * t_s / runs[r].time_s.back()), kThirds - 1) == third;
+    }));
+  if (runs.size() == 1) {
+    folds.how = "each third of the only record in turn, predicted with numbers fitted to the other two";
+    return folds;
+  }
+  for (std::size_t out = 0; out < runs.size(); ++out) {
+    folds.list.push_back(fold_of(runs, [&](std::size_t r, double) { return r == out; }));
+    folds.list.back().whole = {out};
+  }
+  folds.how =
+      fmt::format("each third of all records in turn, and each of the {} records, predicted with numbers fitted to the rest",
+                  runs.size());
   return folds;
 }
 

@@ -31,6 +31,9 @@ struct Folds {
 /// Each run in turn; of a single one its last third; of one in which alone something happened blocks, every other one.
 [[nodiscard]] Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace);
 
+/// What judges numbers alone: each third of all runs in turn, and where there are several each run.
+[[nodiscard]] Folds folds_of_numbers(const std::vector<MeasuredRun>& runs);
+
 /// Runs of one duty cycle, each its numbers: speeds that are held for about as long, in whatever order. Cycles in the order of their first runs; a single one where
 /// the spindle turns alike in all runs, or never.
 [[nodiscard]] std::vector<std::vector<std::size_t>> duty_cycles(const std::vector<MeasuredRun>& runs);

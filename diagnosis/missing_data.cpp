@@ -20,6 +20,23 @@ std::string plural(std::size_t n, const std::string& what) {
 
 }  // namespace
 
+Eigen::Index readings_of(const std::vector<MeasuredRun>& runs) {
+  Eigen::Index n = 0;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) n += (c.value.array() == c.value.array()).count();
+  }
+  return n;
+}
+
+std::vector<DataFinding> data_findings(const std::vector<MeasuredRun>& runs) {
+  std::vector<DataFinding> findings;
+  for (const MeasuredRun& run : runs) {
+    for (const DataFinding& f : run.findings)
+      findings.push_back({f.channel, runs.size() > 1 ? run.name + ": " + f.what : f.what, f.leaves_out});
+  }
+  return findings;
+}
+
 double settling_time_s(const Twin& twin, const MeasuredRun& run) {
   MeasuredRun rest;
   rest.name = run.name;

@@ -58,12 +58,6 @@ bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) {
   return std::any_of(hypothesis.begin(), hypothesis.end(), [&](const Claim& c) { return c.candidate == candidate; });
 }
 
-Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  Eigen::VectorXd both(a.size() + b.size());
-  both << a, b;
-  return both;
-}
-
 /// The bodies that a place names.
 std::set<std::string> bodies_in(const std::string& where) {
   std::set<std::string> names;

@@ -12,13 +12,13 @@ namespace {
 constexpr int kTurnsOfWidth = 3;       // of heavy tails: then the size stays
 constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
 
-Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  Eigen::VectorXd both(a.size() + b.size());
-  both << a, b;
+}  // namespace
+
+Eigen::VectorXd joined(const Eigen::VectorXd& nuisance, const Eigen::VectorXd& claims) {
+  Eigen::VectorXd both(nuisance.size() + claims.size());
+  both << nuisance, claims;
   return both;
 }
-
-}  // namespace
 
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];

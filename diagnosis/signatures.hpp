@@ -34,6 +34,8 @@ struct Score {
 /// What a score is of, as a hypothesis has it.
 [[nodiscard]] Claim claim_of(const std::vector<Candidate>& candidates, const Score& score);
 
+/// x of everything: the numbers of the nuisance, then those of the claims.
+[[nodiscard]] Eigen::VectorXd joined(const Eigen::VectorXd& nuisance, const Eigen::VectorXd& claims);
 /// A hypothesis and one claim more.
 [[nodiscard]] Hypothesis with(Hypothesis hypothesis, Claim claim);
 /// Of a fit: at its optimum J'r = B⁻²x, B its prior_width(), so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.

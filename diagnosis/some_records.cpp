@@ -9,7 +9,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kBetter = 0.5;  // nats that a choice must bring beyond its price
+constexpr double kWorthAChoice = 0.5;  // nats that a choice must bring beyond its price
 constexpr double kSeen = 1e-12;  // squares of a signature in a record that tells of it
 
 using Choice = std::vector<char>;  // of records: whether it acts there
@@ -126,7 +126,7 @@ std::vector<Law> add_of_chosen_records(const Fitter& fitter, std::vector<Candida
   }
   std::vector<Law> added;
   for (const auto& [law, best] : of_law) {
-    if (!(best.some.gain > std::max(0.0, best.of_all) + kBetter)) continue;
+    if (!(best.some.gain > std::max(0.0, best.of_all) + kWorthAChoice)) continue;
     std::vector<std::string> names;
     for (std::size_t r = 0; r < n_runs; ++r) {
       if (best.some.in[r]) names.push_back(fitter.runs()[r].name);

@@ -335,11 +335,13 @@ Section gain_section(const diagnosis::Diagnosis& d) {
                                    {"noise_floor", "noise floor"},
                                    {"peak_before", "peak before"},
                                    {"peak_after", "peak after"},
-                                   {"rmse_written", "the file, all rows"}})
+                                   {"rmse_all_before", "all rows, as written"},
+                                   {"rmse_written", "all rows, the file"}})
     table.columns.push_back({.key = key, .title = title, .digits = kThree});
   for (const auto& g : d.gain)
     table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_found,
-                          g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_written});
+                          g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
+                          g.rmse_written});
   add(section, std::move(table));
   add(section, Text{shares_of_gain_text(d)});
   for (const auto& [key, over_noise] : {std::pair{"over_noise.as_written", d.misses.as_written},

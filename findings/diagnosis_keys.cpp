@@ -176,6 +176,7 @@ void add_gain(std::vector<ResultKey>& keys) {
        number("gain.channels[].noise_floor", "what the readings scatter by themselves"),
        or_null(number("gain.channels[].peak_before", "on rows kept out")),
        or_null(number("gain.channels[].peak_after", "on rows kept out")),
+       or_null(number("gain.channels[].rmse_all_before", "of the scenario as written, over the whole of all records")),
        or_null(number("gain.channels[].rmse_written", "of the file written, over the whole of all records")),
        sometimes(object("gain.over_noise", "all channels together, over their noise")),
        or_null(number("gain.over_noise.as_written", "")),

@@ -101,7 +101,8 @@ std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
   if (!d.ended_at.empty()) return "";
   const diagnosis::KeptOutMisses& m = d.misses;
   if (std::isnan(m.as_written))
-    return "No reading could judge what is written: before all rows that were kept out there is a hole of the record, and what drove the machine within it matters to them "
+    return "No reading could judge what is written: before all rows that were kept out there is a hole of the record, and "
+           "what drove the machine within it matters to them "
            "still. Another record would judge it.";
   std::string text = fmt::format(
       "All channels together, the misses of kept-out rows are {:.2f} times the noise as written and {:.2f} with the "
@@ -154,9 +155,9 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
   for (const Estimate& e : d.calibrated) {
     if (std::abs(e.deviation) > kTooFar) reasons.push_back(fmt::format("{} moved by {:+.1f} sigmas", e.name, e.deviation));
   }
-  if (!d.written.keeps_numbers)
-    reasons.emplace_back("rows that were kept out are predicted better by the scenario as it is written");
+  if (!d.written.keeps_numbers) reasons.push_back("no number is written: " + d.written.why_nothing);
   if (reasons.empty()) return "";
+  if (!d.written.keeps_numbers) return fmt::format("{}. `diagnose` looks for what is wrong.", fmt::join(reasons, "; "));
   return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
                      fmt::join(reasons, "; "));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/diagnosis_files.hpp"
+#include "diagnosis/calibration.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "effects/where_in_files.hpp"
 #include "library/parts.hpp"
@@ -32,14 +33,14 @@ Cause plain(const diagnosis::Cause& cause) {
 }
 
 Diagnosis diagnosis_of(const scenarios::Scenario& scenario, const std::vector<Record>& measured,
-                       const DiagnoseOptions& options, int most_effects, const Listener& listener) {
+                       const DiagnoseOptions& options, bool looks_for_causes, const Listener& listener) {
   std::vector<ReadRecord> records;
   for (const Record& record : measured) records.push_back({.record = record, .notes = {}});
   studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", records, listener);
   m.how.without = {options.without.begin(), options.without.end()};
-  m.how.most_effects = most_effects;
-  const diagnosis::Diagnosis d =
-      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+  const diagnosis::Twin* coarse = m.on_other_mesh ? &*m.on_other_mesh : nullptr;
+  const diagnosis::Diagnosis d = looks_for_causes ? diagnosis::diagnose(*m.twin, coarse, m.runs, m.how, listener)
+                                                  : diagnosis::calibrate(*m.twin, coarse, m.runs, m.how, listener);
   Diagnosis result{.verdict = diagnosis::word(d.verdict),
                    .reason = d.reason,
                    .causes = {},
@@ -63,11 +64,11 @@ Diagnosis diagnosis_of(const scenarios::Scenario& scenario, const std::vector<Re
 }  // namespace
 
 Diagnosis Machine::diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options) const {
-  return diagnosis_of(parts_->scenario, measured, options, diagnosis::DiagnosisOptions{}.most_effects, parts_->listener);
+  return diagnosis_of(parts_->scenario, measured, options, true, parts_->listener);
 }
 
 Diagnosis Machine::calibrate(const std::vector<Record>& measured) const {
-  return diagnosis_of(parts_->scenario, measured, {}, 0, parts_->listener);
+  return diagnosis_of(parts_->scenario, measured, {}, false, parts_->listener);
 }
 
 }  // namespace driftwright

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "diagnosis/calibration.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "effects/catalogue_table.hpp"
 #include "tests/beside_records.hpp"
@@ -88,7 +89,7 @@ TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
   off.replace(off.find(digits), digits.size(), fmt::format("{:g}", 0.9 * added.value));
   const Beside beside(write_file("off.yaml", scenario_with(off)),
                       record(write_file("truth.yaml", scenario_with(added.entry)), added.key));
-  const Diagnosis d = beside.diagnosed(0);
+  const Diagnosis d = calibrate(*beside.twin, nullptr, beside.runs, {});
   const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
                                    [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });
   ASSERT_NE(number, d.calibrated.end());

@@ -1,0 +1,248 @@
+#include "diagnosis/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "diagnosis/inquiry.hpp"
+#include "diagnosis/judge.hpp"
+#include "diagnosis/missing_data.hpp"
+#include "diagnosis/no_solution.hpp"
+#include "diagnosis/output_error.hpp"
+#include "diagnosis/scatter.hpp"
+#include "diagnosis/unexplained.hpp"
+#include "diagnosis/verdict.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr std::array<double, 3> kTempered = {1.0, 0.5, 0.0};  // as working_noise() has it
+constexpr int kMostTurns = 6;
+constexpr double kSameWeight = 0.02;  // of the logarithm of what a channel is missed by
+
+/// Numbers fitted by one way to weigh readings.
+struct Attempt {
+  std::unique_ptr<Fitter> fitter;
+  SearchResult fitted;  ///< of no claims
+};
+
+Attempt fitted_by(const Fitter& fresh, const std::vector<MeasuredRun>& runs,
+                  const std::map<std::string, NoiseModel>& noise) {
+  Attempt a{std::make_unique<Fitter>(fresh, runs), {}};
+  a.fitter->set_noise(noise);
+  Twin::Workspace workspace(fresh.twin());
+  a.fitted.fit = a.fitter->fit({}, Eigen::VectorXd(0), workspace);
+  a.fitted.without = a.fitted.fit;
+  return a;
+}
+
+/// Weights and the numbers that they give, found by turns.
+Attempt fitted_by_what_is_missed(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Prediction& as_written,
+                                 const std::map<std::string, NoiseModel>& noise, double tempered, const Listener& listener) {
+  Twin::Workspace workspace(fresh.twin());
+  std::map<std::string, OutputError> errors = output_errors(runs, as_written);
+  Attempt best;
+  for (int turn = 0; turn < kMostTurns && (turn == 0 || !listener.wants_end()); ++turn) {
+    best = fitted_by(fresh, runs, working_noise(errors, noise, tempered));
+    const auto next = output_errors(runs, best.fitter->predict_machine({}, best.fitted.fit.x, workspace));
+    const bool stays = std::all_of(next.begin(), next.end(), [&](const auto& e) {
+      return std::abs(std::log(e.second.rms / errors.at(e.first).rms)) < kSameWeight;
+    });
+    errors = next;
+    if (stays) break;
+  }
+  return best;
+}
+
+/// Root mean square over the noise of the channels, all rows of all channels, or of displacements, together; NaN where there is none.
+double over_noise(const std::map<std::string, OutputError>& errors, const Diagnosis& d, bool all) {
+  double squares = 0.0, n = 0.0;
+  for (const auto& [name, error] : errors) {
+    if (!all && error.unit != "m") continue;
+    squares += static_cast<double>(error.n) * std::pow(error.rms / d.noise.at(name).total(), 2);
+    n += static_cast<double>(error.n);
+  }
+  return std::sqrt(squares / n);
+}
+
+/// What own and kept-out rows say of one way to weigh readings.
+struct Judgement {
+  std::string why_not = "not judged";  ///< a clause; "": the numbers are worth writing
+  double loss = std::numeric_limits<double>::max();
+  [[nodiscard]] bool is_better_than(const Judgement& other) const {
+    return why_not.empty() != other.why_not.empty() ? why_not.empty() : loss < other.loss;
+  }
+};
+
+/// Where the simulation errs by no more than noise its likelihood is worth its numbers. Where it errs by more, own rows must not be missed by more than by the scenario as it
+/// is, nor kept-out ones beyond a standard error of the folds; displacements, where there are some, are judged by themselves besides: they are what a machine is simulated for.
+Judgement judged(const Judge& judge, const Models& models, const std::map<std::string, OutputError>& own,
+                 const std::map<std::string, OutputError>& before, const Diagnosis& d) {
+  Judgement j{.why_not = ""};
+  for (const Judge::Of of : {Judge::Of::kAll, Judge::Of::kDisplacements}) {
+    const bool all = of == Judge::Of::kAll;
+    const double own_misses = over_noise(own, d, all), own_before = over_noise(before, d, all);
+    if (std::isnan(own_before)) continue;  // no displacement
+    const KeptOutLoss loss =
+        kept_out_loss(judge.over_noise_by_fold(models.calibrated, of), judge.over_noise_by_fold(models.written, of));
+    j.loss = loss.mean;  // of displacements, where there are some
+    const std::string what = all ? "all channels" : "displacements";
+    if (!j.why_not.empty() || !d.weighed_by_model_error) continue;
+    if (own_misses > own_before)
+      j.why_not = fmt::format(
+          "with them {} are missed by {:.3g} times the noise on the very rows that they were fitted to, and by {:.3g} times "
+          "with the scenario as "
+          "it was",
+          what, own_misses, own_before);
+    else if (loss.mean > loss.standard_error)
+      j.why_not = fmt::format(
+          "rows that were kept out are predicted better by the scenario as it was: {} are missed by {:.3g} times as much "
+          "(times or over "
+          "{:.3g}, one standard error of the folds)",
+          what, std::exp(loss.mean), std::exp(loss.standard_error));
+  }
+  return j;
+}
+
+/// Of numbers at x, n rows of a channel counted as n/τ.
+Eigen::MatrixXd tempered_covariance(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Fit& at,
+                                    const std::map<std::string, NoiseModel>& working) {
+  Fitter fitter(fresh, runs);
+  fitter.set_noise(working);
+  fitter.settle({}, at);
+  const Eigen::MatrixXd& slopes = fitter.nuisance_slopes();
+  Eigen::MatrixXd hessian = slopes.transpose() * slopes;
+  hessian.diagonal() += fitter.nuisance_sd().cwiseAbs2().cwiseInverse();
+  return hessian.llt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
+}
+
+}  // namespace
+
+KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others) {
+  std::vector<double> logs;
+  for (std::size_t f = 0; f < misses.size(); ++f) {
+    const double log = std::log(misses[f] / others[f]);
+    if (std::isfinite(log)) logs.push_back(log);
+  }
+  KeptOutLoss loss;
+  if (logs.empty()) return loss;
+  const auto n = static_cast<double>(logs.size());
+  for (double log : logs) loss.mean += log / n;
+  double squares = 0.0;
+  for (double log : logs) squares += std::pow(log - loss.mean, 2);
+  if (logs.size() > 1) loss.standard_error = std::sqrt(squares / (n - 1.0) / n);
+  return loss;
+}
+
+std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance,
+                                     const std::vector<double>& known_to) {
+  std::vector<Estimate> numbers;
+  const Twin& twin = fitter.twin();
+  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
+    const Knob& k = fitter.scatter()[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const double sd = std::sqrt(covariance(at, at));
+    TwinState turned = twin.as_written();
+    k.set(turned, k.value(x[at]));
+    std::string of;  // one of several sensitivities of a body
+    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
+      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
+    numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x[at]),
+                       k.value(x[at] - 1.96 * sd), k.value(x[at] + 1.96 * sd), x[at] / known_to[i], known_to[i],
+                       k.scale == Knob::Scale::kLog});
+  }
+  return numbers;
+}
+
+Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
+                    const DiagnosisOptions& options, const Listener& listener) {
+  Diagnosis d;
+  d.data = data_findings(runs);
+  d.scatter = scatter(twin);
+  for (Knob& k : ambient_scatter(runs)) d.scatter.push_back(std::move(k));
+  listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
+  const Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
+                     listener);
+  Twin::Workspace workspace(twin);
+  d.as_written = fresh.predict({}, Eigen::VectorXd::Zero(fresh.n_nuisance()), workspace);
+
+  listener.begin("fitting");
+  d.noise = estimate_noise(runs, d.as_written, options.floor);
+  Attempt chosen = fitted_by(fresh, runs, d.noise);
+  for (const auto& [name, noise] : estimate_noise(runs, chosen.fitted.fit.prediction, options.floor)) {
+    if (noise.total() < d.noise.at(name).total()) d.noise[name] = noise;
+  }
+  chosen = fitted_by(fresh, runs, d.noise);
+  d.weighed_by_model_error = models_own_error(runs, chosen.fitted.fit.prediction, d.noise).has_value();
+  const auto folds = [&] { return folds_of_numbers(runs); };
+  d.holdout = folds().how;
+  std::vector<Attempt> attempts;
+  if (d.weighed_by_model_error) {
+    for (double tempered : kTempered)
+      attempts.push_back(fitted_by_what_is_missed(fresh, runs, d.as_written, d.noise, tempered, listener));
+  } else {
+    attempts.push_back(std::move(chosen));
+  }
+
+  listener.begin("predicting rows that were kept out");
+  const auto before = output_errors(runs, d.as_written);
+  Judgement best;
+  for (Attempt& attempt : attempts) {
+    Judge judge(*attempt.fitter, attempt.fitted, d.noise, folds().list);
+    const Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(0)};
+    const auto own = output_errors(runs, attempt.fitter->predict_machine({}, attempt.fitted.fit.x, workspace));
+    Judgement judgement = judged(judge, models, own, before, d);
+    if (!best.is_better_than(judgement)) {
+      best = std::move(judgement);
+      d.misses = misses_of(judge, models);
+      d.gain = channel_gains(runs, d.noise, judge, models);
+      chosen = std::move(attempt);
+    }
+  }
+
+  const Fitter& fitter = *chosen.fitter;
+  d.scatter_alone = chosen.fitted.fit.prediction;
+  d.extended = fitter.predict_machine({}, chosen.fitted.fit.x, workspace);
+  const auto after = output_errors(runs, d.extended);
+  const auto working = working_noise(after, d.noise, 1.0);
+  std::vector<double> known_to;
+  for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
+  d.calibrated = fitted_numbers(
+      fitter, chosen.fitted.fit.x,
+      d.weighed_by_model_error ? tempered_covariance(fresh, runs, chosen.fitted.fit, working) : chosen.fitted.fit.covariance,
+      known_to);
+
+  listener.begin("looking at what is left");
+  d.unexplained = unexplained_of(fitter, chosen.fitted, d.noise);
+  {
+    Fitter weighed(fresh, runs);
+    weighed.set_noise(d.weighed_by_model_error ? working : d.noise);
+    d.search = search(weighed, told_of_by(runs, candidates(twin, runs, {})), {.most_effects = 0}, listener);
+  }
+  d.n_candidates = static_cast<int>(d.search.candidates.size());
+  const bool is_too_few = readings_of(runs) < kFewestReadings;
+  d.verdict = is_too_few ? Verdict::kInsufficientData : verdict_of(d);
+  d.reason = is_too_few ? what_is_missing(twin, runs, static_cast<int>(readings_of(runs)), static_cast<int>(kFewestReadings))
+                        : reason_of(d);
+  if (listener.wants_end()) d.ended_at = "fitting";
+
+  d.written.fit = chosen.fitted.fit;
+  d.written.why_nothing = is_too_few ? "the readings are too few" : best.why_not;
+  d.written.keeps_numbers = d.written.why_nothing.empty();
+  if (!d.written.keeps_numbers) d.extended = d.as_written;
+  for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
+  for (ChannelGain& g : d.gain) {
+    g.rmse_all_before = shown_scale(g.unit == "K" ? "K" : "m") * before.at(g.name).rms;
+    if (!d.written.keeps_numbers) {
+      g.rmse_after = g.rmse_before;
+      g.peak_after = g.peak_before;
+    }
+  }
+  if (!d.written.keeps_numbers) d.misses.extended = d.misses.as_written;
+  return d;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,30 @@
+#pragma once
+// The scenario's uncertain numbers fitted to records; no cause is looked for.
+//
+// What is fitted is what will be asked: what the simulation gives, driven by what was recorded and by no reading. Where it errs by no more than noise, readings are
+// weighed by their noise. Where it errs by more, a working likelihood stands for it (output_error.hpp), and how much rows count against what was known beforehand is
+// chosen by the rows that are kept out: n/τ of n rows, the root of n n/τ, or all n, which is plain least squares.
+// Source: Grünwald & van Ommen, Bayesian Analysis 12 (2017) 1069-1103: the power of a likelihood whose model is wrong is learnt from what it predicts.
+
+#include "diagnosis/diagnosis.hpp"
+
+namespace driftwright::diagnosis {
+
+/// How much worse kept-out rows are predicted by one model than by another: mean over the folds of the logarithm of what they miss, and its standard error.
+struct KeptOutLoss {
+  double mean = 0.0, standard_error = 0.0;
+};
+/// @param misses, others  root mean squares, a fold each; folds that could not judge are NaN
+[[nodiscard]] KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others);
+
+/// The scenario's own numbers at x, with intervals of 95 %. @param known_to  1 sigma of each
+[[nodiscard]] std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x,
+                                                   const Eigen::MatrixXd& covariance, const std::vector<double>& known_to);
+
+/// A diagnosis without causes: numbers, gain, what is left. Where the simulation errs by more than noise, numbers are written unless the rows that they were fitted to are
+/// missed by more than by the scenario as it is, or rows that were kept out, by more than a standard error of the folds.
+/// @param coarse, runs, listener  as diagnose() has them
+[[nodiscard]] Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
+                                  const DiagnosisOptions& options, const Listener& listener = {});
+
+}  // namespace driftwright::diagnosis
