@@ -220,6 +220,26 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
   verb->callback([&] { app::export_model(options); });
 }
 
+void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "identify", "a network of bodies from records alone, as a scenario that every verb runs (docs/identification.md)");
+  verb->add_option("--record", options.records,
+                   "record CSV or logger's file with what drives the machine (rpm, W, V, %), its ambient and readings "
+                   "(degC, um); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->add_option("--ambient", options.ambient, "channel of the ambient temperature [by its name, else guessed, and said]");
+  verb->add_option(
+          "--drive", options.drives,
+          "channel that drives the machine though its unit does not say so, such as a bed's temperature; may be repeated")
+      ->allow_extra_args(false);
+  add_results(verb, options, "<name of the first record>",
+              "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
+              "results/identified\n  driftwright simulate "
+              "results/identified/monday.yaml -o results/identified_run");
+  verb->callback([&] { app::identify(options); });
+}
+
 void add_import(CLI::App& cli, app::ImportOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
@@ -561,6 +581,8 @@ int app::command_line(int argc, const char* const* argv) {
   add_compare(cli, compared);
   app::ImportOptions imported;
   add_import(cli, imported);
+  app::IdentifyOptions identified;
+  add_identify(cli, identified);
   add_follow(cli, followed);
   add_export(cli, exported);
   add_list(cli, list);

@@ -183,6 +183,14 @@ struct ImportOptions : CommonOptions {  ///< `scenario` is the logger's file
 /// A logger's file as a record.
 void import_file(const ImportOptions& options);
 
+struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
+  std::vector<std::string> records;
+  std::string ambient;              ///< channel; empty: guessed
+  std::vector<std::string> drives;  ///< channels that drive beside those whose unit says so
+};
+/// A network from records alone.
+void identify(const IdentifyOptions& options);
+
 struct CompareOptions : CommonOptions {
   std::string first, second;  ///< record CSVs, or folders of results that hold a record.csv
 };

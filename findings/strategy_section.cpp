@@ -31,12 +31,12 @@ bool has_failures(const StrategyMatrix& m) {
 }
 
 /// One column of the matrix: which cases it is the worst of.
-struct Column {
+struct StrategyColumn {
   std::string title;
   std::function<bool(const Case&)> counts;
 };
-std::vector<Column> columns(const StrategyMatrix& m) {
-  std::vector<Column> list;
+std::vector<StrategyColumn> columns(const StrategyMatrix& m) {
+  std::vector<StrategyColumn> list;
   for (const std::string& family : families_of(m))
     list.push_back({family, [&m, family](const Case& c) { return is_intact(c) && m.runs[c.run].family == family; }});
   for (const std::string& season : seasons_of(m)) {
@@ -113,11 +113,11 @@ Table matrix_table(const StrategyMatrix& m) {
       .title = fmt::format("Largest |residual| in each family and season; tolerance {:g} µm", m.settings.tolerance_um),
       .columns = {{.key = "strategy", .title = "strategy"}},
       .detail = true};
-  const std::vector<Column> list = columns(m);
-  for (const Column& c : list) table.columns.push_back(um_column(c.title, c.title));
+  const std::vector<StrategyColumn> list = columns(m);
+  for (const StrategyColumn& c : list) table.columns.push_back(um_column(c.title, c.title));
   for (const JudgedStrategy& s : m.strategies) {
     std::vector<Datum> row = {s.fitted.name};
-    for (const Column& c : list) {
+    for (const StrategyColumn& c : list) {
       const Worst w = worst_of(s, c.counts);
       row.push_back(w.peak ? Datum(w.peak->after.peak_abs) : Datum());
     }

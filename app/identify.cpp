@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+#include "app/results.hpp"
+#include "base/delimited_text.hpp"
+#include "base/errors.hpp"
+#include "base/file_name.hpp"
+#include "findings/identification_document.hpp"
+#include "identification/network_scenario.hpp"
+#include "studies/logger_import.hpp"
+
+namespace driftwright::app {
+namespace {
+
+/// A record CSV, or any logger's file by a guess.
+Record read(const std::string& path, std::vector<std::string>& notes) {
+  try {
+    return read_record_csv(path);
+  } catch (const InputError& no_record) {
+    studies::LoggerImport import;
+    try {
+      import = studies::import_logger(path, "", {});
+    } catch (const InputError&) {
+      throw no_record;
+    }
+    for (const std::string& guess : import.guesses) notes.push_back(clean_name(path) + ": " + guess);
+    for (const std::string& note : import.read.notes) notes.push_back(clean_name(path) + ": " + note);
+    return import.read.record;
+  }
+}
+
+/// A file's stem as the name of a scenario and of a cyclogram: letters, digits, '_' and '-'.
+std::string plain_stem(const std::string& path) {
+  std::string stem = file_name(clean_name(std::filesystem::path(path).stem().string()), "");
+  std::replace_if(
+      stem.begin(), stem.end(), [](unsigned char c) { return !std::isalnum(c) && c != '_' && c != '-'; }, '_');
+  return stem;
+}
+
+}  // namespace
+
+void identify(const IdentifyOptions& options) {
+  std::vector<Record> records;
+  std::vector<std::string> notes, files;
+  std::set<std::string> stems;
+  for (const std::string& path : options.records) {
+    records.push_back(read(path, notes));
+    records.back().source = clean_name(std::filesystem::path(path).filename().string());
+    const std::string stem = plain_stem(path);
+    if (!stems.insert(stem).second)
+      throw InputError(
+          fmt::format("--record {}: two records are called {}; runs go by the names of their files", path, stem));
+    files.push_back(file_name(stem, ".csv"));
+  }
+  const std::string name = std::filesystem::path(files.front()).stem().string();
+  output::ResultsFolder folder = open_results(options, name);
+  Progress progress(options.quiet);
+  const identification::Identified network =
+      identification::identify(records, {options.ambient, options.drives}, progress.listener());
+  progress.begin("writing");
+  std::vector<std::string> head = {
+      fmt::format("{}: a network from records alone, by `driftwright identify` (docs/identification.md)", name)};
+  for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
+  head.emplace_back(
+      "Bodies and what they see are a form that any linear network has; names say what warms them. Rename them, or put in "
+      "what you know.");
+  head.emplace_back("");
+  for (std::size_t i = 0; i < records.size(); ++i)
+    folder.write_text(files[i], record_csv(identification::run_record(records[i], network.roles),
+                                           provenance_lines(folder.made_by(), "identify")));
+  folder.write_text(file_name(name, ".yaml"), identification::network_scenario(network, name, files, head));
+  finish(findings::document_of({name, records, network, notes}, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,211 @@
+#include "findings/identification_document.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::findings {
+namespace {
+
+using identification::Driver;
+using identification::Identified;
+using identification::IdentifiedBody;
+using identification::IdentifiedChannel;
+using output::significant;
+
+constexpr double kWorthSaying = 0.02;  // share of a driver
+
+std::string shown(const std::string& unit) {
+  return unit == "um" ? "µm" : "K";
+}
+
+std::string time_text(double s) {
+  if (s < 90.0) return fmt::format("{:.0f} s", s);
+  return s < 36000.0 ? fmt::format("{:.0f} min", s / 60.0) : fmt::format("{:.1f} h", s / 3600.0);
+}
+
+/// "96 % while speed is not 0, 10.5 K in the end, 40 min; 4 % ambient".
+std::string ledger_text(const IdentifiedChannel& c) {
+  std::vector<std::string> parts;
+  for (const Driver& d : c.ledger) {
+    if (std::abs(d.share) < kWorthSaying) continue;
+    parts.push_back(fmt::format("{:.0f} % {} ({:+.3g} {}{}, {})", 100.0 * d.share, d.name, d.in_the_end, shown(c.unit),
+                                d.name == "ambient" ? " for 1 K" : " in the end", time_text(d.delay_s)));
+  }
+  return fmt::format("{}: {}", c.name,
+                     parts.empty() ? std::string("follows nothing recorded") : fmt::format("{}", fmt::join(parts, "; ")));
+}
+
+std::string heated_by(const IdentifiedBody& b, const Identified& n) {
+  if (!b.body.law) return "ambient alone";
+  const identification::Law& law = n.structure.laws[*b.body.law];
+  switch (law.kind) {
+    case identification::Law::Kind::kTurning:
+      return fmt::format("{} not 0", law.channel);
+    case identification::Law::Kind::kPower:
+      return fmt::format("{}^{:.3g}", law.channel, law.exponent);
+    case identification::Law::Kind::kColumn:
+      break;
+  }
+  return law.channel;
+}
+
+output::Table channels_table(const Identified& n) {
+  output::Table table{.key = "channels",
+                      .title = "What is left of each channel",
+                      .caption =
+                          "Root mean square of measured less simulated, driven by what was recorded and by no reading. Kept "
+                          "out: rows that a network was not fitted to, of each kind in turn "
+                          "(runs or eighths, speeds, the end, the beginning, the warmest and the coldest rows), geometric "
+                          "mean over the kinds; the structure of the network was chosen by "
+                          "these rows, so that rows of another day may be missed by more.",
+                      .columns = {{.key = "name", .title = "channel"},
+                                  {.key = "unit", .title = "unit"},
+                                  {.key = "deviation", .title = "standard deviation", .digits = significant(3)},
+                                  {.key = "rms_own", .title = "left, own rows", .digits = significant(3)},
+                                  {.key = "rms_kept_out", .title = "left, kept out", .digits = significant(3)}}};
+  for (const auto& kind : n.kinds)
+    table.columns.push_back({.key = "rms_" + kind.kind, .title = kind.kind, .digits = significant(3)});
+  for (std::size_t c = 0; c < n.channels.size(); ++c) {
+    const IdentifiedChannel& channel = n.channels[c];
+    table.rows.push_back({channel.name, shown(channel.unit), channel.swing, channel.missed_own, channel.missed_kept_out});
+    for (const auto& kind : n.kinds) table.rows.back().emplace_back(kind.rms[c]);
+  }
+  return table;
+}
+
+output::Table bodies_table(const Identified& n) {
+  output::Table table{
+      .key = "bodies",
+      .title = "Bodies",
+      .caption =
+          "Each loses heat to the ambient alone. Rise: over the ambient in the end, at the largest drive that was recorded; "
+          "it is a scale that sensitivities go with. Missed: by "
+          "how much more kept-out rows are missed without it (the time constants of the others as they are); empty for the "
+          "ambient's part of a heated body.",
+      .columns = {{.key = "name", .title = "body"},
+                  {.key = "heated_by", .title = "warmed by"},
+                  {.key = "time_constant_min", .title = "time constant", .unit = "min", .digits = significant(3)},
+                  {.key = "rise_K", .title = "rise", .unit = "K", .digits = significant(3)},
+                  {.key = "missed_share", .title = "missed", .unit = "%", .digits = output::percent(1)}}};
+  for (const IdentifiedBody& b : n.bodies)
+    table.rows.push_back({b.name, heated_by(b, n), b.body.tau_s / 60.0, b.body.rise_K, b.gain});
+  return table;
+}
+
+output::Table weights_table(const Identified& n) {
+  output::Table table{.key = "weights",
+                      .title = "What channels see of the bodies",
+                      .caption =
+                          "Of thermometers the share of each body in the mean that they read; of displacements µm for each "
+                          "K, and one standard deviation of the heated part.",
+                      .columns = {{.key = "channel", .title = "channel"},
+                                  {.key = "body", .title = "body"},
+                                  {.key = "weight", .title = "share, or µm/K", .digits = significant(4)},
+                                  {.key = "standard_deviation", .title = "standard deviation", .digits = significant(2)}},
+                      .detail = true};
+  for (const IdentifiedChannel& c : n.channels) {
+    for (std::size_t b = 0; b < n.bodies.size(); ++b) {
+      const auto at = static_cast<Eigen::Index>(b);
+      if (c.fit.weight[at] == 0.0) continue;
+      table.rows.push_back({c.name, n.bodies[b].name, c.fit.weight[at],
+                            c.fit.standard_deviation.size() > 0 ? c.fit.standard_deviation[at] : std::nan("")});
+    }
+    if (c.fit.of_ambient > 0.0) table.rows.push_back({c.name, "ambient", c.fit.of_ambient, std::nan("")});
+  }
+  return table;
+}
+
+output::Table ledger_table(const Identified& n) {
+  output::Table table{.key = "ledger",
+                      .title = "Ledger: what drives each channel",
+                      .caption =
+                          "Share of what the network gives of the channel's variance. Swing: largest less smallest in the "
+                          "records. In the end: of the largest drive recorded, held for "
+                          "ever; of the ambient for 1 K. Delay: until 63 % of the largest that a step comes to.",
+                      .columns = {{.key = "channel", .title = "channel"},
+                                  {.key = "driver", .title = "driver"},
+                                  {.key = "share", .title = "share", .unit = "%", .digits = output::percent(0)},
+                                  {.key = "swing", .title = "swing", .digits = significant(3)},
+                                  {.key = "in_the_end", .title = "in the end", .digits = significant(3)},
+                                  {.key = "unit", .title = "unit"},
+                                  {.key = "delay_min", .title = "delay", .unit = "min", .digits = significant(3)}},
+                      .detail = true};
+  for (const IdentifiedChannel& c : n.channels) {
+    for (const Driver& d : c.ledger)
+      table.rows.push_back({c.name, d.name, d.share, d.swing, d.in_the_end, shown(c.unit), d.delay_s / 60.0});
+  }
+  return table;
+}
+
+/// Time of the rows of all records, one after the other [h].
+std::vector<double> hours(const Identified& n, const std::vector<Record>& records) {
+  std::vector<double> time_h;
+  const auto rows = static_cast<double>(n.channels.front().predicted.size());
+  double all = 0.0;
+  for (const Record& r : records) all += static_cast<double>(r.n_samples());
+  double before_h = 0.0;
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::floor(all / rows)));
+  for (const Record& r : records) {
+    for (std::size_t i = 0; i < r.n_samples() / every; ++i)
+      time_h.push_back(before_h + (r.time_s[i * every] - r.time_s[0]) / 3600.0);
+    before_h = time_h.back() + 0.1;
+  }
+  return time_h;
+}
+
+}  // namespace
+
+output::Document document_of(const IdentificationFindings& found, const output::Provenance& made_by) {
+  const Identified& n = found.network;
+  std::vector<std::string> sources;
+  for (const Record& r : found.records) sources.push_back(r.source);
+  output::Document document{.made_by = made_by,
+                            .title = found.name + ": a network from records alone",
+                            .subtitle = fmt::format("{}", fmt::join(sources, ", "))};
+  output::Section& body = document.body;
+  double own = 0.0, kept = 0.0, count = 0.0;
+  for (const IdentifiedChannel& c : n.channels) {
+    if (!(c.swing > 0.0) || !std::isfinite(c.missed_kept_out)) continue;
+    own += std::log(c.missed_own / c.swing);
+    kept += std::log(c.missed_kept_out / c.swing);
+    count += 1.0;
+  }
+  const double share = std::exp(kept / std::max(count, 1.0));
+  add(body, output::Verdict{
+                .kind = share < 0.5 ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
+                .title = fmt::format(
+                    "{} bodies leave {:.0f} % of what was measured on rows that were kept out, {:.0f} % on their own",
+                    n.bodies.size(), 100.0 * share, 100.0 * std::exp(own / std::max(count, 1.0))),
+                .text = share < 0.5 ? "Geometric mean over the channels of root mean square left over standard deviation."
+                                    : "Drive and ambient that were recorded explain less than half: something else drives "
+                                      "this machine, or the record holds too few changes of the drive."});
+  std::vector<std::string> said;
+  for (const IdentifiedChannel& c : n.channels) said.push_back(ledger_text(c));
+  add(body, output::Notes{.key = "ledger_in_words", .lines = said});
+  add(body, channels_table(n));
+  add(body, bodies_table(n));
+  add(body, weights_table(n));
+  add(body, ledger_table(n));
+  add(body, output::Notes{.key = "guesses", .sort = "guess", .lines = n.roles.guesses});
+  add(body, output::Notes{.key = "notes", .sort = "note", .lines = found.notes});
+  const std::vector<double> time_h = hours(n, found.records);
+  for (const IdentifiedChannel& c : n.channels) {
+    std::vector<double> predicted, measured;
+    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(c.predicted.size(), static_cast<Eigen::Index>(time_h.size())); ++i) {
+      predicted.push_back(c.predicted[i]);
+      measured.push_back(c.predicted[i] + c.misses[i]);
+    }
+    add(body, output::Plot{.title = c.name,
+                           .x_label = "time [h], records one after the other",
+                           .y_label = c.unit != "um" ? fmt::format("over {:.4g} degC [K]", n.reference_degC)
+                                                     : "from the first reading [µm]",
+                           .series = {{.label = "measured", .x = time_h, .y = measured},
+                                      {.label = "the network", .x = time_h, .y = predicted}}});
+  }
+  return document;
+}
+
+}  // namespace driftwright::findings

@@ -1,0 +1,233 @@
+#include "identification/foster_network.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identification/non_negative.hpp"
+
+namespace driftwright::identification {
+namespace {
+
+constexpr double kMeanOne =
+    1e4;  // weight of the sum of a thermometer's shares being 1, where it would be more, over the largest of its normal equations
+constexpr double kTiny = 1e-12;
+
+}  // namespace
+
+std::size_t Structure::n_heated() const {
+  std::size_t n = 0;
+  for (const Pole& p : poles) n += p.laws.size();
+  return n;
+}
+
+std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient, double rise_K) {
+  std::vector<NetworkBody> bodies;
+  for (const Pole& p : structure.poles) {
+    for (std::size_t law : p.laws) bodies.push_back({p.tau_s, law, rise_K});
+  }
+  for (const Pole& p : structure.poles) {
+    if (has_ambient) bodies.push_back({p.tau_s, std::nullopt, 0.0});
+  }
+  return bodies;
+}
+
+FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K)
+    : structure_(std::move(structure)), has_ambient_(!roles.ambient.empty()) {
+  bodies_ = bodies_of(structure_, has_ambient_, rise_K);
+  channels_ = roles.thermometers;
+  n_thermometers_ = channels_.size();
+  channels_.insert(channels_.end(), roles.displacements.begin(), roles.displacements.end());
+  first_row_ = {0};
+  for (const Record& r : records) first_row_.push_back(first_row_.back() + r.n_samples());
+  const auto n = static_cast<Eigen::Index>(first_row_.back());
+  n_heated_ = static_cast<Eigen::Index>(structure_.n_heated());
+  n_ambient_ = has_ambient_ ? static_cast<Eigen::Index>(structure_.poles.size()) : 0;
+  n_direct_ = has_ambient_ ? 1 : 0;
+  n_records_ = static_cast<Eigen::Index>(records.size());
+  n_starts_ = n_records_ * static_cast<Eigen::Index>(structure_.poles.size());
+  columns_.setZero(n, n_heated_ + n_ambient_ + n_direct_ + n_records_ + n_starts_);
+  body_columns_.setZero(n, static_cast<Eigen::Index>(bodies_.size()));
+  ambient_K_.setZero(n);
+  readings_.setConstant(n, static_cast<Eigen::Index>(channels_.size()), std::numeric_limits<double>::quiet_NaN());
+  if (has_ambient_) reference_degC_ = held(records[0].at(roles.ambient))[0];
+  for (std::size_t p = 0; p < structure_.poles.size(); ++p) {
+    pole_of_heated_.insert(pole_of_heated_.end(), structure_.poles[p].laws.size(), p);
+    if (has_ambient_) pole_of_ambient_.push_back(p);
+  }
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    const auto at = static_cast<Eigen::Index>(first_row_[r]), rows = static_cast<Eigen::Index>(record.n_samples());
+    std::vector<Eigen::VectorXd> laws;
+    for (const Law& law : structure_.laws) laws.push_back(values_of(law, record));
+    if (has_ambient_) ambient_K_.segment(at, rows) = (held(record.at(roles.ambient)).array() - reference_degC_).matrix();
+    Eigen::Index heated = 0;
+    for (std::size_t p = 0; p < structure_.poles.size(); ++p) {
+      const Pole& pole = structure_.poles[p];
+      Eigen::VectorXd slow = Eigen::VectorXd::Zero(rows);
+      if (has_ambient_) slow = lagged_ramps(record.time_s, ambient_K_.segment(at, rows), pole.tau_s);
+      for (std::size_t law : pole.laws) {
+        columns_.col(heated).segment(at, rows) = rise_K * lagged_steps(record.time_s, laws[law], pole.tau_s);
+        body_columns_.col(heated).segment(at, rows) = slow + columns_.col(heated).segment(at, rows);
+        ++heated;
+      }
+      if (has_ambient_) {
+        const auto a = n_heated_ + static_cast<Eigen::Index>(p);
+        columns_.col(a).segment(at, rows) = slow;
+        body_columns_.col(a).segment(at, rows) = slow;
+      }
+      const auto start =
+          n_heated_ + n_ambient_ + n_direct_ + n_records_ + static_cast<Eigen::Index>(r * structure_.poles.size() + p);
+      for (Eigen::Index i = 0; i < rows; ++i)
+        columns_(at + i, start) = std::exp(-(record.time_s[static_cast<std::size_t>(i)] - record.time_s[0]) / pole.tau_s);
+    }
+    if (has_ambient_) columns_.col(n_heated_ + n_ambient_).segment(at, rows) = ambient_K_.segment(at, rows);
+    columns_.col(n_heated_ + n_ambient_ + n_direct_ + static_cast<Eigen::Index>(r)).segment(at, rows).setOnes();
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const Channel& channel = record.at(channels_[c]);
+      const std::vector<double>& values = channel.values;
+      for (Eigen::Index i = 0; i < rows; ++i)
+        readings_(at + i, static_cast<Eigen::Index>(c)) =
+            values[static_cast<std::size_t>(i)] - (channel.unit == "degC" ? reference_degC_ : 0.0);
+    }
+  }
+}
+
+FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) const {
+  Normal result;
+  result.c.setZero(columns_.cols(), static_cast<Eigen::Index>(channels_.size()));
+  std::map<std::vector<bool>, std::size_t> known;
+  for (Eigen::Index c = 0; c < readings_.cols(); ++c) {
+    std::vector<bool> counts(n_rows());
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < n_rows(); ++i) {
+      counts[i] = !hidden[i] && std::isfinite(readings_(static_cast<Eigen::Index>(i), c));
+      if (counts[i]) rows.push_back(static_cast<Eigen::Index>(i));
+    }
+    const Eigen::MatrixXd x = columns_(rows, Eigen::all);
+    result.c.col(c) = x.transpose() * Eigen::VectorXd(readings_.col(c)(rows));
+    result.n.push_back(static_cast<double>(rows.size()));
+    const auto [entry, is_new] = known.emplace(counts, result.own.size());
+    if (is_new) result.own.emplace_back(x.transpose() * x);
+    result.of.push_back(entry->second);
+  }
+  return result;
+}
+
+ChannelFit FosterProblem::fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const {
+  const Eigen::MatrixXd& g = normal.own[normal.of[channel]];
+  const Eigen::VectorXd c = normal.c.col(static_cast<Eigen::Index>(channel));
+  return channel < n_thermometers_ ? fit_thermometer(g, c, normal.n[channel], smoothness)
+                                   : fit_displacement(g, c, normal.n[channel], smoothness);
+}
+
+ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
+                                          const Smoothness& smoothness) const {
+  // Columns of shares: bodies, then the ambient itself; beside them one constant, and starts.
+  const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = n_bodies + n_direct_, n_beside = 1 + n_starts_;
+  Eigen::MatrixXd to = Eigen::MatrixXd::Zero(g.rows(), n_shares + n_beside);
+  for (Eigen::Index b = 0; b < n_heated_; ++b) {
+    to(b, b) = 1.0;
+    if (has_ambient_) to(n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)]), b) = 1.0;
+  }
+  for (Eigen::Index b = n_heated_; b < n_shares; ++b) to(b, b) = 1.0;
+  const Eigen::Index records = n_heated_ + n_ambient_ + n_direct_;
+  to.block(records, n_shares, n_records_, 1).setOnes();
+  for (Eigen::Index s = 0; s < n_starts_; ++s) to(records + n_records_ + s, n_shares + 1 + s) = 1.0;
+  Eigen::MatrixXd all = to.transpose() * g * to;
+  const Eigen::VectorXd right = to.transpose() * c;
+  Eigen::MatrixXd beside = all.bottomRightCorner(n_beside, n_beside);
+  beside.diagonal().tail(n_starts_).array() += smoothness.start_of_thermometers * n;
+  beside.diagonal().array() += kTiny * n;
+  const Eigen::LLT<Eigen::MatrixXd> factor(beside);
+  const Eigen::MatrixXd cross = all.bottomLeftCorner(n_beside, n_shares), solved = factor.solve(cross);
+  Eigen::MatrixXd reduced = all.topLeftCorner(n_shares, n_shares) - cross.transpose() * solved;
+  Eigen::VectorXd target = right.head(n_shares) - solved.transpose() * right.tail(n_beside);
+  const double largest = std::max(reduced.diagonal().maxCoeff(), kTiny);
+  reduced.diagonal() +=
+      smoothness.thermometers * (reduced.diagonal() + Eigen::VectorXd::Constant(n_shares, kTiny * largest));
+  reduced.diagonal().array() += 1e-9 * largest;
+  Eigen::VectorXd shares = non_negative_least_squares(reduced, target);
+  if (has_ambient_ && shares.sum() > 1.0) {
+    reduced.array() += kMeanOne * largest;
+    target.array() += kMeanOne * largest;
+    shares = non_negative_least_squares(reduced, target);
+  }
+  ChannelFit fit;
+  fit.weight = shares.head(n_bodies);
+  fit.of_ambient = has_ambient_ ? shares[n_bodies] : 0.0;
+  const Eigen::VectorXd rest = factor.solve(right.tail(n_beside) - cross * shares);
+  fit.offset = rest[0];
+  fit.of_records = Eigen::VectorXd::Zero(n_records_ + n_starts_);
+  fit.of_records.tail(n_starts_) = rest.tail(n_starts_);
+  return fit;
+}
+
+ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
+                                           const Smoothness& smoothness) const {
+  // Heated parts and ambient parts of bodies are free of each other; the ambient itself is none of them.
+  const Eigen::Index n_parts = n_heated_ + n_ambient_, n_beside = n_records_ + n_starts_;
+  std::vector<Eigen::Index> beside_at(static_cast<std::size_t>(n_beside));
+  for (Eigen::Index i = 0; i < n_beside; ++i) beside_at[static_cast<std::size_t>(i)] = n_parts + n_direct_ + i;
+  Eigen::MatrixXd beside = g(beside_at, beside_at);
+  beside.diagonal().tail(n_starts_).array() += smoothness.start_of_displacements * n;
+  beside.diagonal().array() += kTiny * n + 1e-9;
+  const Eigen::LLT<Eigen::MatrixXd> factor(beside);
+  const Eigen::MatrixXd cross = g(beside_at, Eigen::seqN(0, n_parts)), solved = factor.solve(cross);
+  Eigen::MatrixXd reduced = g.topLeftCorner(n_parts, n_parts) - cross.transpose() * solved;
+  const Eigen::VectorXd target = c.head(n_parts) - solved.transpose() * Eigen::VectorXd(c(beside_at));
+  const double largest = std::max(reduced.diagonal().maxCoeff(), kTiny);
+  for (Eigen::Index i = 0; i < n_parts; ++i)
+    reduced(i, i) += (i < n_heated_ ? smoothness.drive : smoothness.ambient) * reduced(i, i) + 1e-9 * largest;
+  const Eigen::LLT<Eigen::MatrixXd> parts(reduced);
+  const Eigen::VectorXd part = parts.solve(target);
+  ChannelFit fit;
+  fit.weight = part;
+  fit.of_records = factor.solve(Eigen::VectorXd(c(beside_at)) - cross * part);
+  const Eigen::VectorXd variance = parts.solve(Eigen::MatrixXd::Identity(n_parts, n_parts)).diagonal();
+  fit.standard_deviation = variance.cwiseMax(0.0).cwiseSqrt();
+  if (has_ambient_) {
+    for (Eigen::Index b = 0; b < n_heated_; ++b)
+      fit.weight[n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)])] -= part[b];
+  }
+  return fit;
+}
+
+Eigen::VectorXd FosterProblem::predicted(std::size_t channel, const ChannelFit& fit, bool in_records) const {
+  Eigen::VectorXd y = body_columns_ * fit.weight;
+  if (channel < n_thermometers_) y += fit.of_ambient * ambient_K_ + Eigen::VectorXd::Constant(y.size(), fit.offset);
+  if (in_records) y += columns_.rightCols(n_records_ + n_starts_) * fit.of_records;
+  return y;
+}
+
+Eigen::VectorXd FosterProblem::heated_K(std::size_t body) const {
+  const auto b = static_cast<Eigen::Index>(body);
+  return b < n_heated_ ? Eigen::VectorXd(columns_.col(b)) : Eigen::VectorXd::Zero(columns_.rows());
+}
+
+Eigen::VectorXd FosterProblem::misses(std::size_t channel, const ChannelFit& fit) const {
+  Eigen::VectorXd e = measured(channel) - predicted(channel, fit, true);
+  if (channel < n_thermometers_) return e;
+  for (std::size_t r = 0; r + 1 < first_row_.size(); ++r) {
+    if (fit.of_records[static_cast<Eigen::Index>(r)] != 0.0) continue;
+    const auto at = static_cast<Eigen::Index>(first_row_[r]), n = static_cast<Eigen::Index>(first_row_[r + 1]) - at;
+    auto of_record = e.segment(at, n);
+    const auto first = std::find_if(of_record.begin(), of_record.end(), [](double v) { return std::isfinite(v); });
+    if (first != of_record.end()) of_record.array() -= double(*first);
+  }
+  return e;
+}
+
+double FosterProblem::rms(const Eigen::VectorXd& misses, const std::vector<bool>& rows) {
+  double squares = 0.0, n = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double value = misses[static_cast<Eigen::Index>(i)];
+    if (!rows[i] || !std::isfinite(value)) continue;
+    squares += value * value;
+    n += 1.0;
+  }
+  return n > 0.0 ? std::sqrt(squares / n) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace driftwright::identification

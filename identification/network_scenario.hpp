@@ -1,0 +1,19 @@
+#pragma once
+// An identified network as a scenario.
+
+#include "identification/identify.hpp"
+
+namespace driftwright::identification {
+
+/// Bodies of 1 MJ/K, which is a scale: heat over conductance, and time constants, are what records tell. A thermometer is a node of 1 J/K that hangs on the bodies it is a
+/// mean of, and does not load them (below 0.1 %). Shares below a hundredth are left out.
+/// @param name    of the scenario
+/// @param records  files beside it that hold drive and ambient as run_record() makes them; the ambient is that of the first
+/// @param head     comment lines
+[[nodiscard]] std::string network_scenario(const Identified& network, const std::string& name,
+                                           const std::vector<std::string>& records, const std::vector<std::string>& head);
+
+/// A record as the scenario's verbs read it: the speed called so, 0 where there is none, nothing missing of what drives or surrounds the machine.
+[[nodiscard]] Record run_record(const Record& record, const RecordRoles& roles);
+
+}  // namespace driftwright::identification

@@ -1,0 +1,181 @@
+#include "identification/record_roles.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "base/errors.hpp"
+#include "identification/lagged_inputs.hpp"
+
+namespace driftwright::identification {
+namespace {
+
+constexpr std::size_t kFewestRows = 30;  // of a record
+constexpr double kAmbientFollows = 0.5;  // of its squares that drives explain: more is no ambient
+constexpr std::array kDriveUnits = {"W", "V", "percent", "W_m2", "1", "mm_min", "count"};
+constexpr std::array kAmbientNames = {"ambient", "room", "hall", "outdoor", "environment", "surrounding", "chamber_air"};
+
+std::string lower(std::string s) {
+  std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return s;
+}
+
+bool is_ambient_name(const std::string& name) {
+  return std::any_of(kAmbientNames.begin(), kAmbientNames.end(),
+                     [&](const char* n) { return lower(name).find(n) != std::string::npos; });
+}
+
+bool changes(std::span<const Record> records, const std::string& channel) {
+  double least = 1e300, most = -1e300;
+  for (const Record& r : records) {
+    const Eigen::VectorXd v = held(r.at(channel));
+    least = std::min(least, v.minCoeff());
+    most = std::max(most, v.maxCoeff());
+  }
+  return most > least;
+}
+
+/// Share of a thermometer's squares, about its mean in each record, that lags of the drives explain, in all records alike.
+double follows(std::span<const Record> records, const std::vector<std::string>& drives, const std::string& thermometer) {
+  constexpr std::array kLags = {0.01, 0.05, 0.2};  // of a record
+  const auto n = static_cast<Eigen::Index>(kLags.size() * drives.size());
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(n);
+  double all = 0.0;
+  for (const Record& r : records) {
+    const Eigen::VectorXd y = held(r.at(thermometer));
+    const Eigen::VectorXd about = (y.array() - y.mean()).matrix();
+    Eigen::MatrixXd x(y.size(), n);
+    Eigen::Index at = 0;
+    for (const std::string& drive : drives) {
+      for (double lag : kLags) {
+        x.col(at) = lagged_steps(r.time_s, held(r.at(drive)), lag * (r.time_s.back() - r.time_s.front()));
+        x.col(at).array() -= x.col(at).mean();
+        ++at;
+      }
+    }
+    g += x.transpose() * x;
+    c += x.transpose() * about;
+    all += about.squaredNorm();
+  }
+  const Eigen::VectorXd scale = g.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  g = scale.asDiagonal() * g * scale.asDiagonal();
+  g.diagonal().array() += 1e-6;
+  const Eigen::VectorXd scaled = scale.cwiseProduct(c);
+  return all > 0.0 ? scaled.dot(g.llt().solve(scaled)) / all : 1.0;
+}
+
+}  // namespace
+
+RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints) {
+  RecordRoles roles;
+  const Record& first = records[0];
+  std::set<std::string> common;
+  for (const Channel& c : first.channels) {
+    if (std::all_of(records.begin(), records.end(), [&](const Record& r) {
+          const Channel* other = r.find(c.name);
+          return other && other->unit == c.unit;
+        }))
+      common.insert(c.name);
+    else
+      roles.guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
+  }
+  for (const Record& r : records) {
+    if (r.n_samples() < kFewestRows)
+      throw InputError(
+          fmt::format("{}: {} rows; a network needs {} at least, better a few hundred over several changes of the drive",
+                      r.source, r.n_samples(), kFewestRows));
+  }
+  const auto require_common = [&](const std::string& name, const std::string& option) {
+    if (!common.contains(name)) {
+      (void)first.at(name);
+      throw InputError(fmt::format("{} {}: not all records have it", option, name));
+    }
+  };
+  for (const std::string& drive : hints.drives) require_common(drive, "--drive");
+  if (!hints.ambient.empty()) {
+    require_common(hints.ambient, "--ambient");
+    if (first.at(hints.ambient).unit != "degC")
+      throw InputError(fmt::format("--ambient {}: a temperature in degC is required, it is in {}", hints.ambient,
+                                   first.at(hints.ambient).unit));
+    roles.ambient = hints.ambient;
+  }
+  for (const Channel& c : first.channels) {
+    if (!common.contains(c.name)) continue;
+    const bool is_hinted = std::find(hints.drives.begin(), hints.drives.end(), c.name) != hints.drives.end();
+    if (is_hinted || std::find(kDriveUnits.begin(), kDriveUnits.end(), c.unit) != kDriveUnits.end()) {
+      if (changes(records, c.name))
+        roles.drives.push_back(c.name);
+      else
+        roles.guesses.push_back(fmt::format("'{}' never changes and drives nothing", c.header()));
+    } else if (c.unit == "rpm" && roles.speed.empty()) {
+      const bool turns = held(c).cwiseAbs().maxCoeff() > 0.0;
+      if (turns || changes(records, c.name)) roles.speed = c.name;
+      if (!changes(records, c.name))
+        roles.guesses.push_back(
+            turns ? fmt::format("'{}' never changes: it is taken as switched on in the first row, after a long rest",
+                                c.header())
+                  : fmt::format("'{}' stands at 0 and drives nothing", c.header()));
+    } else if ((c.unit == "degC" || c.unit == "K") && c.name != roles.ambient) {
+      roles.thermometers.push_back(c.name);
+    } else if (c.unit == "um") {
+      roles.displacements.push_back(c.name);
+    } else if (c.name != roles.ambient) {
+      roles.guesses.push_back(
+          fmt::format("'{}' takes no part: a channel in {} is neither drive, thermometer (degC, K) nor displacement (um)",
+                      c.header(), c.unit));
+    }
+  }
+  std::vector<std::string> drives = roles.drives;
+  if (!roles.speed.empty()) drives.push_back(roles.speed);
+  if (drives.empty())
+    throw InputError(
+        fmt::format("{}: nothing that drives the machine changes. Required is a column such as speed_rpm or heater_W that "
+                    "is switched at least twice, or --drive "
+                    "with a column that does; a machine that is never switched tells nothing of its heat",
+                    first.source));
+  if (roles.ambient.empty()) {
+    const auto named = std::find_if(roles.thermometers.begin(), roles.thermometers.end(), is_ambient_name);
+    if (named != roles.thermometers.end()) {
+      roles.ambient = *named;
+      roles.guesses.push_back(fmt::format("'{}' is the ambient, by its name", *named));
+    } else if (roles.thermometers.size() > 1) {
+      std::string least;
+      double share = 1e300;
+      for (const std::string& t : roles.thermometers) {
+        if (first.at(t).unit != "degC") continue;
+        const double of = follows(records, drives, t);
+        if (of < share) {
+          share = of;
+          least = t;
+        }
+      }
+      if (share < kAmbientFollows) {
+        roles.ambient = least;
+        roles.guesses.push_back(
+            fmt::format("'{}' is the ambient, a guess: of all thermometers it follows the drives least ({:.0f} % of its "
+                        "squares); --ambient says another",
+                        least, 100.0 * std::max(0.0, share)));
+      } else {
+        roles.guesses.emplace_back(
+            "no thermometer tells the ambient, for all follow the drives: it is taken as constant; --ambient names one");
+      }
+    } else {
+      roles.guesses.emplace_back(
+          "there is no ambient temperature: it is taken as constant; a thermometer in the air beside the machine would "
+          "tell");
+    }
+    std::erase(roles.thermometers, roles.ambient);
+  }
+  if (roles.thermometers.empty() && roles.displacements.empty())
+    throw InputError(
+        fmt::format("{}: no thermometer (degC) and no displacement (um) is left to be predicted", first.source));
+  return roles;
+}
+
+}  // namespace driftwright::identification

@@ -1,0 +1,222 @@
+// A network from records alone: lags against closed forms, non-negative least squares against their conditions, a machine that is known found again.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/random.hpp"
+#include "identification/identify.hpp"
+#include "identification/network_scenario.hpp"
+#include "identification/non_negative.hpp"
+
+namespace driftwright::identification::identification_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+TEST(Lags, OfAStepAreExponentials) {
+  const std::vector<double> time_s = {0.0, 30.0, 100.0, 400.0};
+  const Eigen::VectorXd x = lagged_steps(time_s, Eigen::VectorXd::Ones(4), 120.0);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(x[static_cast<Eigen::Index>(i)], -std::expm1(-time_s[i] / 120.0), 1e-12);
+}
+
+TEST(Lags, OfARampRunBehindByTheirTime) {
+  std::vector<double> time_s;
+  for (int i = 0; i <= 100; ++i) time_s.push_back(60.0 * i);
+  Eigen::VectorXd u(101);
+  for (int i = 0; i <= 100; ++i) u[i] = 0.01 * time_s[static_cast<std::size_t>(i)];
+  const Eigen::VectorXd x = lagged_ramps(time_s, u, 300.0);
+  EXPECT_NEAR(u[100] - x[100], 0.01 * 300.0, 1e-6);
+  EXPECT_NEAR(x[5], 0.01 * (300.0 - 300.0 * -std::expm1(-1.0)), 1e-12);
+}
+
+// Karush, Kuhn and Tucker: what is above 0 has no slope, what is 0 would only get worse.
+TEST(NonNegativeLeastSquares, AreWhereNoNumberGains) {
+  Random random(4, 0);
+  for (int trial = 0; trial < 20; ++trial) {
+    Eigen::MatrixXd a(30, 8);
+    Eigen::VectorXd b(30);
+    for (Eigen::Index i = 0; i < a.size(); ++i) a.data()[i] = random.normal();
+    for (Eigen::Index i = 0; i < b.size(); ++i) b[i] = random.normal();
+    const Eigen::MatrixXd g = a.transpose() * a;
+    const Eigen::VectorXd c = a.transpose() * b, x = non_negative_least_squares(g, c), slope = g * x - c;
+    int n_zero = 0;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      EXPECT_GE(x[i], 0.0);
+      if (x[i] > 0.0) {
+        EXPECT_NEAR(slope[i], 0.0, 1e-9);
+      } else {
+        EXPECT_GE(slope[i], -1e-9);
+        ++n_zero;
+      }
+    }
+    EXPECT_GT(n_zero, 0) << "nothing was tried";
+  }
+}
+
+/// A machine of two bodies, each on the ambient alone: one heated while the spindle turns, 40 min, one by the speed to the 5/3, 120 min. Rows of a minute.
+Record measured(const std::string& name, const std::vector<std::pair<double, double>>& minutes_rpm, std::uint64_t seed,
+                double noise) {
+  Record r{
+      .source = name,
+      .time_s = {},
+      .channels = {
+          {"speed", "rpm", {}}, {"hall", "degC", {}}, {"t_box", "degC", {}}, {"t_head", "degC", {}}, {"nose", "um", {}}}};
+  for (const auto& [minutes, rpm] : minutes_rpm) {
+    for (int i = 0; i < static_cast<int>(minutes); ++i) {
+      r.time_s.push_back(60.0 * static_cast<double>(r.time_s.size()));
+      r.channels[0].values.push_back(rpm);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(r.time_s.size());
+  Eigen::VectorXd turns(n), power(n), hall(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double rpm = r.channels[0].values[static_cast<std::size_t>(i)];
+    turns[i] = rpm > 0.0 ? 1.0 : 0.0;
+    power[i] = std::pow(rpm / 3000.0, 5.0 / 3.0);
+    hall[i] = 1.5 * std::sin(static_cast<double>(i) / 60.0 + static_cast<double>(seed));
+  }
+  const Eigen::VectorXd box = lagged_ramps(r.time_s, hall, 2400.0) + 6.0 * lagged_steps(r.time_s, turns, 2400.0);
+  const Eigen::VectorXd head = lagged_ramps(r.time_s, hall, 7200.0) + 12.0 * lagged_steps(r.time_s, power, 7200.0);
+  Random random(seed, 0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    r.channels[1].values.push_back(20.0 + hall[i]);
+    r.channels[2].values.push_back(20.0 + box[i] + noise * random.normal());
+    r.channels[3].values.push_back(20.0 + head[i] + noise * random.normal());
+    r.channels[4].values.push_back(3.0 * (head[i] - head[0]) - 2.0 * (box[i] - box[0]) + 5.0 * noise * random.normal());
+  }
+  return r;
+}
+
+std::vector<Record> three_days() {
+  return {measured("one.csv", {{60, 0}, {120, 1000}, {60, 0}, {120, 3000}, {90, 0}, {120, 2000}}, 1, 0.03),
+          measured("two.csv", {{30, 2000}, {90, 0}, {120, 1500}, {120, 2500}, {60, 0}, {60, 3000}}, 2, 0.03),
+          measured("three.csv", {{100, 2500}, {100, 500}, {100, 0}, {100, 1750}, {100, 0}}, 3, 0.03)};
+}
+
+class IdentifiedMachine : public ::testing::Test {
+ protected:
+  static const Identified& network() {
+    static const std::vector<Record> records = three_days();
+    static const Identified identified = identify(records, {.ambient = "hall", .drives = {}});
+    return identified;
+  }
+  static const IdentifiedChannel& channel(const std::string& name) {
+    for (const IdentifiedChannel& c : network().channels) {
+      if (c.name == name) return c;
+    }
+    throw std::out_of_range(name);
+  }
+};
+
+TEST_F(IdentifiedMachine, LeavesAboutTheNoise) {
+  EXPECT_THAT(network().roles.thermometers, ElementsAre("t_box", "t_head"));
+  for (const char* name : {"t_box", "t_head"}) {
+    EXPECT_LT(channel(name).missed_own, 0.08) << name;
+    EXPECT_LT(channel(name).missed_kept_out, 0.25) << name;
+    EXPECT_GT(channel(name).swing, 1.0) << name;
+  }
+  EXPECT_LT(channel("nose").missed_own, 0.4);
+}
+
+TEST_F(IdentifiedMachine, ReadsThermometersAsMeansOfBodies) {
+  for (const char* name : {"t_box", "t_head"}) {
+    const ChannelFit& fit = channel(name).fit;
+    EXPECT_GE(fit.weight.minCoeff(), 0.0);
+    EXPECT_LE(fit.weight.sum() + fit.of_ambient, 1.0 + 1e-3);
+  }
+}
+
+TEST_F(IdentifiedMachine, SaysWhatDrivesEachChannel) {
+  double sum = 0.0;
+  for (const Driver& d : channel("t_box").ledger) sum += d.share;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  const Driver& of_box = channel("t_box").ledger.front();
+  EXPECT_EQ(of_box.name, "while speed is not 0");
+  EXPECT_NEAR(of_box.in_the_end, 6.0, 0.9);
+  EXPECT_NEAR(of_box.delay_s, 2400.0, 500.0);
+  const Driver& of_head = channel("t_head").ledger.front();
+  EXPECT_THAT(of_head.name, HasSubstr("speed^"));
+  EXPECT_NEAR(of_head.in_the_end, 12.0, 1.8);
+}
+
+// A day at speeds that none of the records has, beyond the fastest by a fifth.
+TEST_F(IdentifiedMachine, PredictsADayItHasNotSeen) {
+  const std::vector<Record> other = {measured("other.csv", {{60, 0}, {150, 3600}, {60, 0}, {100, 1200}}, 9, 0.0)};
+  double rise_K = 0.0;
+  for (const IdentifiedBody& b : network().bodies) rise_K = std::max(rise_K, b.body.rise_K);
+  const FosterProblem problem(other, network().roles, network().structure, rise_K);
+  for (std::size_t c = 0; c < network().channels.size(); ++c) {
+    const Eigen::VectorXd predicted = problem.predicted(c, network().channels[c].fit, false);
+    Eigen::VectorXd e = problem.measured(c) - predicted;
+    e.array() -= e[0];
+    const double swing = problem.measured(c).maxCoeff() - problem.measured(c).minCoeff();
+    EXPECT_LT(std::sqrt(e.squaredNorm() / static_cast<double>(e.size())), 0.08 * swing) << network().channels[c].name;
+  }
+}
+
+TEST_F(IdentifiedMachine, IsWrittenAsAScenario) {
+  const std::string text = network_scenario(network(), "three_days", {"one.csv", "two.csv"}, {"what it is"});
+  EXPECT_THAT(text, AllOf(HasSubstr("# what it is\n"), HasSubstr("name: three_days"), HasSubstr("runs: while_spindle_turns"),
+                          HasSubstr("exponent: 1.6667"), HasSubstr("ambient: {csv: one.csv, channel: hall}"),
+                          HasSubstr("two: {csv: two.csv}"), HasSubstr("- {name: t_box, node: at_t_box}"),
+                          HasSubstr("- name: nose\n")));
+}
+
+TEST(RecordRoles, GuessTheAmbientAndSayIt) {
+  const std::vector<Record> records = three_days();
+  std::vector<Record> nameless = records;
+  for (Record& r : nameless) r.channels[1].name = "t9";
+  const RecordRoles roles = record_roles(nameless, {});
+  EXPECT_EQ(roles.ambient, "t9");
+  EXPECT_THAT(roles.guesses, Contains(AllOf(HasSubstr("'t9' is the ambient, a guess"), HasSubstr("--ambient"))));
+  EXPECT_THAT(record_roles(records, {}).guesses, Contains(HasSubstr("by its name")));
+}
+
+TEST(RecordRoles, RefuseWhatTellsNothing) {
+  std::vector<Record> records = three_days();
+  EXPECT_THAT([&] { (void)record_roles(records, {.ambient = "t_wall", .drives = {}}); },
+              ThrowsMessage<InputError>(HasSubstr("t_wall")));
+  EXPECT_THAT([&] { (void)record_roles(records, {.ambient = "nose", .drives = {}}); },
+              ThrowsMessage<InputError>(HasSubstr("in degC is required")));
+  for (Record& r : records) std::fill(r.channels[0].values.begin(), r.channels[0].values.end(), 0.0);
+  EXPECT_THAT([&] { (void)record_roles(records, {}); }, ThrowsMessage<InputError>(HasSubstr("switched at least twice")));
+  std::vector<Record> few = {measured("short.csv", {{10, 0}, {10, 1000}}, 1, 0.0)};
+  EXPECT_THAT([&] { (void)record_roles(few, {}); }, ThrowsMessage<InputError>(HasSubstr("20 rows")));
+}
+
+TEST(RecordRoles, TakeTheSpindleThatNeverStopsAsSwitchedOn) {
+  const std::vector<Record> records = {measured("always.csv", {{200, 1500}}, 1, 0.0)};
+  const RecordRoles roles = record_roles(records, {});
+  EXPECT_EQ(roles.speed, "speed");
+  EXPECT_THAT(roles.guesses, Contains(HasSubstr("switched on in the first row")));
+}
+
+TEST(RunRecord, HasASpeedAndNothingMissingOfWhatDrives) {
+  Record record = measured("day.csv", {{20, 0}, {20, 1000}}, 1, 0.0);
+  record.channels[0].name = "spindle";
+  record.channels[0].values[25] = std::nan("");
+  record.channels[1].values[0] = std::nan("");
+  record.channels[2].values[3] = std::nan("");
+  for (double& t : record.time_s) t += 1e9;
+  RecordRoles roles;
+  roles.speed = "spindle";
+  roles.ambient = "hall";
+  roles.thermometers = {"t_box"};
+  const Record run = run_record(record, roles);
+  EXPECT_EQ(run.time_s.front(), 0.0);
+  EXPECT_EQ(run.at("speed").values[25], 1000.0);
+  EXPECT_EQ(run.at("hall").values[0], record.channels[1].values[1]);
+  EXPECT_TRUE(std::isnan(run.at("t_box").values[3]));
+  EXPECT_EQ(run.find("nose"), nullptr);
+}
+
+}  // namespace
+}  // namespace driftwright::identification::identification_test

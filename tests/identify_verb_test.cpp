@@ -1,0 +1,69 @@
+// `driftwright identify` as a user runs it: a scenario that simulates what was measured, and errors that say what to record.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/record.hpp"
+#include "tests/command_line.hpp"
+
+namespace driftwright::identify_verb_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class IdentifyVerb : public ::testing::Test {
+ protected:
+  std::filesystem::path out_ = temporary_folder() / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+// The shipped records hold 0.1 K and 0.5 um of noise, by a model of finite elements; the network's scenario, run by the verb, is to come near that with the records as they are.
+TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
+  const CommandOutcome identified = run_program(
+      "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o " + out_.string());
+  ASSERT_EQ(identified.exit_code, 0) << identified.output;
+  EXPECT_THAT(identified.output, AllOf(HasSubstr("drift_y: "), HasSubstr("'t_ambient' is the ambient, by its name")));
+  const CommandOutcome checked = run_program("check " + (out_ / "monday.yaml").string());
+  EXPECT_EQ(checked.exit_code, 0) << checked.output;
+  const std::filesystem::path run = temporary_folder() / "identified_run";
+  const CommandOutcome simulated =
+      run_program("simulate " + (out_ / "monday.yaml").string() + " --cyclogram monday -o " + run.string());
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.output;
+  const Record measured = read_record_csv("scenarios/records/monday.csv"),
+               model = read_record_csv((run / "record.csv").string());
+  for (const auto& [name, most] : {std::pair{"drift_y", 1.2}, {"drift_z", 1.2}, {"t05", 0.4}, {"t09", 0.3}}) {
+    double squares = 0.0, n = 0.0;
+    for (std::size_t i = 0, at = 0; i < measured.n_samples(); ++i) {
+      while (at + 1 < model.n_samples() && model.time_s[at] < measured.time_s[i] - 1.0) ++at;
+      if (std::abs(model.time_s[at] - measured.time_s[i]) > 1.0) continue;
+      squares += std::pow(measured.at(name).values[i] - model.at(name).values[at], 2);
+      n += 1.0;
+    }
+    ASSERT_GT(n, 50.0);
+    EXPECT_LT(std::sqrt(squares / n), most) << name;
+  }
+  const Json summary = Json::parse(std::ifstream(out_ / "summary.json"));
+  EXPECT_EQ(summary.at("channels").size(), 16);
+  EXPECT_GT(summary.at("bodies").size(), 2);
+}
+
+TEST_F(IdentifyVerb, SaysWhatARecordLacks) {
+  const auto file = temporary_folder() / "still.csv";
+  std::ofstream(file) << "time_s,speed_rpm,t_degC\n" + [] {
+    std::string rows;
+    for (int i = 0; i < 40; ++i) rows += std::to_string(60 * i) + ",0,20.5\n";
+    return rows;
+  }();
+  const CommandOutcome run = run_program("identify --record " + file.string() + " -o " + out_.string());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.output, AllOf(HasSubstr("still.csv"), HasSubstr("speed_rpm or heater_W that is switched at least twice")));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+}  // namespace
+}  // namespace driftwright::identify_verb_test
