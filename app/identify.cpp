@@ -11,6 +11,8 @@
 #include "base/file_name.hpp"
 #include "findings/identification_document.hpp"
 #include "identification/network_scenario.hpp"
+#include "machine/machine.hpp"
+#include "scenarios/reader/scenario.hpp"
 #include "studies/logger_import.hpp"
 
 namespace driftwright::app {
@@ -43,7 +45,9 @@ std::string plain_stem(const std::string& path) {
 
 }  // namespace
 
-void identify(const IdentifyOptions& options) {
+void identify(const IdentifyOptions& asked) {
+  IdentifyOptions options = asked;
+  options.scenario = asked.records.front();  // what the results are of
   std::vector<Record> records;
   std::vector<std::string> notes, files;
   std::set<std::string> stems;
@@ -73,6 +77,14 @@ void identify(const IdentifyOptions& options) {
     folder.write_text(files[i], record_csv(identification::run_record(records[i], network.roles),
                                            provenance_lines(folder.made_by(), "identify")));
   folder.write_text(file_name(name, ".yaml"), identification::network_scenario(network, name, files, head));
+  const std::filesystem::path written = folder.path(file_name(name, ".yaml"));
+  try {
+    const scenarios::Scenario scenario = scenarios::read_scenario(written.string());
+    (void)scenarios::build(*scenario.machine, scenarios::place(*scenario.machine));
+  } catch (const InputError& e) {
+    throw InputError(
+        fmt::format("{}: the network could not be written as a scenario that runs: {}", options.records.front(), e.what()));
+  }
   finish(findings::document_of({name, records, network, notes}, folder.made_by()), folder, progress, options);
 }
 

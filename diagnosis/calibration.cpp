@@ -97,6 +97,8 @@ Judgement judged(const Judge& judge, const Models& models, const std::map<std::s
           "with the scenario as "
           "it was",
           what, own_misses, own_before);
+    else if (loss.n_folds < 2)
+      j.why_not = "fewer than two parts of the records could judge them";
     else if (loss.mean > loss.standard_error)
       j.why_not = fmt::format(
           "rows that were kept out are predicted better by the scenario as it was: {} are missed by {:.3g} times as much "
@@ -127,7 +129,7 @@ KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<d
     const double log = std::log(misses[f] / others[f]);
     if (std::isfinite(log)) logs.push_back(log);
   }
-  KeptOutLoss loss;
+  KeptOutLoss loss{.n_folds = logs.size()};
   if (logs.empty()) return loss;
   const auto n = static_cast<double>(logs.size());
   for (double log : logs) loss.mean += log / n;

@@ -13,6 +13,7 @@ namespace driftwright::diagnosis {
 /// How much worse kept-out rows are predicted by one model than by another: mean over the folds of the logarithm of what they miss, and its standard error.
 struct KeptOutLoss {
   double mean = 0.0, standard_error = 0.0;
+  std::size_t n_folds = 0;  ///< that could judge
 };
 /// @param misses, others  root mean squares, a fold each; folds that could not judge are NaN
 [[nodiscard]] KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rows_as_one.hpp"
+
 namespace driftwright::diagnosis {
 
 std::map<std::string, OutputError> output_errors(const std::vector<MeasuredRun>& runs, const Prediction& prediction) {
@@ -16,37 +18,18 @@ std::map<std::string, OutputError> output_errors(const std::vector<MeasuredRun>&
   }
   std::map<std::string, OutputError> errors;
   for (const auto& [name, series] : residuals) {
-    Eigen::Index longest = 0;
-    for (const Eigen::VectorXd& e : series) longest = std::max(longest, e.size());
-    // Mean product of pairs so many rows apart, over the mean square; a mean that is off is a part of the error.
-    const auto product = [&](Eigen::Index apart, Eigen::Index* n_pairs) {
-      double sum = 0.0;
-      for (const Eigen::VectorXd& e : series) {
-        for (Eigen::Index i = 0; i + apart < e.size(); ++i) {
-          const double p = e[i] * e[i + apart];
-          if (std::isnan(p)) continue;
-          sum += p;
-          ++*n_pairs;
-        }
-      }
-      return sum;
-    };
     OutputError error{.unit = units.at(name)};
-    const double square = product(0, &error.n);
+    double squares = 0.0;
+    for (const Eigen::VectorXd& e : series) {
+      for (double v : e) {
+        if (std::isnan(v)) continue;
+        squares += v * v;
+        ++error.n;
+      }
+    }
     if (error.n == 0) continue;
-    error.rms = std::sqrt(square / static_cast<double>(error.n));
-    if (!(square > 0.0)) {
-      errors[name] = error;
-      continue;
-    }
-    double sum = 0.0;
-    for (Eigen::Index k = 1; k + 1 < longest; k += 2) {  // pairs of correlations are positive where the sum still tells
-      Eigen::Index none = 0;
-      const double pair = (product(k, &none) + product(k + 1, &none)) / square;
-      if (!(pair > 0.0)) break;
-      sum += pair;
-    }
-    error.rows_as_one = std::clamp(1.0 + 2.0 * sum, 1.0, static_cast<double>(error.n));
+    error.rms = std::sqrt(squares / static_cast<double>(error.n));
+    error.rows_as_one = rows_as_one(series);
     errors[name] = error;
   }
   return errors;

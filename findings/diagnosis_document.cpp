@@ -321,7 +321,7 @@ Section gain_section(const diagnosis::Diagnosis& d) {
           "Noise floor: what the readings scatter by themselves. Regression: ridge on memories of speed, ambient and "
           "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. Named causes: "
           "these alone beside the scenario's numbers; found: what the searches without these rows found, whatever of it is "
-          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written. "
+          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a calibration was chosen by them. "
           "The "
           "file: what the written scenario gives over the whole of all records, to which its numbers were fitted.",
       .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};

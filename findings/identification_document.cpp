@@ -34,8 +34,7 @@ std::string ledger_text(const IdentifiedChannel& c) {
     parts.push_back(fmt::format("{:.0f} % {} ({:+.3g} {}{}, {})", 100.0 * d.share, d.name, d.in_the_end, shown(c.unit),
                                 d.name == "ambient" ? " for 1 K" : " in the end", time_text(d.delay_s)));
   }
-  return fmt::format("{}: {}", c.name,
-                     parts.empty() ? std::string("follows nothing recorded") : fmt::format("{}", fmt::join(parts, "; ")));
+  return parts.empty() ? "follows nothing recorded" : fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string heated_by(const IdentifiedBody& b, const Identified& n) {
@@ -56,21 +55,26 @@ output::Table channels_table(const Identified& n) {
   output::Table table{.key = "channels",
                       .title = "What is left of each channel",
                       .caption =
-                          "Root mean square of measured less simulated, driven by what was recorded and by no reading. Kept "
-                          "out: rows that a network was not fitted to, of each kind in turn "
-                          "(runs or eighths, speeds, the end, the beginning, the warmest and the coldest rows), geometric "
-                          "mean over the kinds; the structure of the network was chosen by "
-                          "these rows, so that rows of another day may be missed by more.",
+                          "Root mean square of measured less computed, driven by what was recorded and by no reading. Own "
+                          "rows: how warm each record begins and where its indicators stand "
+                          "at zero are fitted with it. As simulated: of the written scenario, which begins in balance with "
+                          "the first ambient; much more than that says that a record begins warm. Kept "
+                          "out: rows that a network was not fitted to, of each kind in turn (runs or eighths, speeds, the "
+                          "end, the beginning, the warmest and the coldest rows), geometric "
+                          "mean over the kinds; the structure of the network was chosen by these rows, so that rows of "
+                          "another day may be missed by more.",
                       .columns = {{.key = "name", .title = "channel"},
                                   {.key = "unit", .title = "unit"},
                                   {.key = "deviation", .title = "standard deviation", .digits = significant(3)},
                                   {.key = "rms_own", .title = "left, own rows", .digits = significant(3)},
+                                  {.key = "rms_simulated", .title = "as simulated", .digits = significant(3)},
                                   {.key = "rms_kept_out", .title = "left, kept out", .digits = significant(3)}}};
   for (const auto& kind : n.kinds)
     table.columns.push_back({.key = "rms_" + kind.kind, .title = kind.kind, .digits = significant(3)});
   for (std::size_t c = 0; c < n.channels.size(); ++c) {
     const IdentifiedChannel& channel = n.channels[c];
-    table.rows.push_back({channel.name, shown(channel.unit), channel.swing, channel.missed_own, channel.missed_kept_out});
+    table.rows.push_back({channel.name, shown(channel.unit), channel.swing, channel.missed_own, channel.missed_simulated,
+                          channel.missed_kept_out});
     for (const auto& kind : n.kinds) table.rows.back().emplace_back(kind.rms[c]);
   }
   return table;
@@ -140,17 +144,13 @@ output::Table ledger_table(const Identified& n) {
   return table;
 }
 
-/// Time of the rows of all records, one after the other [h].
+/// Time of the rows that are kept, records one after the other [h].
 std::vector<double> hours(const Identified& n, const std::vector<Record>& records) {
   std::vector<double> time_h;
-  const auto rows = static_cast<double>(n.channels.front().predicted.size());
-  double all = 0.0;
-  for (const Record& r : records) all += static_cast<double>(r.n_samples());
   double before_h = 0.0;
-  const auto every = static_cast<std::size_t>(std::max(1.0, std::floor(all / rows)));
-  for (const Record& r : records) {
-    for (std::size_t i = 0; i < r.n_samples() / every; ++i)
-      time_h.push_back(before_h + (r.time_s[i * every] - r.time_s[0]) / 3600.0);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    for (std::size_t i = 0; i < records[r].n_samples() / n.blocks[r]; ++i)
+      time_h.push_back(before_h + (records[r].time_s[i * n.blocks[r]] - records[r].time_s[0]) / 3600.0);
     before_h = time_h.back() + 0.1;
   }
   return time_h;
@@ -182,9 +182,14 @@ output::Document document_of(const IdentificationFindings& found, const output::
                 .text = share < 0.5 ? "Geometric mean over the channels of root mean square left over standard deviation."
                                     : "Drive and ambient that were recorded explain less than half: something else drives "
                                       "this machine, or the record holds too few changes of the drive."});
-  std::vector<std::string> said;
-  for (const IdentifiedChannel& c : n.channels) said.push_back(ledger_text(c));
-  add(body, output::Notes{.key = "ledger_in_words", .lines = said});
+  output::Table said{.key = "ledger_in_words",
+                     .title = "What drives each channel",
+                     .caption =
+                         "Share of the variance that the network gives; what the largest drive that was recorded comes to "
+                         "in the end, or 1 K of the ambient; until 63 % are there.",
+                     .columns = {{.key = "name", .title = "channel"}, {.key = "driven_by", .title = "driven by"}}};
+  for (const IdentifiedChannel& c : n.channels) said.rows.push_back({c.name, ledger_text(c)});
+  add(body, std::move(said));
   add(body, channels_table(n));
   add(body, bodies_table(n));
   add(body, weights_table(n));

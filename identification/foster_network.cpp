@@ -33,20 +33,23 @@ std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient,
   return bodies;
 }
 
-FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K)
+FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K,
+                             const std::vector<std::size_t>& blocks)
     : structure_(std::move(structure)), has_ambient_(!roles.ambient.empty()) {
   bodies_ = bodies_of(structure_, has_ambient_, rise_K);
   channels_ = roles.thermometers;
   n_thermometers_ = channels_.size();
   channels_.insert(channels_.end(), roles.displacements.begin(), roles.displacements.end());
+  for (const std::string& c : channels_) counts_from_start_.push_back(records[0].at(c).unit != "degC");
   first_row_ = {0};
-  for (const Record& r : records) first_row_.push_back(first_row_.back() + r.n_samples());
-  const auto n = static_cast<Eigen::Index>(first_row_.back());
+  for (std::size_t r = 0; r < records.size(); ++r)
+    first_row_.push_back(first_row_.back() + records[r].n_samples() / blocks[r]);
+  const auto n = static_cast<Eigen::Index>(first_row_.back()), n_poles = static_cast<Eigen::Index>(structure_.poles.size());
   n_heated_ = static_cast<Eigen::Index>(structure_.n_heated());
-  n_ambient_ = has_ambient_ ? static_cast<Eigen::Index>(structure_.poles.size()) : 0;
+  n_ambient_ = has_ambient_ ? n_poles : 0;
   n_direct_ = has_ambient_ ? 1 : 0;
   n_records_ = static_cast<Eigen::Index>(records.size());
-  n_starts_ = n_records_ * static_cast<Eigen::Index>(structure_.poles.size());
+  n_starts_ = n_records_ * n_poles;
   columns_.setZero(n, n_heated_ + n_ambient_ + n_direct_ + n_records_ + n_starts_);
   body_columns_.setZero(n, static_cast<Eigen::Index>(bodies_.size()));
   ambient_K_.setZero(n);
@@ -58,17 +61,28 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
   }
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
-    const auto at = static_cast<Eigen::Index>(first_row_[r]), rows = static_cast<Eigen::Index>(record.n_samples());
+    const auto at = static_cast<Eigen::Index>(first_row_[r]), rows = static_cast<Eigen::Index>(first_row_[r + 1]) - at;
+    const auto block = static_cast<Eigen::Index>(blocks[r]);
+    const auto means = [&](const Eigen::VectorXd& v) {
+      return Eigen::VectorXd(v.head(rows * block).reshaped(block, rows).colwise().mean());
+    };
     std::vector<Eigen::VectorXd> laws;
     for (const Law& law : structure_.laws) laws.push_back(values_of(law, record));
-    if (has_ambient_) ambient_K_.segment(at, rows) = (held(record.at(roles.ambient)).array() - reference_degC_).matrix();
+    Eigen::VectorXd ambient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.n_samples()));
+    double first_degC = reference_degC_;
+    if (has_ambient_) {
+      ambient = held(record.at(roles.ambient));
+      first_degC = ambient[0];
+      ambient.array() -= first_degC;
+      ambient_K_.segment(at, rows) = means(ambient);
+    }
     Eigen::Index heated = 0;
     for (std::size_t p = 0; p < structure_.poles.size(); ++p) {
       const Pole& pole = structure_.poles[p];
       Eigen::VectorXd slow = Eigen::VectorXd::Zero(rows);
-      if (has_ambient_) slow = lagged_ramps(record.time_s, ambient_K_.segment(at, rows), pole.tau_s);
+      if (has_ambient_) slow = means(lagged_ramps(record.time_s, ambient, pole.tau_s));
       for (std::size_t law : pole.laws) {
-        columns_.col(heated).segment(at, rows) = rise_K * lagged_steps(record.time_s, laws[law], pole.tau_s);
+        columns_.col(heated).segment(at, rows) = rise_K * means(lagged_steps(record.time_s, laws[law], pole.tau_s));
         body_columns_.col(heated).segment(at, rows) = slow + columns_.col(heated).segment(at, rows);
         ++heated;
       }
@@ -77,19 +91,29 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
         columns_.col(a).segment(at, rows) = slow;
         body_columns_.col(a).segment(at, rows) = slow;
       }
-      const auto start =
-          n_heated_ + n_ambient_ + n_direct_ + n_records_ + static_cast<Eigen::Index>(r * structure_.poles.size() + p);
-      for (Eigen::Index i = 0; i < rows; ++i)
-        columns_(at + i, start) = std::exp(-(record.time_s[static_cast<std::size_t>(i)] - record.time_s[0]) / pole.tau_s);
+      Eigen::VectorXd start(static_cast<Eigen::Index>(record.n_samples()));
+      for (Eigen::Index i = 0; i < start.size(); ++i)
+        start[i] = std::exp(-(record.time_s[static_cast<std::size_t>(i)] - record.time_s[0]) / pole.tau_s);
+      columns_
+          .col(n_heated_ + n_ambient_ + n_direct_ + n_records_ + static_cast<Eigen::Index>(r) * n_poles +
+               static_cast<Eigen::Index>(p))
+          .segment(at, rows) = means(start);
     }
     if (has_ambient_) columns_.col(n_heated_ + n_ambient_).segment(at, rows) = ambient_K_.segment(at, rows);
     columns_.col(n_heated_ + n_ambient_ + n_direct_ + static_cast<Eigen::Index>(r)).segment(at, rows).setOnes();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
-      const Channel& channel = record.at(channels_[c]);
-      const std::vector<double>& values = channel.values;
-      for (Eigen::Index i = 0; i < rows; ++i)
-        readings_(at + i, static_cast<Eigen::Index>(c)) =
-            values[static_cast<std::size_t>(i)] - (channel.unit == "degC" ? reference_degC_ : 0.0);
+      const std::vector<double>& values = record.at(channels_[c]).values;
+      const double less = counts_from_start_[c] ? 0.0 : first_degC;
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        double sum = 0.0, there = 0.0;
+        for (Eigen::Index k = i * block; k < (i + 1) * block; ++k) {
+          const double v = values[static_cast<std::size_t>(k)];
+          if (!std::isfinite(v)) continue;
+          sum += v - less;
+          there += 1.0;
+        }
+        if (there > 0.0) readings_(at + i, static_cast<Eigen::Index>(c)) = sum / there;
+      }
     }
   }
 }
@@ -118,14 +142,15 @@ FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) con
 ChannelFit FosterProblem::fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const {
   const Eigen::MatrixXd& g = normal.own[normal.of[channel]];
   const Eigen::VectorXd c = normal.c.col(static_cast<Eigen::Index>(channel));
-  return channel < n_thermometers_ ? fit_thermometer(g, c, normal.n[channel], smoothness)
+  return channel < n_thermometers_ ? fit_thermometer(g, c, normal.n[channel], counts_from_start_[channel] != 0, smoothness)
                                    : fit_displacement(g, c, normal.n[channel], smoothness);
 }
 
-ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
+ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                           const Smoothness& smoothness) const {
-  // Columns of shares: bodies, then the ambient itself; beside them one constant, and starts.
-  const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = n_bodies + n_direct_, n_beside = 1 + n_starts_;
+  // Columns of shares: bodies, then the ambient itself; beside them one constant, or one of each record, and starts.
+  const Eigen::Index n_constants = is_rise ? n_records_ : 1;
+  const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = n_bodies + n_direct_, n_beside = n_constants + n_starts_;
   Eigen::MatrixXd to = Eigen::MatrixXd::Zero(g.rows(), n_shares + n_beside);
   for (Eigen::Index b = 0; b < n_heated_; ++b) {
     to(b, b) = 1.0;
@@ -133,8 +158,8 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
   }
   for (Eigen::Index b = n_heated_; b < n_shares; ++b) to(b, b) = 1.0;
   const Eigen::Index records = n_heated_ + n_ambient_ + n_direct_;
-  to.block(records, n_shares, n_records_, 1).setOnes();
-  for (Eigen::Index s = 0; s < n_starts_; ++s) to(records + n_records_ + s, n_shares + 1 + s) = 1.0;
+  for (Eigen::Index r = 0; r < n_records_; ++r) to(records + r, n_shares + (is_rise ? r : 0)) = 1.0;
+  for (Eigen::Index s = 0; s < n_starts_; ++s) to(records + n_records_ + s, n_shares + n_constants + s) = 1.0;
   Eigen::MatrixXd all = to.transpose() * g * to;
   const Eigen::VectorXd right = to.transpose() * c;
   Eigen::MatrixXd beside = all.bottomRightCorner(n_beside, n_beside);
@@ -158,8 +183,9 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
   fit.weight = shares.head(n_bodies);
   fit.of_ambient = has_ambient_ ? shares[n_bodies] : 0.0;
   const Eigen::VectorXd rest = factor.solve(right.tail(n_beside) - cross * shares);
-  fit.offset = rest[0];
+  fit.offset = is_rise ? 0.0 : rest[0];
   fit.of_records = Eigen::VectorXd::Zero(n_records_ + n_starts_);
+  if (is_rise) fit.of_records.head(n_records_) = rest.head(n_records_);
   fit.of_records.tail(n_starts_) = rest.tail(n_starts_);
   return fit;
 }
@@ -206,11 +232,11 @@ Eigen::VectorXd FosterProblem::heated_K(std::size_t body) const {
   return b < n_heated_ ? Eigen::VectorXd(columns_.col(b)) : Eigen::VectorXd::Zero(columns_.rows());
 }
 
-Eigen::VectorXd FosterProblem::misses(std::size_t channel, const ChannelFit& fit) const {
-  Eigen::VectorXd e = measured(channel) - predicted(channel, fit, true);
-  if (channel < n_thermometers_) return e;
+Eigen::VectorXd FosterProblem::misses(std::size_t channel, const ChannelFit& fit, bool in_records) const {
+  Eigen::VectorXd e = measured(channel) - predicted(channel, fit, in_records);
+  if (!counts_from_start_[channel]) return e;
   for (std::size_t r = 0; r + 1 < first_row_.size(); ++r) {
-    if (fit.of_records[static_cast<Eigen::Index>(r)] != 0.0) continue;
+    if (in_records && fit.of_records[static_cast<Eigen::Index>(r)] != 0.0) continue;
     const auto at = static_cast<Eigen::Index>(first_row_[r]), n = static_cast<Eigen::Index>(first_row_[r + 1]) - at;
     auto of_record = e.segment(at, n);
     const auto first = std::find_if(of_record.begin(), of_record.end(), [](double v) { return std::isfinite(v); });

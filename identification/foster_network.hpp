@@ -4,7 +4,8 @@
 //
 //     tau_k dT_b/dt = T_ambient - T_b + rise_b u_b(t),   theta_c = offset_c + sum_b v_cb T_b + v_c T_ambient,  v >= 0, sum v <= 1,   d_c = sum_b s_cb (T_b - T_b(0))
 //
-// Any linear network of positive capacities and conductances has such a form between a drive and a reading (Foster); means with positive weights keep thermometers passive
+// T_ambient is the ambient less its first value in the record. Between a drive and what it heats any linear network of positive capacities and conductances has such a form (Foster).
+// A thermometer far from the heat, which follows a step in an S, has weights of both signs and is not met; means with positive weights keep thermometers passive
 // at drives that were never fitted; what is left of the sum is a share of something that keeps its temperature: a floor, a cooled part. Given time constants and laws it is linear in v and s, so that there is one best fit and no start to choose.
 // Sources: Foster, Bell System Technical Journal 3 (1924) 259-267; for heat: Gerstenmaier & Wachutka, Microelectronics Reliability 44 (2004) 1469.
 
@@ -37,10 +38,11 @@ struct Smoothness {
 struct ChannelFit {
   Eigen::VectorXd weight;   ///< v of bodies; or s [um/K]
   double of_ambient = 0.0;  ///< v of the ambient itself; of a displacement 0
-  double offset = 0.0;      ///< of a thermometer [K]
+  double offset = 0.0;      ///< of a thermometer in degC [K]
   Eigen::VectorXd
-      of_records;  ///< what is true of records alone: a constant of each (of displacements), then each pole's part of how warm it begins
-  Eigen::VectorXd standard_deviation;  ///< of `weight` of a displacement, rows that are alike counted once; else empty
+      of_records;  ///< what is true of records alone: a constant of each (of displacements and rises), then each pole's part of how warm it begins
+  Eigen::VectorXd
+      standard_deviation;  ///< of the heated part of a displacement, n rows counted as n / rows_as_one(); else empty
 };
 
 struct NetworkBody {
@@ -54,14 +56,16 @@ struct NetworkBody {
 class FosterProblem {
  public:
   /// @param rise_K  of heated bodies where their law is 1: larger than any thermometer's rise, for thermometers are means
-  FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K);
+  /// @param blocks  of each record: so many rows are taken as one, by their means, once all are computed
+  FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K,
+                const std::vector<std::size_t>& blocks);
 
   [[nodiscard]] const std::vector<NetworkBody>& bodies() const { return bodies_; }
   [[nodiscard]] const Structure& structure() const { return structure_; }
   [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }  ///< thermometers, then displacements
   [[nodiscard]] std::size_t n_thermometers() const { return n_thermometers_; }
   [[nodiscard]] std::size_t n_rows() const { return static_cast<std::size_t>(columns_.rows()); }
-  [[nodiscard]] double reference_degC() const { return reference_degC_; }  ///< the ambient in the first row, else 20
+  [[nodiscard]] double reference_degC() const { return reference_degC_; }  ///< the ambient in the first row of all, else 20
 
   /// Normal equations of the rows that count, one of each set of rows that channels have. Rows of all records, one after the other.
   struct Normal {
@@ -74,25 +78,25 @@ class FosterProblem {
   [[nodiscard]] Normal normal(const std::vector<bool>& hidden) const;
 
   [[nodiscard]] ChannelFit fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const;
-  /// What the network says of all rows. Thermometers less the reference. @param in_records  with what is true of records alone
+  /// What the network says of all rows. Thermometers less the first ambient of their record. @param in_records  with what is true of records alone
   [[nodiscard]] Eigen::VectorXd predicted(std::size_t channel, const ChannelFit& fit, bool in_records) const;
-  /// How much warmer a body is than the reference.
+  /// How much warmer a body is than the first ambient of its record.
   [[nodiscard]] Eigen::VectorXd body_K(std::size_t body) const { return body_columns_.col(static_cast<Eigen::Index>(body)); }
   /// The part of it that is heat's; of a body that none heats 0.
   [[nodiscard]] Eigen::VectorXd heated_K(std::size_t body) const;
   [[nodiscard]] const Eigen::VectorXd& ambient_K() const { return ambient_K_; }
-  /// Readings of a channel, thermometers less the reference; NaN where missing.
+  /// Readings of a channel, thermometers in degC less the first ambient of their record; NaN where missing.
   [[nodiscard]] Eigen::VectorXd measured(std::size_t channel) const {
     return readings_.col(static_cast<Eigen::Index>(channel));
   }
   /// What is missed row by row, with what is true of records alone; NaN where there is no reading. A displacement of a record of which no row was fitted to counts from its
-  /// first reading.
-  [[nodiscard]] Eigen::VectorXd misses(std::size_t channel, const ChannelFit& fit) const;
+  /// first reading. @param in_records  false: as the written scenario is simulated, which knows nothing of a record's own; displacements and rises count from their first readings
+  [[nodiscard]] Eigen::VectorXd misses(std::size_t channel, const ChannelFit& fit, bool in_records = true) const;
   /// Root mean square of some of these rows; NaN where there is none.
   [[nodiscard]] static double rms(const Eigen::VectorXd& misses, const std::vector<bool>& rows);
 
  private:
-  [[nodiscard]] ChannelFit fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
+  [[nodiscard]] ChannelFit fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                            const Smoothness& smoothness) const;
   [[nodiscard]] ChannelFit fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
                                             const Smoothness& smoothness) const;
@@ -103,8 +107,9 @@ class FosterProblem {
   std::vector<NetworkBody> bodies_;
   std::vector<std::string> channels_;
   std::size_t n_thermometers_ = 0;
-  std::vector<std::size_t> first_row_;  ///< of each record, and one behind the last
-  Eigen::MatrixXd body_columns_;        ///< T_b less the reference
+  std::vector<char> counts_from_start_;  ///< of each channel: a displacement, or a rise in K
+  std::vector<std::size_t> first_row_;   ///< of each record, and one behind the last
+  Eigen::MatrixXd body_columns_;         ///< T_b less the reference
   Eigen::VectorXd ambient_K_;
   Eigen::MatrixXd
       columns_;  ///< heated parts, ambient parts, ambient, a constant of each record, start of each record and pole

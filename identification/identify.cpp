@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "base/rows_as_one.hpp"
 #include "compensation/judging/folds.hpp"
 
 namespace driftwright::identification {
@@ -23,7 +24,11 @@ constexpr double kRest = 0.05;                          // of the top speed: slo
 constexpr double kHottest = 3.0;                        // rise of heated bodies over the largest of a thermometer
 constexpr double kDefaultRise_K = 10.0;                 // where there is no thermometer
 constexpr double kFloor = 0.02;                         // of a channel's deviation: misses below are not told from nothing
-constexpr double kMostRows = 3000.0;                    // of all records; more are thinned evenly
+constexpr double kLagOfSign = 0.03;                     // of a record, behind which a column is held against thermometers
+constexpr std::size_t kFewestBlocks = 30;
+constexpr double kMostRows = 3000.0;  // of all records; more are thinned evenly
+
+std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks);
 
 /// Folds as rows of all records, one after the other.
 struct HiddenRows {
@@ -54,9 +59,9 @@ std::vector<HiddenRows> hidden_rows(std::span<const Record> records, const Recor
 
 /// Logarithms of kept-out misses: a row a fold, a column a channel.
 struct Loss {
-  Eigen::MatrixXd log_rms;
-  Eigen::VectorXd of_fold;  ///< mean over channels, thermometers and displacements half each; NaN where none judges
-  double mean = 0.0;        ///< over kinds of the mean over their folds
+  Eigen::MatrixXd log_rms, rms;  ///< with a floor; without
+  Eigen::VectorXd of_fold;       ///< mean over channels, thermometers and displacements half each; NaN where none judges
+  double mean = 0.0;             ///< over kinds of the mean over their folds
 };
 
 double mean_of_kinds(const Eigen::VectorXd& of_fold, const std::vector<HiddenRows>& folds) {
@@ -72,6 +77,21 @@ double mean_of_kinds(const Eigen::VectorXd& of_fold, const std::vector<HiddenRow
   return kinds.empty() ? 0.0 : sum / static_cast<double>(kinds.size());
 }
 
+/// Whether one is no worse than another beyond a standard error of their difference over the folds.
+bool is_as_good(const Loss& one, const Loss& best) {
+  std::vector<double> worse;
+  for (Eigen::Index f = 0; f < one.of_fold.size(); ++f) {
+    const double d = one.of_fold[f] - best.of_fold[f];
+    if (std::isfinite(d)) worse.push_back(d);
+  }
+  if (worse.size() < 2) return one.mean <= best.mean;
+  const auto n = static_cast<double>(worse.size());
+  double mean = 0.0, squares = 0.0;
+  for (double d : worse) mean += d / n;
+  for (double d : worse) squares += (d - mean) * (d - mean);
+  return one.mean - best.mean <= std::sqrt(squares / (n - 1.0) / n);
+}
+
 struct Judged {
   Structure structure;
   Smoothness smoothness;
@@ -83,56 +103,88 @@ struct Judged {
 /// A structure judged by kept-out rows.
 class Jury {
  public:
-  Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K)
-      : records_(records), roles_(roles), rise_K_(rise_K), folds_(hidden_rows(records, roles)) {}
+  Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K, const std::vector<std::size_t>& blocks)
+      : records_(records),
+        roles_(roles),
+        rise_K_(rise_K),
+        blocks_(blocks),
+        folds_(hidden_rows(thinned(records, blocks), roles)) {}
   [[nodiscard]] const std::vector<HiddenRows>& folds() const { return folds_; }
 
   /// With the penalties that do best; of those given alone, where there are some.
   [[nodiscard]] Judged judged(const Structure& structure, const std::optional<Smoothness>& only = {}) const {
-    const FosterProblem problem(records_, roles_, structure, rise_K_);
+    const FosterProblem problem(records_, roles_, structure, rise_K_, blocks_);
     std::vector<FosterProblem::Normal> normals;
     for (const HiddenRows& f : folds_) normals.push_back(problem.normal(f.hidden));
     const std::size_t n_t = problem.n_thermometers(), n_c = problem.channels().size();
     Judged result{.structure = structure, .smoothness = {}, .loss = {}, .n_bodies = problem.bodies().size()};
     result.loss.log_rms.setConstant(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(n_c),
                                     std::numeric_limits<double>::quiet_NaN());
-    const auto try_all = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& tried, const auto& take) {
-      double least = std::numeric_limits<double>::max();
-      for (const Smoothness& s : tried) {
-        Eigen::MatrixXd log_rms(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(to - from));
-        for (std::size_t f = 0; f < folds_.size(); ++f) {
-          for (std::size_t c = from; c < to; ++c) {
-            const double rms = FosterProblem::rms(problem.misses(c, problem.fit(normals[f], c, s)), folds_[f].hidden);
-            log_rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c - from)) =
-                std::log(std::hypot(rms, kFloor * deviation(problem.measured(c))));
+    result.loss.rms = result.loss.log_rms;
+    // Of some channels: what penalties do best where records begin in balance, and where their starts are free; these where the scenario that is written, which knows of none, is better with them beyond a standard error.
+    const auto try_all = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& in_balance,
+                             const std::vector<Smoothness>& free, const auto& take) {
+      const auto width = static_cast<Eigen::Index>(to - from);
+      struct Best {
+        Smoothness smoothness;
+        Eigen::MatrixXd log_rms, rms;
+        Loss loss, simulated;  ///< with what is true of a record alone, and as the written scenario is simulated
+      };
+      const auto best_of = [&](const std::vector<Smoothness>& tried) {
+        Best best;
+        best.loss.mean = std::numeric_limits<double>::max();
+        for (const Smoothness& s : tried) {
+          Eigen::MatrixXd log_rms(static_cast<Eigen::Index>(folds_.size()), width), rms = log_rms, simulated = log_rms;
+          for (std::size_t f = 0; f < folds_.size(); ++f) {
+            for (std::size_t c = from; c < to; ++c) {
+              const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c - from);
+              const ChannelFit fit = problem.fit(normals[f], c, s);
+              const double floor = kFloor * deviation(problem.measured(c));
+              rms(row, column) = FosterProblem::rms(problem.misses(c, fit), folds_[f].hidden);
+              log_rms(row, column) = std::log(std::hypot(rms(row, column), floor));
+              simulated(row, column) =
+                  std::log(std::hypot(FosterProblem::rms(problem.misses(c, fit, false), folds_[f].hidden), floor));
+            }
           }
+          const auto loss_of = [&](const Eigen::MatrixXd& logs) {
+            Loss loss{.log_rms = {}, .rms = {}, .of_fold = mean_over_channels(logs)};
+            loss.mean = mean_of_kinds(loss.of_fold, folds_);
+            return loss;
+          };
+          Loss loss = loss_of(log_rms);
+          if (loss.mean < best.loss.mean)
+            best = {s, std::move(log_rms), std::move(rms), std::move(loss), loss_of(simulated)};
         }
-        const double loss = mean_of_kinds(mean_over_channels(log_rms), folds_);
-        if (!(loss < least)) continue;
-        least = loss;
-        take(s);
-        result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)) = log_rms;
+        return best;
+      };
+      Best best = best_of(in_balance);
+      if (!free.empty()) {
+        Best other = best_of(free);
+        if (!is_as_good(best.simulated, other.simulated)) best = std::move(other);
       }
+      take(best.smoothness);
+      result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), width) = best.log_rms;
+      result.loss.rms.middleCols(static_cast<Eigen::Index>(from), width) = best.rms;
     };
-    std::vector<Smoothness> of_thermometers, of_displacements;
+    std::vector<Smoothness> of_thermometers[2], of_displacements[2];
     if (only) {
-      of_thermometers = of_displacements = {*only};
+      of_thermometers[0] = of_displacements[0] = {*only};
     } else {
-      for (double start : kStarts) {
+      for (std::size_t free : {0, 1}) {
         for (double p : kPenalties) {
-          of_thermometers.push_back({.thermometers = p, .start_of_thermometers = start});
+          of_thermometers[free].push_back({.thermometers = p, .start_of_thermometers = kStarts[free]});
           for (double a : kPenalties)
-            of_displacements.push_back({.drive = p, .ambient = a, .start_of_displacements = start});
+            of_displacements[free].push_back({.drive = p, .ambient = a, .start_of_displacements = kStarts[free]});
         }
       }
     }
     if (n_t > 0)
-      try_all(0, n_t, of_thermometers, [&](const Smoothness& s) {
+      try_all(0, n_t, of_thermometers[0], of_thermometers[1], [&](const Smoothness& s) {
         result.smoothness.thermometers = s.thermometers;
         result.smoothness.start_of_thermometers = s.start_of_thermometers;
       });
     if (n_c > n_t)
-      try_all(n_t, n_c, of_displacements, [&](const Smoothness& s) {
+      try_all(n_t, n_c, of_displacements[0], of_displacements[1], [&](const Smoothness& s) {
         result.smoothness.drive = s.drive;
         result.smoothness.ambient = s.ambient;
         result.smoothness.start_of_displacements = s.start_of_displacements;
@@ -182,23 +234,9 @@ class Jury {
   std::span<const Record> records_;
   const RecordRoles& roles_;
   double rise_K_;
+  const std::vector<std::size_t>& blocks_;
   std::vector<HiddenRows> folds_;
 };
-
-/// Whether one is no worse than the best beyond a standard error of their difference over the folds.
-bool is_as_good(const Judged& one, const Judged& best) {
-  std::vector<double> worse;
-  for (Eigen::Index f = 0; f < one.loss.of_fold.size(); ++f) {
-    const double d = one.loss.of_fold[f] - best.loss.of_fold[f];
-    if (std::isfinite(d)) worse.push_back(d);
-  }
-  if (worse.size() < 2) return one.loss.mean <= best.loss.mean;
-  const auto n = static_cast<double>(worse.size());
-  double mean = 0.0, squares = 0.0;
-  for (double d : worse) mean += d / n;
-  for (double d : worse) squares += (d - mean) * (d - mean);
-  return one.loss.mean - best.loss.mean <= std::sqrt(squares / (n - 1.0) / n);
-}
 
 double top_of(std::span<const Record> records, const std::string& channel) {
   double top = 0.0;
@@ -220,6 +258,8 @@ std::vector<double> time_constants(std::span<const Record> records, std::size_t 
     tau_s.push_back(std::exp(from + (static_cast<double>(k) + 0.5) / static_cast<double>(n) * (to - from)));
   return tau_s;
 }
+
+bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive);
 
 /// Whether a speed stands at two levels at least, rest aside.
 bool has_levels(std::span<const Record> records, const std::string& speed, double top) {
@@ -255,7 +295,10 @@ std::vector<Judged> structures(std::span<const Record> records, const RecordRole
   for (std::size_t l = 0; l < of_speed.size(); ++l) {
     std::vector<Law> laws = of_speed[l];
     for (const std::string& drive : roles.drives)
-      laws.push_back({.kind = Law::Kind::kColumn, .channel = drive, .top = top_of(records, drive)});
+      laws.push_back({.kind = Law::Kind::kColumn,
+                      .channel = drive,
+                      .sign = cools(records, roles, drive) ? -1.0 : 1.0,
+                      .top = top_of(records, drive)});
     for (std::size_t n_poles : kPoles) {
       Judged j;
       j.structure.laws = laws;
@@ -309,43 +352,56 @@ std::string name_of(const NetworkBody& body, const Structure& structure) {
   return law.channel + "_" + time_words(body.tau_s);
 }
 
-/// Every k-th row, so that all records together have no more than kMostRows.
-std::vector<Record> thinned(std::span<const Record> records) {
+/// So many rows of each record are taken as one that all have no more than kMostRows, and each as many as it needs.
+std::vector<std::size_t> blocks_of(std::span<const Record> records) {
   double n = 0.0;
   for (const Record& r : records) n += static_cast<double>(r.n_samples());
   const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(n / kMostRows)));
+  std::vector<std::size_t> blocks;
+  for (const Record& r : records) blocks.push_back(std::clamp<std::size_t>(r.n_samples() / kFewestBlocks, 1, every));
+  return blocks;
+}
+
+/// Records with the first row of each block: what folds are told by.
+std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks) {
   std::vector<Record> few(records.begin(), records.end());
-  if (every == 1) return few;
-  for (Record& r : few) {  // means: what is held from a row on is held over the rows that follow
-    Record all = r;
-    const std::size_t rows = all.n_samples() / every;
-    r.time_s.resize(rows);
-    for (std::size_t i = 0; i < rows; ++i) r.time_s[i] = all.time_s[i * every];
-    for (std::size_t c = 0; c < r.channels.size(); ++c) {
-      std::vector<double>& values = r.channels[c].values;
-      values.assign(rows, 0.0);
-      for (std::size_t i = 0; i < rows; ++i) {
-        double sum = 0.0, there = 0.0;
-        for (std::size_t k = 0; k < every; ++k) {
-          const double v = all.channels[c].values[i * every + k];
-          if (!std::isfinite(v)) continue;
-          sum += v;
-          there += 1.0;
-        }
-        values[i] = there > 0.0 ? sum / there : std::numeric_limits<double>::quiet_NaN();
-      }
-    }
+  for (std::size_t r = 0; r < few.size(); ++r) {
+    const std::size_t rows = few[r].n_samples() / blocks[r];
+    const auto keep = [&](std::vector<double>& v) {
+      for (std::size_t i = 0; i < rows; ++i) v[i] = v[i * blocks[r]];
+      v.resize(rows);
+    };
+    keep(few[r].time_s);
+    for (Channel& c : few[r].channels) keep(c.values);
   }
   return few;
 }
 
+/// Whether thermometers fall, most of them, where a column rises.
+bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive) {
+  double votes = 0.0;
+  for (const std::string& t : roles.thermometers) {
+    double product = 0.0, size = 0.0;
+    for (const Record& r : records) {
+      Eigen::VectorXd x = lagged_steps(r.time_s, held(r.at(drive)), kLagOfSign * (r.time_s.back() - r.time_s.front()));
+      Eigen::VectorXd y = held(r.at(t));
+      x.array() -= x.mean();
+      y.array() -= y.mean();
+      product += x.dot(y);
+      size += x.norm() * y.norm();
+    }
+    if (size > 0.0) votes += product / size;
+  }
+  return votes < 0.0;
+}
+
 }  // namespace
 
-Identified identify(std::span<const Record> all_rows, const RoleHints& hints, const Listener& listener) {
+Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener) {
   Identified result;
-  result.roles = record_roles(all_rows, hints);
+  result.roles = record_roles(records, hints);
   const RecordRoles& roles = result.roles;
-  const std::vector<Record> records = thinned(all_rows);
+  const std::vector<std::size_t> blocks = blocks_of(records);
 
   double rise_K = 0.0;
   for (const std::string& t : roles.thermometers) {
@@ -357,7 +413,7 @@ Identified identify(std::span<const Record> all_rows, const RoleHints& hints, co
   rise_K = rise_K > 0.0 ? kHottest * rise_K : kDefaultRise_K;
 
   listener.begin("laws and number of bodies");
-  const Jury jury(records, roles, rise_K);
+  const Jury jury(records, roles, rise_K, blocks);
   std::vector<Judged> tried = structures(records, roles);
   for_each_index(
       tried.size(), [] { return 0; },
@@ -373,7 +429,7 @@ Identified identify(std::span<const Record> all_rows, const RoleHints& hints, co
   std::stable_sort(order.begin(), order.end(), [](const Judged* a, const Judged* b) {
     return a->n_bodies != b->n_bodies ? a->n_bodies < b->n_bodies : a->has_default_exponent > b->has_default_exponent;
   });
-  Judged now = **std::find_if(order.begin(), order.end(), [&](const Judged* j) { return is_as_good(*j, least); });
+  Judged now = **std::find_if(order.begin(), order.end(), [&](const Judged* j) { return is_as_good(j->loss, least.loss); });
 
   listener.begin("bodies that are not missed");
   const bool has_ambient = !roles.ambient.empty();
@@ -403,11 +459,12 @@ Identified identify(std::span<const Record> all_rows, const RoleHints& hints, co
   }
 
   listener.begin("fitting");
-  const FosterProblem problem(records, roles, now.structure, rise_K);
+  const FosterProblem problem(records, roles, now.structure, rise_K, blocks);
   const std::vector<bool> none(problem.n_rows(), false), every(problem.n_rows(), true);
   const FosterProblem::Normal normal = problem.normal(none);
   result.structure = now.structure;
   result.smoothness = now.smoothness;
+  result.blocks = blocks;
   result.reference_degC = problem.reference_degC();
   for (std::size_t b = 0; b < problem.bodies().size(); ++b)
     result.bodies.push_back({problem.bodies()[b], name_of(problem.bodies()[b], now.structure), gains[b]});
@@ -431,7 +488,7 @@ Identified identify(std::span<const Record> all_rows, const RoleHints& hints, co
     for (KeptOutKind& kind : result.kinds) {
       double logs = 0.0, there = 0.0;
       for (std::size_t f = 0; f < jury.folds().size(); ++f) {
-        const double log = now.loss.log_rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c));
+        const double log = std::log(now.loss.rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c)));
         if (jury.folds()[f].kind != kind.kind || !std::isfinite(log)) continue;
         logs += log;
         there += 1.0;
@@ -442,7 +499,9 @@ Identified identify(std::span<const Record> all_rows, const RoleHints& hints, co
       n += 1.0;
     }
     channel.missed_kept_out = n > 0.0 ? std::exp(sum / n) : std::numeric_limits<double>::quiet_NaN();
-    if (channel.fit.standard_deviation.size() > 0) channel.fit.standard_deviation *= channel.missed_own;
+    channel.missed_simulated = FosterProblem::rms(problem.misses(c, channel.fit, false), every);
+    if (channel.fit.standard_deviation.size() > 0)
+      channel.fit.standard_deviation *= channel.missed_own * std::sqrt(rows_as_one(std::span(&channel.misses, 1)));
     result.channels.push_back(std::move(channel));
   }
   return result;

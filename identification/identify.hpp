@@ -22,8 +22,10 @@ struct IdentifiedBody {
 struct IdentifiedChannel {
   std::string name, unit;  ///< degC, K (a rise over the reference) or um
   ChannelFit fit;
-  double swing = 0.0;            ///< standard deviation of the readings
-  double missed_own = 0.0;       ///< root mean square of the rows that were fitted to
+  double swing = 0.0;       ///< standard deviation of the readings
+  double missed_own = 0.0;  ///< root mean square of the rows that were fitted to
+  double missed_simulated =
+      0.0;  ///< the same rows as the written scenario is simulated, in balance at the start of each record
   double missed_kept_out = 0.0;  ///< geometric mean over kinds of kept-out rows
   Eigen::VectorXd predicted;     ///< all rows, with what is true of records alone
   Eigen::VectorXd misses;        ///< of these; NaN where there is no reading
@@ -38,11 +40,11 @@ struct Identified {
   std::vector<IdentifiedBody> bodies;       ///< in the order of bodies_of()
   std::vector<IdentifiedChannel> channels;  ///< thermometers, then displacements
   std::vector<KeptOutKind> kinds;
-  std::vector<std::string> notes;  ///< sentences: what could not be told
+  std::vector<std::size_t> blocks;  ///< of each record, so many rows are one in what is kept of rows
 };
 
 /// Laws that are tried: of the speed, on while it turns, a power of it (5/3, viscous friction of bearings, unless kept-out rows speak for another), or both; of other drives, in
-/// proportion. Time constants lie in even steps of their logarithm between three rows and a third of the longest record. Of all, the network with the fewest bodies whose kept-out
+/// proportion. Time constants lie in even steps of their logarithm between three rows, or 0.3 % of the longest record, and a third of that. Of all, the network with the fewest bodies whose kept-out
 /// misses are within a standard error of the least; then bodies go that kept-out rows do not miss.
 /// @throws InputError  as record_roles()
 /// Source of the exponent: Palmgren's friction torque M ~ (nu n)^(2/3): Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed. (2006), ch. 10.

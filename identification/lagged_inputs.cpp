@@ -17,7 +17,7 @@ double Law::value(double of_channel) const {
     case Kind::kPower:
       return std::pow(std::abs(share), exponent);
     case Kind::kColumn:
-      return share;
+      return sign * share;
   }
   return 0.0;
 }

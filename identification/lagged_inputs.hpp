@@ -15,6 +15,7 @@ struct Law {
   Kind kind = Kind::kTurning;
   std::string channel;
   double exponent = 1.0;  ///< of kPower
+  double sign = 1.0;      ///< of kColumn: -1 where it cools
   double top = 1.0;       ///< the channel's largest absolute value in the records, at which the law is 1
   [[nodiscard]] double value(double of_channel) const;
 };

@@ -67,7 +67,7 @@ std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, co
     if (bodies[b].law) {
       Parts& of = parts[*bodies[b].law];
       of.course += weight * problem.heated_K(b);
-      of.gain_tau.emplace_back(weight * bodies[b].rise_K, bodies[b].tau_s);
+      of.gain_tau.emplace_back(weight * bodies[b].rise_K * problem.structure().laws[*bodies[b].law].sign, bodies[b].tau_s);
     }
     ambient.course += weight * (problem.body_K(b) - problem.heated_K(b));
     ambient.gain_tau.emplace_back(weight, bodies[b].tau_s);

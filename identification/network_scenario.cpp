@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -15,12 +16,21 @@ constexpr double kThermometer_J_K = 1.0, kThermometerTau_s = 20.0;
 constexpr const char* kStill = "floor";
 constexpr double kStill_J_K = 1e12, kStillTau_s = 1e9;  // stands for ever where it began
 
-constexpr double kLeastShare = 0.01;
+constexpr double kLeastShare = 1e-4;  // a heated body rises some times as much as the hottest thermometer
 constexpr double kLeastOffset_K = 0.005;
 
 /// A number with its digits and no more.
 std::string digits(double value) {
   return fmt::format("{:.5g}", value);
+}
+
+/// A name as YAML reads it as one.
+std::string word(const std::string& name) {
+  static const std::set<std::string> kOther = {"yes", "no", "true", "false", "on", "off", "null", "y", "n"};
+  std::string small = name;
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return kOther.contains(small) || !std::isalpha(static_cast<unsigned char>(name.front())) ? "\"" + name + "\"" : name;
 }
 
 std::string heat(const Identified& network, const IdentifiedBody& b) {
@@ -36,8 +46,8 @@ std::string heat(const Identified& network, const IdentifiedBody& b) {
     case Law::Kind::kColumn:
       break;
   }
-  return fmt::format("  - {{type: recorded_drive, node: {}, column: {}, gain: {}}}\n", b.name, law.channel,
-                     digits(power_W / law.top));
+  return fmt::format("  - {{type: recorded_drive, node: {}, column: {}, gain: {}}}\n", b.name, word(law.channel),
+                     digits(law.sign * power_W / law.top));
 }
 
 }  // namespace
@@ -102,26 +112,25 @@ std::string network_scenario(const Identified& network, const std::string& name,
     if (std::abs(c.fit.offset) > kLeastOffset_K)  // heat of its own: it stands so far from what it is a mean of
       text += fmt::format("  - {{type: heat_source, node: at_{}, power: {} W}}\n", c.name, digits(whole_W_K * c.fit.offset));
   }
-  text += has_ambient ? fmt::format("\nambient: {{csv: {}, channel: {}}}\n", records.front(), roles.ambient)
+  text += has_ambient ? fmt::format("\nambient: {{csv: {}, channel: {}}}\n", records.front(), word(roles.ambient))
                       : fmt::format("\nambient: {} degC\n", digits(network.reference_degC));
-  text += "\nsensors:\n";
-  if (has_ambient) text += fmt::format("  - {{name: {}, node: ambient}}\n", roles.ambient);
+  if (has_ambient || !roles.thermometers.empty()) text += "\nsensors:\n";
+  if (has_ambient) text += fmt::format("  - {{name: {}, node: ambient}}\n", word(roles.ambient));
   for (const IdentifiedChannel& c : network.channels) {
-    if (c.unit != "um") text += fmt::format("  - {{name: {}, node: at_{}}}\n", c.name, c.name);
+    if (c.unit != "um") text += fmt::format("  - {{name: {}, node: at_{}}}\n", word(c.name), c.name);
   }
   is_first = true;
   for (const IdentifiedChannel& c : network.channels) {
     if (c.unit != "um") continue;
     if (is_first) text += "\ndisplacements:\n";
     is_first = false;
-    text += fmt::format("  - name: {}\n    sensitivities:\n", c.name);
+    text += fmt::format("  - name: {}\n    sensitivities:\n", word(c.name));
     for (std::size_t b : used)
       text += fmt::format("      - {{node: {}, sensitivity: {} um/K}}\n", network.bodies[b].name,
                           digits(c.fit.weight[static_cast<Eigen::Index>(b)]));
   }
   text += "\ncyclograms:\n";
-  for (const std::string& record : records)
-    text += fmt::format("  {}: {{csv: {}}}\n", std::filesystem::path(record).stem().string(), record);
+  text += fmt::format("  {}: {{csv: {}}}\n", word(std::filesystem::path(records.front()).stem().string()), records.front());
   return text + "\nsolver: {output_interval: 1 min}\n";
 }
 

@@ -6,9 +6,9 @@
 namespace driftwright::identification {
 
 /// Bodies of 1 MJ/K, which is a scale: heat over conductance, and time constants, are what records tell. A thermometer is a node of 1 J/K that hangs on the bodies it is a
-/// mean of, and does not load them (below 0.1 %). Shares below a hundredth are left out.
+/// mean of, and does not load them (below 0.1 %). Shares below 1e-4 are left out.
 /// @param name    of the scenario
-/// @param records  files beside it that hold drive and ambient as run_record() makes them; the ambient is that of the first
+/// @param records  files beside it that hold drive and ambient as run_record() makes them; the scenario's cyclogram and ambient are those of the first, for a scenario has one ambient
 /// @param head     comment lines
 [[nodiscard]] std::string network_scenario(const Identified& network, const std::string& name,
                                            const std::vector<std::string>& records, const std::vector<std::string>& head);

@@ -17,17 +17,33 @@ namespace {
 
 constexpr std::size_t kFewestRows = 30;  // of a record
 constexpr double kAmbientFollows = 0.5;  // of its squares that drives explain: more is no ambient
+constexpr double kHole = 10.0;           // usual steps
 constexpr std::array kDriveUnits = {"W", "V", "percent", "W_m2", "1", "mm_min", "count"};
-constexpr std::array kAmbientNames = {"ambient", "room", "hall", "outdoor", "environment", "surrounding", "chamber_air"};
+constexpr std::array kAmbientNames = {"ambient", "room", "hall", "outdoor", "environment", "surroundings"};
 
 std::string lower(std::string s) {
   std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return s;
 }
 
+/// Whether one of the words of a name, parted by '_', is one of an ambient.
 bool is_ambient_name(const std::string& name) {
-  return std::any_of(kAmbientNames.begin(), kAmbientNames.end(),
-                     [&](const char* n) { return lower(name).find(n) != std::string::npos; });
+  return std::any_of(kAmbientNames.begin(), kAmbientNames.end(), [&](const std::string& word) {
+    return ("_" + lower(name) + "_").find("_" + word + "_") != std::string::npos;
+  });
+}
+
+/// What a scenario may call an output, a column or a node.
+bool is_plain(const std::string& name) {
+  return !name.empty() &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+bool has_readings(std::span<const Record> records, const std::string& channel) {
+  return std::all_of(records.begin(), records.end(), [&](const Record& r) {
+    const std::vector<double>& v = r.at(channel).values;
+    return std::any_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+  });
 }
 
 bool changes(std::span<const Record> records, const std::string& channel) {
@@ -85,6 +101,21 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
     else
       roles.guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
   }
+  for (const Record& r : records.subspan(1)) {
+    for (const Channel& c : r.channels) {
+      if (!first.find(c.name))
+        roles.guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
+    }
+  }
+  for (const std::string& name : std::vector<std::string>(common.begin(), common.end())) {
+    if (!is_plain(name))
+      throw InputError(
+          fmt::format("{}: a scenario cannot hold the name '{}': letters, digits, '_' and '-' alone; rename the column",
+                      first.source, name));
+    if (has_readings(records, name)) continue;
+    roles.guesses.push_back(fmt::format("'{}' takes no part: a record has no reading of it", name));
+    common.erase(name);
+  }
   for (const Record& r : records) {
     if (r.n_samples() < kFewestRows)
       throw InputError(
@@ -94,10 +125,13 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
   const auto require_common = [&](const std::string& name, const std::string& option) {
     if (!common.contains(name)) {
       (void)first.at(name);
-      throw InputError(fmt::format("{} {}: not all records have it", option, name));
+      throw InputError(fmt::format("{} {}: not all records have readings of it", option, name));
     }
   };
-  for (const std::string& drive : hints.drives) require_common(drive, "--drive");
+  for (const std::string& drive : hints.drives) {
+    require_common(drive, "--drive");
+    if (drive == hints.ambient) throw InputError(fmt::format("'{}' cannot be both --drive and --ambient", drive));
+  }
   if (!hints.ambient.empty()) {
     require_common(hints.ambient, "--ambient");
     if (first.at(hints.ambient).unit != "degC")
@@ -108,12 +142,13 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
   for (const Channel& c : first.channels) {
     if (!common.contains(c.name)) continue;
     const bool is_hinted = std::find(hints.drives.begin(), hints.drives.end(), c.name) != hints.drives.end();
-    if (is_hinted || std::find(kDriveUnits.begin(), kDriveUnits.end(), c.unit) != kDriveUnits.end()) {
+    const bool is_speed = c.unit == "rpm" && roles.speed.empty();
+    if ((is_hinted && !is_speed) || std::find(kDriveUnits.begin(), kDriveUnits.end(), c.unit) != kDriveUnits.end()) {
       if (changes(records, c.name))
         roles.drives.push_back(c.name);
       else
         roles.guesses.push_back(fmt::format("'{}' never changes and drives nothing", c.header()));
-    } else if (c.unit == "rpm" && roles.speed.empty()) {
+    } else if (is_speed) {
       const bool turns = held(c).cwiseAbs().maxCoeff() > 0.0;
       if (turns || changes(records, c.name)) roles.speed = c.name;
       if (!changes(records, c.name))
@@ -125,6 +160,9 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
       roles.thermometers.push_back(c.name);
     } else if (c.unit == "um") {
       roles.displacements.push_back(c.name);
+    } else if (c.unit == "rpm") {
+      roles.guesses.push_back(fmt::format(
+          "'{}' is a second speed and takes no part; --drive {} makes it a drive, in proportion", c.header(), c.name));
     } else if (c.name != roles.ambient) {
       roles.guesses.push_back(
           fmt::format("'{}' takes no part: a channel in {} is neither drive, thermometer (degC, K) nor displacement (um)",
@@ -140,7 +178,9 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
                     "with a column that does; a machine that is never switched tells nothing of its heat",
                     first.source));
   if (roles.ambient.empty()) {
-    const auto named = std::find_if(roles.thermometers.begin(), roles.thermometers.end(), is_ambient_name);
+    auto named = std::find(roles.thermometers.begin(), roles.thermometers.end(), "ambient");
+    if (named == roles.thermometers.end())
+      named = std::find_if(roles.thermometers.begin(), roles.thermometers.end(), is_ambient_name);
     if (named != roles.thermometers.end()) {
       roles.ambient = *named;
       roles.guesses.push_back(fmt::format("'{}' is the ambient, by its name", *named));
@@ -171,6 +211,25 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
           "tell");
     }
     std::erase(roles.thermometers, roles.ambient);
+  }
+  for (const auto* names : {&roles.thermometers, &roles.displacements, &roles.drives}) {
+    for (const std::string& name : *names) {
+      if (name == "ambient" || (name == "speed" && roles.speed != name))
+        throw InputError(
+            fmt::format("{}: the column '{}' is none of the {}; a scenario has no other of that name: rename it",
+                        first.source, name, name == "speed" ? "spindle" : "ambient"));
+    }
+  }
+  for (const Record& r : records) {
+    std::vector<double> steps_s;
+    for (std::size_t i = 1; i < r.n_samples(); ++i) steps_s.push_back(r.time_s[i] - r.time_s[i - 1]);
+    std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
+    const double usual_s = steps_s[steps_s.size() / 2], longest_s = *std::max_element(steps_s.begin(), steps_s.end());
+    if (longest_s > kHole * usual_s)
+      roles.guesses.push_back(
+          fmt::format("{} has a hole of {:.0f} min: what drove the machine before it is held. Where something else happened "
+                      "in it, cut the record there",
+                      r.source, longest_s / 60.0));
   }
   if (roles.thermometers.empty() && roles.displacements.empty())
     throw InputError(

@@ -15,7 +15,7 @@ struct RecordRoles {
   std::string ambient;                     ///< channel in degC, or ""
   std::vector<std::string> thermometers;   ///< in degC, or in K: rises; without the ambient
   std::vector<std::string> displacements;  ///< in um
-  std::vector<std::string> guesses;        ///< sentences: what nobody said
+  std::vector<std::string> guesses;        ///< sentences: what nobody said, and what takes no part
 };
 
 /// What the user says of it.
@@ -24,10 +24,10 @@ struct RoleHints {
   std::vector<std::string> drives;  ///< beside those whose unit makes them one
 };
 
-/// Channels that all records have. In rpm: the speed. In degC: thermometers; of these the ambient is the one that says so by its name (ambient, room, hall, outdoor, t_air),
+/// Channels that all records have. In rpm: the speed. In degC: thermometers; of these the ambient is the one that says so by its name (a word of it: ambient, room, hall, outdoor, environment, surroundings),
 /// else the one that follows the drives least, a guess, if it follows them by less than half. In K: rises of thermometers. In um: displacements. In W, V, percent, count, 1, W_m2, mm_min: drives.
 /// A spindle that turns at one speed all the time counts as switched on in the first row.
-/// @throws InputError  without a drive that changes, without a thermometer or displacement, for a hint that no record has, or records with too few rows
+/// @throws InputError  without a drive that changes, without a thermometer or displacement, for a hint that not all records have, records with too few rows, and names that no scenario can hold
 [[nodiscard]] RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints);
 
 }  // namespace driftwright::identification

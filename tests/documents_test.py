@@ -13,7 +13,7 @@ from pathlib import Path
 
 from result_schema import errors
 
-PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md", "docs/view.md", "docs/warmup.md", "docs/test_planning.md"]
+PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/identification.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md", "docs/view.md", "docs/warmup.md", "docs/test_planning.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 

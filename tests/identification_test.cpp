@@ -19,6 +19,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 TEST(Lags, OfAStepAreExponentials) {
@@ -152,7 +153,7 @@ TEST_F(IdentifiedMachine, PredictsADayItHasNotSeen) {
   const std::vector<Record> other = {measured("other.csv", {{60, 0}, {150, 3600}, {60, 0}, {100, 1200}}, 9, 0.0)};
   double rise_K = 0.0;
   for (const IdentifiedBody& b : network().bodies) rise_K = std::max(rise_K, b.body.rise_K);
-  const FosterProblem problem(other, network().roles, network().structure, rise_K);
+  const FosterProblem problem(other, network().roles, network().structure, rise_K, {1});
   for (std::size_t c = 0; c < network().channels.size(); ++c) {
     const Eigen::VectorXd predicted = problem.predicted(c, network().channels[c].fit, false);
     Eigen::VectorXd e = problem.measured(c) - predicted;
@@ -166,8 +167,76 @@ TEST_F(IdentifiedMachine, IsWrittenAsAScenario) {
   const std::string text = network_scenario(network(), "three_days", {"one.csv", "two.csv"}, {"what it is"});
   EXPECT_THAT(text, AllOf(HasSubstr("# what it is\n"), HasSubstr("name: three_days"), HasSubstr("runs: while_spindle_turns"),
                           HasSubstr("exponent: 1.6667"), HasSubstr("ambient: {csv: one.csv, channel: hall}"),
-                          HasSubstr("two: {csv: two.csv}"), HasSubstr("- {name: t_box, node: at_t_box}"),
-                          HasSubstr("- name: nose\n")));
+                          HasSubstr("- {name: t_box, node: at_t_box}"), HasSubstr("- name: nose\n")));
+}
+
+TEST(Identify, TakesADriveThatCools) {
+  std::vector<Record> records = three_days();
+  for (Record& r : records) {
+    r.channels[0] = {"coolant", "percent", r.channels[0].values};
+    for (double& v : r.channels[0].values) v /= 30.0;
+    for (double& t : r.channels[3].values) t = 40.0 - t;  // falls where it rose
+  }
+  for (Record& r : records) r.channels.erase(r.channels.begin() + 2);
+  const Identified found = identify(records, {.ambient = "hall", .drives = {}});
+  EXPECT_EQ(found.structure.laws.front().sign, -1.0);
+  EXPECT_LT(found.channels.front().ledger.front().in_the_end, -5.0);
+  EXPECT_LT(found.channels.front().missed_own, 0.35 * found.channels.front().swing);
+}
+
+TEST(Identify, WorksWithoutAnAmbientAndWithoutThermometers) {
+  std::vector<Record> records = three_days();
+  for (Record& r : records) {
+    for (double& d : r.channels[4].values) d += 7.0;  // an indicator that was not set to zero
+    r.channels = {r.channels[0], r.channels[4]};
+  }
+  const Identified found = identify(records, {});
+  EXPECT_THAT(found.roles.thermometers, IsEmpty());
+  EXPECT_LT(found.channels.front().missed_own, 0.5 * found.channels.front().swing);
+  EXPECT_THAT(network_scenario(found, "bare", {"one.csv"}, {}),
+              AllOf(HasSubstr("ambient: 20 degC"), Not(HasSubstr("sensors:"))));
+}
+
+// Rows of a long record are taken together, those of a short one beside it are not; lags are of all rows.
+TEST(Identify, TakesRowsTogetherOfLongRecordsAlone) {
+  std::vector<std::pair<double, double>> day;
+  for (int i = 0; i < 40; ++i) day.insert(day.end(), {{90, 1000.0 + 250.0 * (i % 7)}, {60, 0}});
+  const std::vector<Record> records = {measured("long.csv", day, 1, 0.03),
+                                       measured("short.csv", {{20, 0}, {15, 3000}}, 2, 0.03)};
+  const Identified found = identify(records, {.ambient = "hall", .drives = {}});
+  EXPECT_THAT(found.blocks, ElementsAre(3, 1));
+  EXPECT_EQ(found.channels.front().predicted.size(), 6000 / 3 + 35);
+  EXPECT_LT(found.channels.front().missed_own, 0.15);
+}
+
+// Days that begin 8 K apart: each counts from its own first ambient.
+TEST(Identify, CountsEachDayFromItsOwnAmbient) {
+  std::vector<Record> records = three_days();
+  for (Record& r : std::span(records).subspan(1, 1)) {
+    for (std::size_t c : {1, 2, 3}) {
+      for (double& t : r.channels[c].values) t += 8.0;
+    }
+  }
+  const Identified found = identify(records, {.ambient = "hall", .drives = {}});
+  for (std::size_t c : {0, 1}) EXPECT_LT(found.channels[c].missed_simulated, 0.15) << found.channels[c].name;
+}
+
+TEST(RecordRoles, SayWhatTakesNoPart) {
+  std::vector<Record> records = three_days();
+  records[0].channels.push_back({"speed2", "rpm", records[0].channels[0].values});
+  records[0].channels.push_back({"empty", "degC", std::vector<double>(records[0].n_samples(), std::nan(""))});
+  records = {records[0]};
+  records[0].time_s.back() += 86400.0;
+  EXPECT_THAT(record_roles(records, {}).guesses,
+              AllOf(Contains(HasSubstr("'speed2_rpm' is a second speed")), Contains(HasSubstr("'empty' takes no part")),
+                    Contains(HasSubstr("has a hole of 1441 min"))));
+  records[0].channels[2].name = "t [box]";
+  EXPECT_THAT([&] { (void)record_roles(records, {}); }, ThrowsMessage<InputError>(HasSubstr("rename the column")));
+  records[0].channels[2].name = "ambient";
+  EXPECT_THAT([&] { (void)record_roles(records, {.ambient = "hall", .drives = {}}); },
+              ThrowsMessage<InputError>(HasSubstr("none of the ambient")));
+  EXPECT_THAT([&] { (void)record_roles(records, {.ambient = "hall", .drives = {"hall"}}); },
+              ThrowsMessage<InputError>(HasSubstr("both --drive and --ambient")));
 }
 
 TEST(RecordRoles, GuessTheAmbientAndSayIt) {
