@@ -57,7 +57,7 @@ Attempt fitted_by_what_is_missed(const Fitter& fresh, const std::vector<Measured
   return best;
 }
 
-/// Root mean square over the noise of the channels, all rows of all channels, or of displacements, together; NaN where there is none.
+/// What is missed, in units of each channel's noise: root mean square of all rows. @param all  of all channels, else of displacements; NaN where there are none
 double over_noise(const std::map<std::string, OutputError>& errors, const Diagnosis& d, bool all) {
   double squares = 0.0, n = 0.0;
   for (const auto& [name, error] : errors) {
@@ -86,7 +86,7 @@ Judgement judged(const Judge& judge, const Models& models, const std::map<std::s
     const bool all = of == Judge::Of::kAll;
     const double own_misses = over_noise(own, d, all), own_before = over_noise(before, d, all);
     if (std::isnan(own_before)) continue;  // no displacement
-    const KeptOutLoss loss =
+    const MeanError loss =
         kept_out_loss(judge.over_noise_by_fold(models.calibrated, of), judge.over_noise_by_fold(models.written, of));
     j.loss = loss.mean;  // of displacements, where there are some
     const std::string what = all ? "all channels" : "displacements";
@@ -97,7 +97,7 @@ Judgement judged(const Judge& judge, const Models& models, const std::map<std::s
           "with the scenario as "
           "it was",
           what, own_misses, own_before);
-    else if (loss.n_folds < 2)
+    else if (loss.n < 2)
       j.why_not = "fewer than two parts of the records could judge them";
     else if (loss.mean > loss.standard_error)
       j.why_not = fmt::format(
@@ -123,20 +123,10 @@ Eigen::MatrixXd tempered_covariance(const Fitter& fresh, const std::vector<Measu
 
 }  // namespace
 
-KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others) {
+MeanError kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others) {
   std::vector<double> logs;
-  for (std::size_t f = 0; f < misses.size(); ++f) {
-    const double log = std::log(misses[f] / others[f]);
-    if (std::isfinite(log)) logs.push_back(log);
-  }
-  KeptOutLoss loss{.n_folds = logs.size()};
-  if (logs.empty()) return loss;
-  const auto n = static_cast<double>(logs.size());
-  for (double log : logs) loss.mean += log / n;
-  double squares = 0.0;
-  for (double log : logs) squares += std::pow(log - loss.mean, 2);
-  if (logs.size() > 1) loss.standard_error = std::sqrt(squares / (n - 1.0) / n);
-  return loss;
+  for (std::size_t f = 0; f < misses.size(); ++f) logs.push_back(std::log(misses[f] / others[f]));
+  return mean_error(logs);
 }
 
 std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance,
@@ -179,8 +169,8 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   }
   chosen = fitted_by(fresh, runs, d.noise);
   d.weighed_by_model_error = models_own_error(runs, chosen.fitted.fit.prediction, d.noise).has_value();
-  const auto folds = [&] { return folds_of_numbers(runs); };
-  d.holdout = folds().how;
+  const Folds folds = folds_of_numbers(runs);
+  d.holdout = folds.how;
   std::vector<Attempt> attempts;
   if (d.weighed_by_model_error) {
     for (double tempered : kTempered)
@@ -193,8 +183,9 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   const auto before = output_errors(runs, d.as_written);
   Judgement best;
   for (Attempt& attempt : attempts) {
-    Judge judge(*attempt.fitter, attempt.fitted, d.noise, folds().list);
-    const Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(0)};
+    Judge judge(*attempt.fitter, attempt.fitted, d.noise, folds.list);
+    const std::vector<Prediction> filed = judge.filed(0);
+    const Models models{.written = judge.written(), .calibrated = filed, .extended = filed};
     const auto own = output_errors(runs, attempt.fitter->predict_machine({}, attempt.fitted.fit.x, workspace));
     Judgement judgement = judged(judge, models, own, before, d);
     if (!best.is_better_than(judgement)) {
@@ -237,7 +228,7 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   if (!d.written.keeps_numbers) d.extended = d.as_written;
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   for (ChannelGain& g : d.gain) {
-    g.rmse_all_before = shown_scale(g.unit == "K" ? "K" : "m") * before.at(g.name).rms;
+    if (before.contains(g.name)) g.rmse_all_before = shown_scale(g.unit == "K" ? "K" : "m") * before.at(g.name).rms;
     if (!d.written.keeps_numbers) {
       g.rmse_after = g.rmse_before;
       g.peak_after = g.peak_before;

@@ -6,17 +6,14 @@
 // chosen by the rows that are kept out: n/τ of n rows, the root of n n/τ, or all n, which is plain least squares.
 // Source: Grünwald & van Ommen, Bayesian Analysis 12 (2017) 1069-1103: the power of a likelihood whose model is wrong is learnt from what it predicts.
 
+#include "base/mean_error.hpp"
 #include "diagnosis/diagnosis.hpp"
 
 namespace driftwright::diagnosis {
 
-/// How much worse kept-out rows are predicted by one model than by another: mean over the folds of the logarithm of what they miss, and its standard error.
-struct KeptOutLoss {
-  double mean = 0.0, standard_error = 0.0;
-  std::size_t n_folds = 0;  ///< that could judge
-};
+/// How much worse kept-out rows are predicted by one model than by another: the logarithm of what they miss, over the folds.
 /// @param misses, others  root mean squares, a fold each; folds that could not judge are NaN
-[[nodiscard]] KeptOutLoss kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others);
+[[nodiscard]] MeanError kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others);
 
 /// The scenario's own numbers at x, with intervals of 95 %. @param known_to  1 sigma of each
 [[nodiscard]] std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x,

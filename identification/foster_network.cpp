@@ -57,7 +57,6 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
   if (has_ambient_) reference_degC_ = held(records[0].at(roles.ambient))[0];
   for (std::size_t p = 0; p < structure_.poles.size(); ++p) {
     pole_of_heated_.insert(pole_of_heated_.end(), structure_.poles[p].laws.size(), p);
-    if (has_ambient_) pole_of_ambient_.push_back(p);
   }
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
@@ -192,7 +191,7 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
 
 ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
                                            const Smoothness& smoothness) const {
-  // Heated parts and ambient parts of bodies are free of each other; the ambient itself is none of them.
+  // What heat and what the ambient does to a body have a weight each; the ambient itself has none.
   const Eigen::Index n_parts = n_heated_ + n_ambient_, n_beside = n_records_ + n_starts_;
   std::vector<Eigen::Index> beside_at(static_cast<std::size_t>(n_beside));
   for (Eigen::Index i = 0; i < n_beside; ++i) beside_at[static_cast<std::size_t>(i)] = n_parts + n_direct_ + i;

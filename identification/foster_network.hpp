@@ -27,7 +27,7 @@ struct Structure {
   [[nodiscard]] std::size_t n_heated() const;
 };
 
-/// Penalties, of a number whose column has the variance 1, over the mean square of the readings' misses: the larger, the less a fit may do.
+/// Ridge penalties, each a share of its column's own sum of squares: the larger, the less a fit may do.
 struct Smoothness {
   double thermometers = 1e-3, drive = 1e-3, ambient = 1e-3;
   /// Of how much warmer or colder than the ambient a record begins, which is true of it alone; huge: it begins in balance.
@@ -92,7 +92,7 @@ class FosterProblem {
   /// What is missed row by row, with what is true of records alone; NaN where there is no reading. A displacement of a record of which no row was fitted to counts from its
   /// first reading. @param in_records  false: as the written scenario is simulated, which knows nothing of a record's own; displacements and rises count from their first readings
   [[nodiscard]] Eigen::VectorXd misses(std::size_t channel, const ChannelFit& fit, bool in_records = true) const;
-  /// Root mean square of some of these rows; NaN where there is none.
+  /// Root mean square of the misses of some rows; NaN where these have no reading.
   [[nodiscard]] static double rms(const Eigen::VectorXd& misses, const std::vector<bool>& rows);
 
  private:
@@ -108,14 +108,14 @@ class FosterProblem {
   std::vector<std::string> channels_;
   std::size_t n_thermometers_ = 0;
   std::vector<char> counts_from_start_;  ///< of each channel: a displacement, or a rise in K
-  std::vector<std::size_t> first_row_;   ///< of each record, and one behind the last
+  std::vector<std::size_t> first_row_;   ///< of each record; last the number of all rows
   Eigen::MatrixXd body_columns_;         ///< T_b less the reference
   Eigen::VectorXd ambient_K_;
   Eigen::MatrixXd
       columns_;  ///< heated parts, ambient parts, ambient, a constant of each record, start of each record and pole
   Eigen::MatrixXd readings_;
   Eigen::Index n_heated_ = 0, n_ambient_ = 0, n_direct_ = 0, n_records_ = 0, n_starts_ = 0;
-  std::vector<std::size_t> pole_of_heated_, pole_of_ambient_;
+  std::vector<std::size_t> pole_of_heated_;
 };
 
 }  // namespace driftwright::identification

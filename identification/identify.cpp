@@ -9,234 +9,22 @@
 
 #include "base/parallel.hpp"
 #include "base/rows_as_one.hpp"
-#include "compensation/judging/folds.hpp"
+#include "identification/jury.hpp"
 
 namespace driftwright::identification {
 namespace {
 
 constexpr std::array<double, 3> kExponents = {5.0 / 3.0, 2.0, 1.0};  // the first unless others are better
 constexpr std::array<std::size_t, 4> kPoles = {2, 3, 4, 6};
-constexpr std::array<double, 3> kPenalties = {1e-4, 1e-3, 1e-2};
-constexpr std::array<double, 2> kStarts = {1e6, 1e-3};  // in balance; free
-constexpr double kRowsOfShortest = 3.0;                 // rows that the shortest time constant spans
-constexpr double kLongest = 1.0 / 3.0;                  // of the longest record
-constexpr double kRest = 0.05;                          // of the top speed: slower is rest, nearer is one level
-constexpr double kHottest = 3.0;                        // rise of heated bodies over the largest of a thermometer
-constexpr double kDefaultRise_K = 10.0;                 // where there is no thermometer
-constexpr double kFloor = 0.02;                         // of a channel's deviation: misses below are not told from nothing
-constexpr double kLagOfSign = 0.03;                     // of a record, behind which a column is held against thermometers
+constexpr double kRowsOfShortest = 3.0;  // rows that the shortest time constant spans
+constexpr double kShortest = 0.003;      // of the longest record, at least
+constexpr double kLongest = 1.0 / 3.0;   // of the longest record
+constexpr double kRest = 0.05;           // of the top speed: slower is rest, nearer is one level
+constexpr double kHottest = 3.0;         // rise of heated bodies over the largest of a thermometer
+constexpr double kDefaultRise_K = 10.0;  // where there is no thermometer
+constexpr double kLagOfSign = 0.03;      // of a record, behind which a column is held against thermometers
 constexpr std::size_t kFewestBlocks = 30;
 constexpr double kMostRows = 3000.0;  // of all records; more are thinned evenly
-
-std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks);
-
-/// Folds as rows of all records, one after the other.
-struct HiddenRows {
-  std::string kind;
-  std::vector<bool> hidden;
-};
-
-std::vector<HiddenRows> hidden_rows(std::span<const Record> records, const RecordRoles& roles) {
-  std::vector<compensation::ObservedRun> runs;
-  for (const Record& r : records) {
-    compensation::ObservedRun run;
-    run.readings = r;
-    runs.push_back(std::move(run));
-  }
-  const std::string target = roles.displacements.empty() ? roles.thermometers.front() : roles.displacements.front();
-  std::vector<std::string> thermometers = roles.thermometers;
-  if (!roles.ambient.empty()) thermometers.push_back(roles.ambient);
-  std::erase(thermometers, target);
-  std::vector<HiddenRows> list;
-  for (const compensation::Fold& fold : compensation::folds_of(
-           runs, {.target = target, .from_start = false, .thermometers = thermometers, .speed = roles.speed})) {
-    HiddenRows rows{fold.kind, {}};
-    for (const auto& of_run : fold.hidden) rows.hidden.insert(rows.hidden.end(), of_run.begin(), of_run.end());
-    list.push_back(std::move(rows));
-  }
-  return list;
-}
-
-/// Logarithms of kept-out misses: a row a fold, a column a channel.
-struct Loss {
-  Eigen::MatrixXd log_rms, rms;  ///< with a floor; without
-  Eigen::VectorXd of_fold;       ///< mean over channels, thermometers and displacements half each; NaN where none judges
-  double mean = 0.0;             ///< over kinds of the mean over their folds
-};
-
-double mean_of_kinds(const Eigen::VectorXd& of_fold, const std::vector<HiddenRows>& folds) {
-  std::map<std::string, std::pair<double, double>> kinds;
-  for (std::size_t f = 0; f < folds.size(); ++f) {
-    const double value = of_fold[static_cast<Eigen::Index>(f)];
-    if (!std::isfinite(value)) continue;
-    kinds[folds[f].kind].first += value;
-    kinds[folds[f].kind].second += 1.0;
-  }
-  double sum = 0.0;
-  for (const auto& [kind, of] : kinds) sum += of.first / of.second;
-  return kinds.empty() ? 0.0 : sum / static_cast<double>(kinds.size());
-}
-
-/// Whether one is no worse than another beyond a standard error of their difference over the folds.
-bool is_as_good(const Loss& one, const Loss& best) {
-  std::vector<double> worse;
-  for (Eigen::Index f = 0; f < one.of_fold.size(); ++f) {
-    const double d = one.of_fold[f] - best.of_fold[f];
-    if (std::isfinite(d)) worse.push_back(d);
-  }
-  if (worse.size() < 2) return one.mean <= best.mean;
-  const auto n = static_cast<double>(worse.size());
-  double mean = 0.0, squares = 0.0;
-  for (double d : worse) mean += d / n;
-  for (double d : worse) squares += (d - mean) * (d - mean);
-  return one.mean - best.mean <= std::sqrt(squares / (n - 1.0) / n);
-}
-
-struct Judged {
-  Structure structure;
-  Smoothness smoothness;
-  Loss loss;
-  std::size_t n_bodies = 0;
-  bool has_default_exponent = true;
-};
-
-/// A structure judged by kept-out rows.
-class Jury {
- public:
-  Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K, const std::vector<std::size_t>& blocks)
-      : records_(records),
-        roles_(roles),
-        rise_K_(rise_K),
-        blocks_(blocks),
-        folds_(hidden_rows(thinned(records, blocks), roles)) {}
-  [[nodiscard]] const std::vector<HiddenRows>& folds() const { return folds_; }
-
-  /// With the penalties that do best; of those given alone, where there are some.
-  [[nodiscard]] Judged judged(const Structure& structure, const std::optional<Smoothness>& only = {}) const {
-    const FosterProblem problem(records_, roles_, structure, rise_K_, blocks_);
-    std::vector<FosterProblem::Normal> normals;
-    for (const HiddenRows& f : folds_) normals.push_back(problem.normal(f.hidden));
-    const std::size_t n_t = problem.n_thermometers(), n_c = problem.channels().size();
-    Judged result{.structure = structure, .smoothness = {}, .loss = {}, .n_bodies = problem.bodies().size()};
-    result.loss.log_rms.setConstant(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(n_c),
-                                    std::numeric_limits<double>::quiet_NaN());
-    result.loss.rms = result.loss.log_rms;
-    // Of some channels: what penalties do best where records begin in balance, and where their starts are free; these where the scenario that is written, which knows of none, is better with them beyond a standard error.
-    const auto try_all = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& in_balance,
-                             const std::vector<Smoothness>& free, const auto& take) {
-      const auto width = static_cast<Eigen::Index>(to - from);
-      struct Best {
-        Smoothness smoothness;
-        Eigen::MatrixXd log_rms, rms;
-        Loss loss, simulated;  ///< with what is true of a record alone, and as the written scenario is simulated
-      };
-      const auto best_of = [&](const std::vector<Smoothness>& tried) {
-        Best best;
-        best.loss.mean = std::numeric_limits<double>::max();
-        for (const Smoothness& s : tried) {
-          Eigen::MatrixXd log_rms(static_cast<Eigen::Index>(folds_.size()), width), rms = log_rms, simulated = log_rms;
-          for (std::size_t f = 0; f < folds_.size(); ++f) {
-            for (std::size_t c = from; c < to; ++c) {
-              const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c - from);
-              const ChannelFit fit = problem.fit(normals[f], c, s);
-              const double floor = kFloor * deviation(problem.measured(c));
-              rms(row, column) = FosterProblem::rms(problem.misses(c, fit), folds_[f].hidden);
-              log_rms(row, column) = std::log(std::hypot(rms(row, column), floor));
-              simulated(row, column) =
-                  std::log(std::hypot(FosterProblem::rms(problem.misses(c, fit, false), folds_[f].hidden), floor));
-            }
-          }
-          const auto loss_of = [&](const Eigen::MatrixXd& logs) {
-            Loss loss{.log_rms = {}, .rms = {}, .of_fold = mean_over_channels(logs)};
-            loss.mean = mean_of_kinds(loss.of_fold, folds_);
-            return loss;
-          };
-          Loss loss = loss_of(log_rms);
-          if (loss.mean < best.loss.mean)
-            best = {s, std::move(log_rms), std::move(rms), std::move(loss), loss_of(simulated)};
-        }
-        return best;
-      };
-      Best best = best_of(in_balance);
-      if (!free.empty()) {
-        Best other = best_of(free);
-        if (!is_as_good(best.simulated, other.simulated)) best = std::move(other);
-      }
-      take(best.smoothness);
-      result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), width) = best.log_rms;
-      result.loss.rms.middleCols(static_cast<Eigen::Index>(from), width) = best.rms;
-    };
-    std::vector<Smoothness> of_thermometers[2], of_displacements[2];
-    if (only) {
-      of_thermometers[0] = of_displacements[0] = {*only};
-    } else {
-      for (std::size_t free : {0, 1}) {
-        for (double p : kPenalties) {
-          of_thermometers[free].push_back({.thermometers = p, .start_of_thermometers = kStarts[free]});
-          for (double a : kPenalties)
-            of_displacements[free].push_back({.drive = p, .ambient = a, .start_of_displacements = kStarts[free]});
-        }
-      }
-    }
-    if (n_t > 0)
-      try_all(0, n_t, of_thermometers[0], of_thermometers[1], [&](const Smoothness& s) {
-        result.smoothness.thermometers = s.thermometers;
-        result.smoothness.start_of_thermometers = s.start_of_thermometers;
-      });
-    if (n_c > n_t)
-      try_all(n_t, n_c, of_displacements[0], of_displacements[1], [&](const Smoothness& s) {
-        result.smoothness.drive = s.drive;
-        result.smoothness.ambient = s.ambient;
-        result.smoothness.start_of_displacements = s.start_of_displacements;
-      });
-    // displacements count as much as thermometers do, however many there are
-    result.loss.of_fold = mean_over_channels(result.loss.log_rms.rightCols(static_cast<Eigen::Index>(n_c - n_t)));
-    if (n_c == n_t) result.loss.of_fold.setConstant(std::numeric_limits<double>::quiet_NaN());
-    const Eigen::VectorXd of_thermometers_too =
-        mean_over_channels(result.loss.log_rms.leftCols(static_cast<Eigen::Index>(n_t)));
-    for (Eigen::Index f = 0; f < result.loss.of_fold.size(); ++f) {
-      double& of_fold = result.loss.of_fold[f];
-      if (!std::isfinite(of_fold))
-        of_fold = of_thermometers_too[f];
-      else if (std::isfinite(of_thermometers_too[f]))
-        of_fold = 0.5 * (of_fold + of_thermometers_too[f]);
-    }
-    result.loss.mean = mean_of_kinds(result.loss.of_fold, folds_);
-    return result;
-  }
-
-  static double deviation(const Eigen::VectorXd& y) {
-    double n = 0.0, sum = 0.0, squares = 0.0;
-    for (double v : y) {
-      if (!std::isfinite(v)) continue;
-      n += 1.0;
-      sum += v;
-      squares += v * v;
-    }
-    return n > 0.0 ? std::sqrt(std::max(0.0, squares / n - sum / n * sum / n)) : 0.0;
-  }
-
- private:
-  static Eigen::VectorXd mean_over_channels(const Eigen::MatrixXd& log_rms) {
-    Eigen::VectorXd mean(log_rms.rows());
-    for (Eigen::Index f = 0; f < log_rms.rows(); ++f) {
-      double sum = 0.0, n = 0.0;
-      for (double v : log_rms.row(f)) {
-        if (!std::isfinite(v)) continue;
-        sum += v;
-        n += 1.0;
-      }
-      mean[f] = n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
-    }
-    return mean;
-  }
-
-  std::span<const Record> records_;
-  const RecordRoles& roles_;
-  double rise_K_;
-  const std::vector<std::size_t>& blocks_;
-  std::vector<HiddenRows> folds_;
-};
 
 double top_of(std::span<const Record> records, const std::string& channel) {
   double top = 0.0;
@@ -251,7 +39,8 @@ std::vector<double> time_constants(std::span<const Record> records, std::size_t 
     row_s = std::min(row_s, length_s / static_cast<double>(r.n_samples() - 1));
     longest_s = std::max(longest_s, length_s);
   }
-  const double from = std::log(std::max(kRowsOfShortest * row_s, 0.003 * longest_s)), to = std::log(kLongest * longest_s);
+  const double from = std::log(std::max(kRowsOfShortest * row_s, kShortest * longest_s)),
+               to = std::log(kLongest * longest_s);
   std::vector<double> tau_s;
   // in the middles of even steps
   for (std::size_t k = 0; k < n; ++k)
@@ -259,7 +48,23 @@ std::vector<double> time_constants(std::span<const Record> records, std::size_t 
   return tau_s;
 }
 
-bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive);
+/// Whether thermometers fall, most of them, where a column rises.
+bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive) {
+  double votes = 0.0;
+  for (const std::string& t : roles.thermometers) {
+    double product = 0.0, size = 0.0;
+    for (const Record& r : records) {
+      Eigen::VectorXd x = lagged_steps(r.time_s, held(r.at(drive)), kLagOfSign * (r.time_s.back() - r.time_s.front()));
+      Eigen::VectorXd y = held(r.at(t));
+      x.array() -= x.mean();
+      y.array() -= y.mean();
+      product += x.dot(y);
+      size += x.norm() * y.norm();
+    }
+    if (size > 0.0) votes += product / size;
+  }
+  return votes < 0.0;
+}
 
 /// Whether a speed stands at two levels at least, rest aside.
 bool has_levels(std::span<const Record> records, const std::string& speed, double top) {
@@ -362,39 +167,6 @@ std::vector<std::size_t> blocks_of(std::span<const Record> records) {
   return blocks;
 }
 
-/// Records with the first row of each block: what folds are told by.
-std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks) {
-  std::vector<Record> few(records.begin(), records.end());
-  for (std::size_t r = 0; r < few.size(); ++r) {
-    const std::size_t rows = few[r].n_samples() / blocks[r];
-    const auto keep = [&](std::vector<double>& v) {
-      for (std::size_t i = 0; i < rows; ++i) v[i] = v[i * blocks[r]];
-      v.resize(rows);
-    };
-    keep(few[r].time_s);
-    for (Channel& c : few[r].channels) keep(c.values);
-  }
-  return few;
-}
-
-/// Whether thermometers fall, most of them, where a column rises.
-bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive) {
-  double votes = 0.0;
-  for (const std::string& t : roles.thermometers) {
-    double product = 0.0, size = 0.0;
-    for (const Record& r : records) {
-      Eigen::VectorXd x = lagged_steps(r.time_s, held(r.at(drive)), kLagOfSign * (r.time_s.back() - r.time_s.front()));
-      Eigen::VectorXd y = held(r.at(t));
-      x.array() -= x.mean();
-      y.array() -= y.mean();
-      product += x.dot(y);
-      size += x.norm() * y.norm();
-    }
-    if (size > 0.0) votes += product / size;
-  }
-  return votes < 0.0;
-}
-
 }  // namespace
 
 Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener) {
@@ -482,7 +254,7 @@ Identified identify(std::span<const Record> records, const RoleHints& hints, con
     channel.predicted = problem.predicted(c, channel.fit, true);
     channel.misses = problem.misses(c, channel.fit);
     channel.ledger = ledger(problem, c, channel.fit);
-    channel.swing = Jury::deviation(problem.measured(c));
+    channel.swing = deviation(problem.measured(c));
     channel.missed_own = FosterProblem::rms(channel.misses, every);
     double sum = 0.0, n = 0.0;
     for (KeptOutKind& kind : result.kinds) {

@@ -1,5 +1,5 @@
 #pragma once
-// What drives a machine, as each of its bodies feels it: behind a first-order lag.
+// What drives a machine, behind the first-order lag of a body.
 
 #include <Eigen/Core>
 #include <span>

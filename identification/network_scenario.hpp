@@ -13,7 +13,7 @@ namespace driftwright::identification {
 [[nodiscard]] std::string network_scenario(const Identified& network, const std::string& name,
                                            const std::vector<std::string>& records, const std::vector<std::string>& head);
 
-/// A record as the scenario's verbs read it: the speed called so, 0 where there is none, nothing missing of what drives or surrounds the machine.
+/// A record as the scenario's verbs read it: its speed is called `speed` (0 without one), and missing values of drives and ambient hold the last one.
 [[nodiscard]] Record run_record(const Record& record, const RecordRoles& roles);
 
 }  // namespace driftwright::identification

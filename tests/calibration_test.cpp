@@ -58,7 +58,7 @@ TEST(OutputErrors, PassOverMissingReadings) {
 }
 
 TEST(KeptOutLosses, AreMeansOfLogarithmsOverTheFoldsThatCouldJudge) {
-  const KeptOutLoss loss = kept_out_loss({2.0, 8.0, std::nan("")}, {1.0, 1.0, 1.0});
+  const MeanError loss = kept_out_loss({2.0, 8.0, std::nan("")}, {1.0, 1.0, 1.0});
   EXPECT_NEAR(loss.mean, std::log(4.0), 1e-12);
   EXPECT_NEAR(loss.standard_error, std::log(2.0), 1e-12);  // half the difference of log 2 and log 8
   EXPECT_EQ(kept_out_loss({2.0}, {1.0}).standard_error, 0.0);
@@ -106,7 +106,7 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
   for (const ChannelGain& g : d.gain) EXPECT_GT(g.rmse_all_before, 0.0) << g.name;
 }
 
-// A scenario that was fitted to these records in another way: what is left is a clock that is wrong in one of them, which no number mends.
+// One record has wrong speeds, which no number mends.
 TEST_F(Calibration, WritesNothingThatPredictsKeptOutRowsWorse) {
   const std::string truth =
       with(kTwoNodes, "monday: [[60 min, 600 rpm], [60 min, 1900 rpm]", "monday: [[60 min, 1900 rpm], [60 min, 600 rpm]");
