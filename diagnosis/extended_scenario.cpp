@@ -204,8 +204,8 @@ class Writer {
     if (std::filesystem::is_regular_file(run.path, none)) {
       const std::string csv = scenarios::absolute_path_text(std::filesystem::absolute(run.path).string(), "");
       const ConfigNode* columns = yaml_.root().find("columns");
-      if (columns && is_read(columns_)) return fmt::format("{{csv: {}, columns: {}}}", csv, anew(*columns));
-      if (is_read(std::nullopt)) return fmt::format("{{csv: {}}}", csv);
+      if (columns && is_read(columns_)) return fmt::format("{{csv: {}, columns: {}, measured: true}}", csv, anew(*columns));
+      if (is_read(std::nullopt)) return fmt::format("{{csv: {}, measured: true}}", csv);
     }
     return scenarios::rows_yaml(run.cyclogram);
   }

@@ -251,6 +251,16 @@ TEST(ReadAmbient, RefusesWhatIsNoAmbientTemperature) {
               ThrowsMessage<InputError>(HasSubstr("200 degC lies outside what is allowed, -73.15 to 126.85 degC")));
 }
 
+TEST(ReadCyclogram, TakesAMeasuredRecordFromItsFirstRowOn) {
+  (void)write_file("measured_late.csv", "time_s,speed_rpm\n3600,1000\n3660,\n3720,500\n3780,0\n");
+  const Cyclogram c = read("  run: {csv: measured_late.csv, measured: true}\n");
+  ASSERT_EQ(c.sections.size(), 2u);
+  EXPECT_EQ(c.sections[0].duration_s, 120.0);
+  EXPECT_EQ(c.sections[0].drive.speed_rpm, 1000.0);
+  EXPECT_EQ(c.sections[1].duration_s, 60.0);
+  EXPECT_EQ(c.sections[1].drive.speed_rpm, 500.0);
+}
+
 TEST(ToRecord, CarriesFeedsAndCuttingPowerWhereTheCyclogramUsesThem) {
   const solver::Outputs outputs{};
   solver::Trajectory run;

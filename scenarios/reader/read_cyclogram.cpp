@@ -226,12 +226,15 @@ schema::Map cyclograms_schema() {
                           "a unit (heater_W)"),
                repeat()},
       .when_key = "rows"};
-  const schema::Map csv = {.name = "cyclograms, csv",
-                           .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
-                                    schema::optional("columns", schema::map(columns_schema()),
-                                                     "how the file is written, where a logger wrote it"),
-                                    repeat()},
-                           .when_key = "csv"};
+  const schema::Map csv = {
+      .name = "cyclograms, csv",
+      .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
+               schema::optional("columns", schema::map(columns_schema()),
+                                "how the file is written, where a logger wrote it"),
+               schema::optional("measured", schema::flag(), "false",
+                                "read as `diagnose --measured` reads it: from its first row on, what is missing held"),
+               repeat()},
+      .when_key = "csv"};
   schema::Map nc = {.name = "cyclograms, nc_program",
                     .keys = {compulsory("nc_program", text(), "an NC program, relative to the scenario"), repeat()},
                     .when_key = "nc_program"};
@@ -244,7 +247,8 @@ schema::Map cyclograms_schema() {
 }
 
 Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
-  if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
+  if (!is_name(name))
+    cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
   Cyclogram cyclogram{.name = name, .sections = {}};
   if (!cyclograms.is_map(name)) {
     cyclogram.sections = sections_of_rows(cyclograms, name, {{&columns()[0]}, {}, {false}}, cyclogram.columns);
@@ -257,7 +261,9 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   } else if (kind == "csv") {
     std::optional<ColumnMap> columns;
     if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
-    Cyclogram recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {}, Reading::kPlan).cyclogram;
+    Cyclogram recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {},
+                                in.flag("measured") ? Reading::kStrict : Reading::kPlan)
+                             .cyclogram;
     cyclogram.sections = std::move(recorded.sections);
     cyclogram.columns = std::move(recorded.columns);
   } else {

@@ -48,8 +48,10 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
           fmt::format("{}: {} {:g} {} at {:g} s; {}", record.source, kind.name, v, kind.unit, record.time_s[i], why));
     };
     if (is_plan && std::isnan(v))
-      throw InputError(fmt::format("{}: {} is missing at {:g} s; a plan says what is driven in every row", record.source,
-                                   channel->header(), record.time_s[i]));
+      throw InputError(
+          fmt::format("{}: {} is missing at {:g} s; a plan says what is driven in every row. `measured: true` beside `csv` "
+                      "holds the value before",
+                      record.source, channel->header(), record.time_s[i]));
     if (v < 0.0 && !kind.may_be_signed)
       refuse(fmt::format("{} are positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
     if (std::abs(v) > kind.most) refuse(fmt::format("{:g} {} at most is allowed", kind.most, kind.unit));
@@ -69,7 +71,9 @@ bool stays(const Channel& channel, std::size_t row) {
 Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool is_plan) {
   const std::string& path = record.source;
   if (is_plan && record.time_s.front() != 0.0)
-    throw InputError(fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", path, record.time_s.front()));
+    throw InputError(fmt::format(
+        "{}: a cyclogram starts at time 0, this one at {:g} s; `measured: true` beside `csv` takes it from its first row on",
+        path, record.time_s.front()));
   const Channel* speed = drive_channel(record, kSpeed, is_plan);
   if (!speed) {
     std::vector<std::string> names;
