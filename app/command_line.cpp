@@ -233,10 +233,18 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
           "--drive", options.drives,
           "channel that drives the machine though its unit does not say so, such as a bed's temperature; may be repeated")
       ->allow_extra_args(false);
+  verb->add_option(
+          "--prior", options.prior,
+          "a scenario to begin with: what it misses of the records is learned beside its physics and written as "
+          "extended.yaml, where rows that were kept out speak for it; --ambient and --drive then are the scenario's")
+      ->excludes("--ambient")
+      ->excludes("--drive");
   add_results(verb, options, "<name of the first record>",
               "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
               "results/identified\n  driftwright simulate "
-              "results/identified/monday.yaml -o results/identified_run");
+              "results/identified/monday.yaml -o results/identified_run\n  driftwright identify --prior "
+              "scenarios/fp3_spindle.yaml --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
+              "results/learned");
   verb->callback([&] { app::identify(options); });
 }
 

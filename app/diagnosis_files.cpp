@@ -88,13 +88,12 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studie
   return extended;
 }
 
+diagnosis::Prediction read_as_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended) {
+  return studies::read_of(m, scenario_of(extended.text, m.scenario.path).machine->effects);
+}
+
 void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended, diagnosis::Diagnosis& d) {
-  const diagnosis::TwinState state = scenario_of(extended.text, m.scenario.path).machine->effects;
-  const diagnosis::Twin& twin = *m.twin;
-  diagnosis::Twin::Workspace workspace(twin);
-  d.extended.clear();
-  for (const diagnosis::MeasuredRun& run : m.runs)
-    d.extended.push_back(twin.read(state, run, twin.respond(state, run, workspace)));
+  d.extended = read_as_written(m, extended);
   const auto before = diagnosis::output_errors(m.runs, d.as_written), after = diagnosis::output_errors(m.runs, d.extended);
   for (diagnosis::ChannelGain& g : d.gain) {
     if (!before.contains(g.name)) continue;

@@ -21,6 +21,11 @@ namespace driftwright::app {
                                                          const std::vector<std::string>& head, output::ResultsFolder& folder,
                                                          std::string* difference);
 
+/// What the scenario that was written says of all rows, by the twin, with the effects as its text has them.
+/// @throws InputError  as read_scenario()
+[[nodiscard]] diagnosis::Prediction read_as_written(const studies::MeasuredTwin& m,
+                                                    const diagnosis::ExtendedScenario& extended);
+
 /// Runs the scenario that was written over the whole of each record, by the twin, with the effects as its text has them: Diagnosis::extended and
 /// ChannelGain::rmse_all_before and rmse_written.
 /// @throws InputError  as read_scenario()

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "app/identify_beside.hpp"
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
@@ -46,6 +47,7 @@ std::string plain_stem(const std::string& path) {
 }  // namespace
 
 void identify(const IdentifyOptions& asked) {
+  if (!asked.prior.empty()) return identify_beside(asked);
   IdentifyOptions options = asked;
   options.scenario = asked.records.front();  // what the results are of
   std::vector<Record> records;

@@ -187,8 +187,9 @@ struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::vector<std::string> records;
   std::string ambient;              ///< channel; empty: guessed
   std::vector<std::string> drives;  ///< channels that drive beside those whose unit says so
+  std::string prior;                ///< scenario that is extended by what it misses; empty: none
 };
-/// A network from records alone.
+/// A network from records alone, or what a scenario misses, learned beside it.
 void identify(const IdentifyOptions& options);
 
 struct CompareOptions : CommonOptions {

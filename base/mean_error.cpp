@@ -1,6 +1,8 @@
 #include "base/mean_error.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 
 namespace driftwright {
 
@@ -18,6 +20,12 @@ MeanError mean_error(std::span<const double> values) {
   }
   if (result.n > 1) result.standard_error = std::sqrt(squares / (n - 1.0) / n);
   return result;
+}
+
+double surely_above(const MeanError& error) {
+  if (error.n < 2) return -std::numeric_limits<double>::infinity();
+  const boost::math::students_t t(static_cast<double>(error.n - 1));
+  return error.mean - boost::math::quantile(t, 0.95) * error.standard_error;
 }
 
 }  // namespace driftwright

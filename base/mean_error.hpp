@@ -14,4 +14,7 @@ struct MeanError {
 /// Of the values that are finite.
 [[nodiscard]] MeanError mean_error(std::span<const double> values);
 
+/// What the mean exceeds with 95 % where the values are independent and normal: the lower end of Student's one-sided interval; of fewer than two values -infinity.
+[[nodiscard]] double surely_above(const MeanError& error);
+
 }  // namespace driftwright

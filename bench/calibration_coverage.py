@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How often the 95 % intervals of `driftwright calibrate` hold where the model is right: calibration_coverage.py PROGRAM [MACHINES [SEED]]
+"""How often the 95 % intervals of `driftwright calibrate` hold where the model is right, and in how many machines `identify --prior` then learns something that is not there:
+calibration_coverage.py PROGRAM [MACHINES [SEED]]
 
 Machines of two bodies whose numbers differ from the scenario's by 10 % (exponent 3 %), one sigma; two records of each, 0.05 K and 0.3 um of noise. Standard library only.
 """
@@ -56,7 +57,7 @@ def main():
     machines = int(sys.argv[2]) if len(sys.argv) > 2 else 40
     random.seed(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
     os.chdir(tempfile.mkdtemp(prefix="driftwright-coverage-"))
-    held = judged = rough = unwritten = 0
+    held = judged = rough = unwritten = learned = learned_channels = 0
     open("written.yaml", "w").write(MACHINE.format(**WRITTEN))
     for _ in range(machines):
         true = {k: v * math.exp((0.03 if k == "exponent" else 0.1) * random.gauss(0, 1)) for k, v in WRITTEN.items()}
@@ -70,11 +71,16 @@ def main():
         result = json.load(open("calibrated/calibration.json"))
         rough += result["weighed_by_model_error"]
         unwritten += not any(n["written"] for n in result["calibrated"])
+        run(program, "identify", "--prior", "calibrated/calibrated.yaml", *["--record" if r == "--measured" else r for r in records], "-o", "learned", "--force", "--quiet")
+        channels = sum(c["written"] == "yes" for c in json.load(open("learned/summary.json"))["channels"])
+        learned += channels > 0
+        learned_channels += channels
         for key, name in JUDGED.items():
             low, high = next(n["ci95"] for n in result["calibrated"] if n["name"] == name)
             held += low <= true[key] <= high
             judged += 1
     print(f"{held} of {judged} intervals hold ({100 * held / judged:.1f} %); of {machines} machines {rough} were taken for a wrong model, {unwritten} not written")
+    print(f"with the calibrated file something was learned in {learned} of {machines} machines, {learned_channels} of {3 * machines} channels")
 
 
 if __name__ == "__main__":

@@ -38,31 +38,33 @@ Eigen::MatrixXd ReadingChain::apply(const std::vector<std::string>& name, const 
   return std::move(readings.value);
 }
 
-Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double at_speed_rpm, double exponent,
-                                double lag_s) {
-  const Cyclogram& cyclogram = readings.cyclogram;
-  const auto target = [&](const Drive& drive) { return amount * std::pow(drive.speed_rpm / at_speed_rpm, exponent); };
-  const Eigen::Index n = readings.n_times();
-  Eigen::RowVectorXd grown(n);
-  if (lag_s <= 0.0) {
-    for (Eigen::Index i = 0; i < n; ++i) grown[i] = target(cyclogram.drive(readings.time(i)));
-    return grown;
-  }
+Eigen::RowVectorXd driven(const std::vector<double>& time_s, const Cyclogram& cyclogram,
+                          const std::function<double(const Drive&)>& u, double lag_s) {
+  const auto n = static_cast<Eigen::Index>(time_s.size());
+  Eigen::RowVectorXd x(n);
   double start_s = 0.0, at_start = 0.0;  // of the section
   std::size_t section = 0;
   const auto after = [&](double passed_s) {
-    const double end = cyclogram.sections.empty() ? 0.0 : target(cyclogram.sections[section].drive);
-    return at_start + (end - at_start) * -std::expm1(-passed_s / lag_s);
+    const double end = cyclogram.sections.empty() ? 0.0 : u(cyclogram.sections[section].drive);
+    return lag_s > 0.0 ? at_start + (end - at_start) * -std::expm1(-passed_s / lag_s) : end;
   };
   for (Eigen::Index i = 0; i < n; ++i) {
-    while (section + 1 < cyclogram.sections.size() && readings.time(i) >= start_s + cyclogram.sections[section].duration_s) {
+    const double t_s = time_s[static_cast<std::size_t>(i)];
+    while (section + 1 < cyclogram.sections.size() && t_s >= start_s + cyclogram.sections[section].duration_s) {
       at_start = after(cyclogram.sections[section].duration_s);
       start_s += cyclogram.sections[section].duration_s;
       ++section;
     }
-    grown[i] = after(readings.time(i) - start_s);
+    x[i] = after(t_s - start_s);
   }
-  return grown;
+  return x;
+}
+
+Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double at_speed_rpm, double exponent,
+                                double lag_s) {
+  return driven(
+      readings.time_s, readings.cyclogram,
+      [=](const Drive& drive) { return amount * std::pow(drive.speed_rpm / at_speed_rpm, exponent); }, lag_s);
 }
 
 void lag_behind(Eigen::Ref<Eigen::RowVectorXd> signal, const std::vector<double>& time_s, double lag_s) {

@@ -21,6 +21,8 @@ enum class ReadingStage {
   kError,       ///< what it adds
   kSwap,        ///< whose channel it is written to
   kClock,       ///< and when
+  kKept,        ///< how much of all that is believed, where something was learned beside it
+  kLearned,     ///< and what
 };
 
 /// The output that holds the mean temperature of a body beside what instruments read: it is in no record.
@@ -67,6 +69,10 @@ class ReadingChain {
  private:
   std::vector<std::pair<ReadingStage, Step>> steps_;  ///< by stage; within one as they were added
 };
+
+/// x at each time, lag dx/dt = u - x, u by the section of the drive, from nothing at t = 0; exactly. Without lag u itself.
+[[nodiscard]] Eigen::RowVectorXd driven(const std::vector<double>& time_s, const Cyclogram& cyclogram,
+                                        const std::function<double(const Drive&)>& u, double lag_s);
 
 /// amount (n / at_speed)^exponent at each time, at once or behind one lag: each section's exact exponential, from nothing at t = 0.
 [[nodiscard]] Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double at_speed_rpm, double exponent,

@@ -18,7 +18,7 @@ using output::significant;
 constexpr double kWorthSaying = 0.02;  // share of a driver
 
 std::string shown(const std::string& unit) {
-  return unit == "um" ? "µm" : "K";
+  return unit == "um" ? "µm" : unit == "urad" ? "µrad" : "K";
 }
 
 std::string time_text(double s) {
@@ -31,6 +31,10 @@ std::string ledger_text(const IdentifiedChannel& c) {
   std::vector<std::string> parts;
   for (const Driver& d : c.ledger) {
     if (std::abs(d.share) < kWorthSaying) continue;
+    if (d.delay_s == 0.0 && d.in_the_end == 0.0) {
+      parts.push_back(fmt::format("{:.0f} % {}", 100.0 * d.share, d.name));
+      continue;
+    }
     parts.push_back(fmt::format("{:.0f} % {} ({:+.3g} {}{}, {})", 100.0 * d.share, d.name, d.in_the_end, shown(c.unit),
                                 d.name == "ambient" ? " for 1 K" : " in the end", time_text(d.delay_s)));
   }
@@ -77,6 +81,34 @@ output::Table channels_table(const Identified& n) {
                           channel.missed_kept_out});
     for (const auto& kind : n.kinds) table.rows.back().emplace_back(kind.rms[c]);
   }
+  return table;
+}
+
+output::Table extension_table(const Identified& n) {
+  output::Table table{
+      .key = "channels",
+      .title = "What the scenario leaves of each channel, and with what was learned",
+      .caption =
+          "Root mean square of measured less simulated, driven by what was recorded and by no reading. As simulated: all "
+          "rows of the records, by the file that was read and the one that was written. Kept out: rows that were "
+          "hidden from what was learned, of each kind in turn, geometric mean over the kinds; the scenario's own "
+          "numbers, wherever they come from, were as they stand in all of them. Missed more without: mean over the "
+          "hidden parts, and its standard error; what is not above 0 with 95 % (Student) is not written. Kept: share of the "
+          "scenario's own change.",
+      .columns = {{.key = "name", .title = "channel"},
+                  {.key = "unit", .title = "unit"},
+                  {.key = "rms_scenario", .title = "scenario, as simulated", .digits = significant(3)},
+                  {.key = "rms_simulated", .title = "extended, as simulated", .digits = significant(3)},
+                  {.key = "rms_scenario_kept_out", .title = "scenario, kept out", .digits = significant(3)},
+                  {.key = "rms_kept_out", .title = "extended, kept out", .digits = significant(3)},
+                  {.key = "missed_more_without", .title = "missed more without", .unit = "%", .digits = output::percent(0)},
+                  {.key = "standard_error", .title = "standard error", .unit = "%", .digits = output::percent(0)},
+                  {.key = "kept", .title = "kept", .unit = "%", .digits = output::percent(0)},
+                  {.key = "written", .title = "learned"}}};
+  for (const IdentifiedChannel& c : n.channels)
+    table.rows.push_back({c.name, shown(c.unit), c.scenario_simulated, c.missed_simulated, c.scenario_kept_out, c.missed_kept_out,
+                          std::expm1(c.missed_more_without.mean), c.missed_more_without.standard_error, c.fit.kept,
+                          c.is_extended ? "yes" : "no"});
   return table;
 }
 
@@ -156,16 +188,7 @@ std::vector<double> hours(const Identified& n, const std::vector<Record>& record
   return time_h;
 }
 
-}  // namespace
-
-output::Document document_of(const IdentificationFindings& found, const output::Provenance& made_by) {
-  const Identified& n = found.network;
-  std::vector<std::string> sources;
-  for (const Record& r : found.records) sources.push_back(r.source);
-  output::Document document{.made_by = made_by,
-                            .title = found.name + ": a network from records alone",
-                            .subtitle = fmt::format("{}", fmt::join(sources, ", "))};
-  output::Section& body = document.body;
+output::Verdict verdict_of_network(const Identified& n) {
   double own = 0.0, kept = 0.0, count = 0.0;
   for (const IdentifiedChannel& c : n.channels) {
     if (!(c.swing > 0.0) || !std::isfinite(c.missed_kept_out)) continue;
@@ -174,14 +197,51 @@ output::Document document_of(const IdentificationFindings& found, const output::
     count += 1.0;
   }
   const double share = std::exp(kept / std::max(count, 1.0));
-  add(body, output::Verdict{
-                .kind = share < 0.5 ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
-                .title = fmt::format(
-                    "{} bodies leave {:.0f} % of what was measured on rows that were kept out, {:.0f} % on their own",
-                    n.bodies.size(), 100.0 * share, 100.0 * std::exp(own / std::max(count, 1.0))),
-                .text = share < 0.5 ? "Geometric mean over the channels of root mean square left over standard deviation."
-                                    : "Drive and ambient that were recorded explain less than half: something else drives "
-                                      "this machine, or the record holds too few changes of the drive."});
+  return {
+      .kind = share < 0.5 ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
+      .title = fmt::format("{} bodies leave {:.0f} % of what was measured on rows that were kept out, {:.0f} % on their own",
+                           n.bodies.size(), 100.0 * share, 100.0 * std::exp(own / std::max(count, 1.0))),
+      .text = share < 0.5 ? "Geometric mean over the channels of root mean square left over standard deviation."
+                          : "Drive and ambient that were recorded explain less than half: something else drives "
+                            "this machine, or the record holds too few changes of the drive."};
+}
+
+output::Verdict verdict_of_extension(const Identified& n) {
+  double left = 0.0, count = 0.0, n_extended = 0.0;
+  for (const IdentifiedChannel& c : n.channels) {
+    n_extended += c.is_extended ? 1.0 : 0.0;
+    if (!(c.scenario_kept_out > 0.0) || !std::isfinite(c.missed_kept_out)) continue;
+    left += std::log(c.missed_kept_out / c.scenario_kept_out);
+    count += 1.0;
+  }
+  if (n_extended == 0.0)
+    return {.kind = output::Verdict::Kind::kGood,
+            .title = "Nothing is learned: the scenario is written as it is",
+            .text =
+                "What drive and ambient explain beyond it does not last on rows that were kept out. What it still misses "
+                "follows something that was not recorded, or is noise."};
+  return {
+      .kind = output::Verdict::Kind::kGood,
+      .title = fmt::format("{:.0f} of {} channels are extended; {:.0f} % of what the scenario misses on rows that were kept "
+                           "out is left",
+                           n_extended, n.channels.size(), 100.0 * std::exp(left / std::max(count, 1.0))),
+      .text =
+          "Geometric mean over the channels. What was learned follows the drives and the ambient that were recorded, "
+          "within their range; no promise is made beyond it."};
+}
+
+}  // namespace
+
+output::Document document_of(const IdentificationFindings& found, const output::Provenance& made_by) {
+  const Identified& n = found.network;
+  std::vector<std::string> sources;
+  for (const Record& r : found.records) sources.push_back(r.source);
+  output::Document document{.made_by = made_by,
+                            .title = found.name + (n.is_extension ? ": what the scenario misses, learned beside it"
+                                                                  : ": a network from records alone"),
+                            .subtitle = fmt::format("{}", fmt::join(sources, ", "))};
+  output::Section& body = document.body;
+  add(body, n.is_extension ? verdict_of_extension(n) : verdict_of_network(n));
   output::Table said{.key = "ledger_in_words",
                      .title = "What drives each channel",
                      .caption =
@@ -190,12 +250,16 @@ output::Document document_of(const IdentificationFindings& found, const output::
                      .columns = {{.key = "name", .title = "channel"}, {.key = "driven_by", .title = "driven by"}}};
   for (const IdentifiedChannel& c : n.channels) said.rows.push_back({c.name, ledger_text(c)});
   add(body, std::move(said));
-  add(body, channels_table(n));
+  add(body, n.is_extension ? extension_table(n) : channels_table(n));
   add(body, bodies_table(n));
   add(body, weights_table(n));
   add(body, ledger_table(n));
   add(body, output::Notes{.key = "guesses", .sort = "guess", .lines = n.roles.guesses});
   add(body, output::Notes{.key = "notes", .sort = "note", .lines = found.notes});
+  if (n.is_extension) {
+    add(body, output::Preformatted{.title = "Difference to the scenario",
+                                   .text = found.difference.empty() ? "No difference to the scenario." : found.difference});
+  }
   const std::vector<double> time_h = hours(n, found.records);
   for (const IdentifiedChannel& c : n.channels) {
     std::vector<double> predicted, measured;

@@ -1,5 +1,5 @@
 #pragma once
-// What `identify` found, as a document.
+// What `identify` found, with or without a scenario to begin with, as a document.
 
 #include "identification/identify.hpp"
 #include "output/document.hpp"
@@ -11,6 +11,7 @@ struct IdentificationFindings {
   const std::vector<Record>& records;
   const identification::Identified& network;
   std::vector<std::string> notes;  ///< of how records were read
+  std::string difference = {};     ///< of a scenario that is extended, to the file
 };
 
 [[nodiscard]] output::Document document_of(const IdentificationFindings& found, const output::Provenance& made_by);

@@ -13,6 +13,7 @@ namespace {
 constexpr double kMeanOne =
     1e4;  // weight of the sum of a thermometer's shares being 1, where it would be more, over the largest of its normal equations
 constexpr double kTiny = 1e-12;
+constexpr double kNothing = 1e9;  // a penalty that leaves nothing
 
 }  // namespace
 
@@ -34,7 +35,7 @@ std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient,
 }
 
 FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K,
-                             const std::vector<std::size_t>& blocks)
+                             const std::vector<std::size_t>& blocks, std::span<const Record> simulated)
     : structure_(std::move(structure)), has_ambient_(!roles.ambient.empty()) {
   bodies_ = bodies_of(structure_, has_ambient_, rise_K);
   channels_ = roles.thermometers;
@@ -48,12 +49,14 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
   n_heated_ = static_cast<Eigen::Index>(structure_.n_heated());
   n_ambient_ = has_ambient_ ? n_poles : 0;
   n_direct_ = has_ambient_ ? 1 : 0;
+  n_scenario_ = simulated.empty() ? 0 : 1;
   n_records_ = static_cast<Eigen::Index>(records.size());
   n_starts_ = n_records_ * n_poles;
-  columns_.setZero(n, n_heated_ + n_ambient_ + n_direct_ + n_records_ + n_starts_);
+  columns_.setZero(n, first_of_records() + n_records_ + n_starts_);
   body_columns_.setZero(n, static_cast<Eigen::Index>(bodies_.size()));
   ambient_K_.setZero(n);
   readings_.setConstant(n, static_cast<Eigen::Index>(channels_.size()), std::numeric_limits<double>::quiet_NaN());
+  if (extends_scenario()) simulated_.setZero(n, readings_.cols());
   if (has_ambient_) reference_degC_ = held(records[0].at(roles.ambient))[0];
   for (std::size_t p = 0; p < structure_.poles.size(); ++p) {
     pole_of_heated_.insert(pole_of_heated_.end(), structure_.poles[p].laws.size(), p);
@@ -82,7 +85,8 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
       if (has_ambient_) slow = means(lagged_ramps(record.time_s, ambient, pole.tau_s));
       for (std::size_t law : pole.laws) {
         columns_.col(heated).segment(at, rows) = rise_K * means(lagged_steps(record.time_s, laws[law], pole.tau_s));
-        body_columns_.col(heated).segment(at, rows) = slow + columns_.col(heated).segment(at, rows);
+        body_columns_.col(heated).segment(at, rows) = columns_.col(heated).segment(at, rows);
+        if (!extends_scenario()) body_columns_.col(heated).segment(at, rows) += slow;
         ++heated;
       }
       if (has_ambient_) {
@@ -93,16 +97,20 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
       Eigen::VectorXd start(static_cast<Eigen::Index>(record.n_samples()));
       for (Eigen::Index i = 0; i < start.size(); ++i)
         start[i] = std::exp(-(record.time_s[static_cast<std::size_t>(i)] - record.time_s[0]) / pole.tau_s);
-      columns_
-          .col(n_heated_ + n_ambient_ + n_direct_ + n_records_ + static_cast<Eigen::Index>(r) * n_poles +
-               static_cast<Eigen::Index>(p))
+      columns_.col(first_of_records() + n_records_ + static_cast<Eigen::Index>(r) * n_poles + static_cast<Eigen::Index>(p))
           .segment(at, rows) = means(start);
     }
     if (has_ambient_) columns_.col(n_heated_ + n_ambient_).segment(at, rows) = ambient_K_.segment(at, rows);
-    columns_.col(n_heated_ + n_ambient_ + n_direct_ + static_cast<Eigen::Index>(r)).segment(at, rows).setOnes();
+    columns_.col(first_of_records() + static_cast<Eigen::Index>(r)).segment(at, rows).setOnes();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const std::vector<double>& values = record.at(channels_[c]).values;
       const double less = counts_from_start_[c] ? 0.0 : first_degC;
+      if (extends_scenario()) {
+        const std::vector<double>& said = simulated[r].at(channels_[c]).values;
+        const double from = counts_from_start_[c] ? said.front() : first_degC;
+        simulated_.col(static_cast<Eigen::Index>(c)).segment(at, rows) =
+            means(Eigen::Map<const Eigen::VectorXd>(said.data(), static_cast<Eigen::Index>(said.size())).array() - from);
+      }
       for (Eigen::Index i = 0; i < rows; ++i) {
         double sum = 0.0, there = 0.0;
         for (Eigen::Index k = i * block; k < (i + 1) * block; ++k) {
@@ -119,7 +127,9 @@ FosterProblem::FosterProblem(std::span<const Record> records, const RecordRoles&
 
 FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) const {
   Normal result;
-  result.c.setZero(columns_.cols(), static_cast<Eigen::Index>(channels_.size()));
+  result.c.setZero(columns_.cols(), readings_.cols());
+  result.with_scenario.setZero(columns_.cols(), readings_.cols());
+  result.scenario_squares.setZero(readings_.cols());
   std::map<std::vector<bool>, std::size_t> known;
   for (Eigen::Index c = 0; c < readings_.cols(); ++c) {
     std::vector<bool> counts(n_rows());
@@ -129,7 +139,14 @@ FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) con
       if (counts[i]) rows.push_back(static_cast<Eigen::Index>(i));
     }
     const Eigen::MatrixXd x = columns_(rows, Eigen::all);
-    result.c.col(c) = x.transpose() * Eigen::VectorXd(readings_.col(c)(rows));
+    const Eigen::VectorXd y = readings_.col(c)(rows);
+    result.c.col(c) = x.transpose() * y;
+    if (extends_scenario()) {
+      const Eigen::VectorXd said = simulated_.col(c)(rows);
+      result.with_scenario.col(c) = x.transpose() * said;
+      result.scenario_squares[c] = said.squaredNorm();
+      result.c(first_of_records() - 1, c) = said.dot(y);
+    }
     result.n.push_back(static_cast<double>(rows.size()));
     const auto [entry, is_new] = known.emplace(counts, result.own.size());
     if (is_new) result.own.emplace_back(x.transpose() * x);
@@ -139,46 +156,58 @@ FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) con
 }
 
 ChannelFit FosterProblem::fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const {
-  const Eigen::MatrixXd& g = normal.own[normal.of[channel]];
-  const Eigen::VectorXd c = normal.c.col(static_cast<Eigen::Index>(channel));
+  Eigen::MatrixXd g = normal.own[normal.of[channel]];
+  const auto at = static_cast<Eigen::Index>(channel);
+  if (extends_scenario()) {
+    const Eigen::Index scenario = first_of_records() - 1;
+    g.col(scenario) = normal.with_scenario.col(at);
+    g.row(scenario) = normal.with_scenario.col(at).transpose();
+    g(scenario, scenario) = normal.scenario_squares[at];
+  }
+  const Eigen::VectorXd c = normal.c.col(at);
   return channel < n_thermometers_ ? fit_thermometer(g, c, normal.n[channel], counts_from_start_[channel] != 0, smoothness)
                                    : fit_displacement(g, c, normal.n[channel], smoothness);
 }
 
 ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                           const Smoothness& smoothness) const {
-  // Columns of shares: bodies, then the ambient itself; beside them one constant, or one of each record, and starts.
+  // Columns of shares: bodies, then the ambient itself, the scenario; beside them one constant, or one of each record, and starts.
   const Eigen::Index n_constants = is_rise ? n_records_ : 1;
-  const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = n_bodies + n_direct_, n_beside = n_constants + n_starts_;
+  const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = first_of_records(), n_beside = n_constants + n_starts_;
   Eigen::MatrixXd to = Eigen::MatrixXd::Zero(g.rows(), n_shares + n_beside);
   for (Eigen::Index b = 0; b < n_heated_; ++b) {
     to(b, b) = 1.0;
-    if (has_ambient_) to(n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)]), b) = 1.0;
+    if (has_ambient_ && !extends_scenario())
+      to(n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)]), b) = 1.0;
   }
   for (Eigen::Index b = n_heated_; b < n_shares; ++b) to(b, b) = 1.0;
-  const Eigen::Index records = n_heated_ + n_ambient_ + n_direct_;
-  for (Eigen::Index r = 0; r < n_records_; ++r) to(records + r, n_shares + (is_rise ? r : 0)) = 1.0;
-  for (Eigen::Index s = 0; s < n_starts_; ++s) to(records + n_records_ + s, n_shares + n_constants + s) = 1.0;
+  for (Eigen::Index r = 0; r < n_records_; ++r) to(n_shares + r, n_shares + (is_rise ? r : 0)) = 1.0;
+  for (Eigen::Index s = 0; s < n_starts_; ++s) to(n_shares + n_records_ + s, n_shares + n_constants + s) = 1.0;
   Eigen::MatrixXd all = to.transpose() * g * to;
   const Eigen::VectorXd right = to.transpose() * c;
   Eigen::MatrixXd beside = all.bottomRightCorner(n_beside, n_beside);
   beside.diagonal().tail(n_starts_).array() += smoothness.start_of_thermometers * n;
   beside.diagonal().array() += kTiny * n;
+  if (!is_rise) beside(0, 0) += smoothness.offset * n;
   const Eigen::LLT<Eigen::MatrixXd> factor(beside);
   const Eigen::MatrixXd cross = all.bottomLeftCorner(n_beside, n_shares), solved = factor.solve(cross);
   Eigen::MatrixXd reduced = all.topLeftCorner(n_shares, n_shares) - cross.transpose() * solved;
   Eigen::VectorXd target = right.head(n_shares) - solved.transpose() * right.tail(n_beside);
   const double largest = std::max(reduced.diagonal().maxCoeff(), kTiny);
-  reduced.diagonal() +=
-      smoothness.thermometers * (reduced.diagonal() + Eigen::VectorXd::Constant(n_shares, kTiny * largest));
+  Eigen::VectorXd penalty = smoothness.thermometers * (reduced.diagonal().array() + kTiny * largest);
+  if (extends_scenario()) penalty[n_shares - 1] *= smoothness.scenario_of_thermometers / smoothness.thermometers;
+  reduced.diagonal() += penalty;
   reduced.diagonal().array() += 1e-9 * largest;
+  if (extends_scenario()) target[n_shares - 1] += penalty[n_shares - 1];  // drawn to 1
   Eigen::VectorXd shares = non_negative_least_squares(reduced, target);
-  if (has_ambient_ && shares.sum() > 1.0) {
-    reduced.array() += kMeanOne * largest;
-    target.array() += kMeanOne * largest;
+  const Eigen::Index first_of_mean = extends_scenario() ? n_heated_ : 0, n_mean = n_shares - first_of_mean;
+  if ((has_ambient_ || extends_scenario()) && shares.tail(n_mean).sum() > 1.0) {
+    reduced.bottomRightCorner(n_mean, n_mean).array() += kMeanOne * largest;
+    target.tail(n_mean).array() += kMeanOne * largest;
     shares = non_negative_least_squares(reduced, target);
   }
   ChannelFit fit;
+  fit.kept = extends_scenario() ? shares[n_shares - 1] : 0.0;
   fit.weight = shares.head(n_bodies);
   fit.of_ambient = has_ambient_ ? shares[n_bodies] : 0.0;
   const Eigen::VectorXd rest = factor.solve(right.tail(n_beside) - cross * shares);
@@ -191,37 +220,64 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
 
 ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
                                            const Smoothness& smoothness) const {
-  // What heat and what the ambient does to a body have a weight each; the ambient itself has none.
-  const Eigen::Index n_parts = n_heated_ + n_ambient_, n_beside = n_records_ + n_starts_;
-  std::vector<Eigen::Index> beside_at(static_cast<std::size_t>(n_beside));
-  for (Eigen::Index i = 0; i < n_beside; ++i) beside_at[static_cast<std::size_t>(i)] = n_parts + n_direct_ + i;
+  // What heat and what the ambient does to a body have a weight each, the scenario one; the ambient itself has none.
+  std::vector<Eigen::Index> parts_at, beside_at;
+  for (Eigen::Index i = 0; i < n_heated_ + n_ambient_; ++i) parts_at.push_back(i);
+  if (extends_scenario()) parts_at.push_back(first_of_records() - 1);
+  for (Eigen::Index i = first_of_records(); i < g.rows(); ++i) beside_at.push_back(i);
+  const auto n_parts = static_cast<Eigen::Index>(parts_at.size());
   Eigen::MatrixXd beside = g(beside_at, beside_at);
   beside.diagonal().tail(n_starts_).array() += smoothness.start_of_displacements * n;
   beside.diagonal().array() += kTiny * n + 1e-9;
   const Eigen::LLT<Eigen::MatrixXd> factor(beside);
-  const Eigen::MatrixXd cross = g(beside_at, Eigen::seqN(0, n_parts)), solved = factor.solve(cross);
-  Eigen::MatrixXd reduced = g.topLeftCorner(n_parts, n_parts) - cross.transpose() * solved;
-  const Eigen::VectorXd target = c.head(n_parts) - solved.transpose() * Eigen::VectorXd(c(beside_at));
+  const Eigen::MatrixXd cross = g(beside_at, parts_at), solved = factor.solve(cross);
+  Eigen::MatrixXd reduced = Eigen::MatrixXd(g(parts_at, parts_at)) - cross.transpose() * solved;
+  Eigen::VectorXd target = Eigen::VectorXd(c(parts_at)) - solved.transpose() * Eigen::VectorXd(c(beside_at));
   const double largest = std::max(reduced.diagonal().maxCoeff(), kTiny);
-  for (Eigen::Index i = 0; i < n_parts; ++i)
+  for (Eigen::Index i = 0; i < n_heated_ + n_ambient_; ++i)
     reduced(i, i) += (i < n_heated_ ? smoothness.drive : smoothness.ambient) * reduced(i, i) + 1e-9 * largest;
-  const Eigen::LLT<Eigen::MatrixXd> parts(reduced);
-  const Eigen::VectorXd part = parts.solve(target);
+  if (extends_scenario()) {  // drawn to 1
+    const double penalty = smoothness.scenario_of_displacements * reduced(n_parts - 1, n_parts - 1) + 1e-9 * largest;
+    reduced(n_parts - 1, n_parts - 1) += penalty;
+    target[n_parts - 1] += penalty;
+  }
+  Eigen::LLT<Eigen::MatrixXd> parts(reduced);
+  Eigen::VectorXd part = parts.solve(target);
+  if (extends_scenario() && (part[n_parts - 1] < 0.0 || part[n_parts - 1] > 1.0)) {
+    const double kept = std::clamp(double(part[n_parts - 1]), 0.0, 1.0), firm = 1e6 * reduced(n_parts - 1, n_parts - 1);
+    reduced(n_parts - 1, n_parts - 1) += firm;
+    target[n_parts - 1] += firm * kept;
+    parts.compute(reduced);
+    part = parts.solve(target);
+  }
   ChannelFit fit;
-  fit.weight = part;
+  fit.weight = part.head(n_heated_ + n_ambient_);
+  fit.kept = extends_scenario() ? part[n_parts - 1] : 0.0;
   fit.of_records = factor.solve(Eigen::VectorXd(c(beside_at)) - cross * part);
   const Eigen::VectorXd variance = parts.solve(Eigen::MatrixXd::Identity(n_parts, n_parts)).diagonal();
   fit.standard_deviation = variance.cwiseMax(0.0).cwiseSqrt();
-  if (has_ambient_) {
+  if (has_ambient_ && !extends_scenario()) {
     for (Eigen::Index b = 0; b < n_heated_; ++b)
       fit.weight[n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)])] -= part[b];
   }
   return fit;
 }
 
+ChannelFit FosterProblem::scenario_alone(const Normal& normal, std::size_t channel, Smoothness smoothness) const {
+  smoothness.thermometers = smoothness.drive = smoothness.ambient = kNothing;
+  smoothness.scenario_of_thermometers = smoothness.scenario_of_displacements = smoothness.offset = kNothing;
+  ChannelFit alone = fit(normal, channel, smoothness);
+  alone.weight.setZero();
+  alone.of_ambient = alone.offset = 0.0;
+  alone.kept = 1.0;
+  alone.standard_deviation.resize(0);
+  return alone;
+}
+
 Eigen::VectorXd FosterProblem::predicted(std::size_t channel, const ChannelFit& fit, bool in_records) const {
   Eigen::VectorXd y = body_columns_ * fit.weight;
   if (channel < n_thermometers_) y += fit.of_ambient * ambient_K_ + Eigen::VectorXd::Constant(y.size(), fit.offset);
+  if (extends_scenario()) y += fit.kept * simulated(channel);
   if (in_records) y += columns_.rightCols(n_records_ + n_starts_) * fit.of_records;
   return y;
 }
@@ -231,24 +287,58 @@ Eigen::VectorXd FosterProblem::heated_K(std::size_t body) const {
   return b < n_heated_ ? Eigen::VectorXd(columns_.col(b)) : Eigen::VectorXd::Zero(columns_.rows());
 }
 
+double FosterProblem::zero_of(std::size_t record, std::size_t channel, const ChannelFit& fit, bool in_records) const {
+  if (!counts_from_start_[channel] || (in_records && fit.of_records[static_cast<Eigen::Index>(record)] != 0.0)) return 0.0;
+  const auto c = static_cast<Eigen::Index>(channel);
+  for (auto i = static_cast<Eigen::Index>(first_row_[record]); i < static_cast<Eigen::Index>(first_row_[record + 1]); ++i) {
+    if (!std::isfinite(readings_(i, c))) continue;
+    double e = readings_(i, c) - body_columns_.row(i).dot(fit.weight);
+    if (channel < n_thermometers_) e -= fit.of_ambient * ambient_K_[i] + fit.offset;
+    if (extends_scenario()) e -= fit.kept * simulated_(i, c);
+    if (in_records) e -= columns_.row(i).tail(n_records_ + n_starts_).dot(fit.of_records);
+    return e;
+  }
+  return 0.0;
+}
+
 Eigen::VectorXd FosterProblem::misses(std::size_t channel, const ChannelFit& fit, bool in_records) const {
   Eigen::VectorXd e = measured(channel) - predicted(channel, fit, in_records);
-  if (!counts_from_start_[channel]) return e;
-  for (std::size_t r = 0; r + 1 < first_row_.size(); ++r) {
-    if (in_records && fit.of_records[static_cast<Eigen::Index>(r)] != 0.0) continue;
-    const auto at = static_cast<Eigen::Index>(first_row_[r]), n = static_cast<Eigen::Index>(first_row_[r + 1]) - at;
-    auto of_record = e.segment(at, n);
-    const auto first = std::find_if(of_record.begin(), of_record.end(), [](double v) { return std::isfinite(v); });
-    if (first != of_record.end()) of_record.array() -= double(*first);
-  }
+  for (std::size_t r = 0; r + 1 < first_row_.size(); ++r)
+    e.segment(static_cast<Eigen::Index>(first_row_[r]), static_cast<Eigen::Index>(first_row_[r + 1] - first_row_[r]))
+        .array() -= zero_of(r, channel, fit, in_records);
   return e;
 }
 
-double FosterProblem::rms(const Eigen::VectorXd& misses, const std::vector<bool>& rows) {
+FosterProblem::Part FosterProblem::part(const std::vector<bool>& rows) const {
+  Part p;
+  std::vector<Eigen::Index> at;
+  for (std::size_t r = 0; r + 1 < first_row_.size(); ++r) {
+    for (std::size_t i = first_row_[r]; i < first_row_[r + 1]; ++i) {
+      if (!rows[i]) continue;
+      at.push_back(static_cast<Eigen::Index>(i));
+      p.records.push_back(r);
+    }
+  }
+  p.bodies = body_columns_(at, Eigen::all);
+  p.of_records = columns_.rightCols(n_records_ + n_starts_)(at, Eigen::all);
+  p.readings = readings_(at, Eigen::all);
+  p.ambient_K = ambient_K_(at);
+  if (extends_scenario()) p.simulated = simulated_(at, Eigen::all);
+  return p;
+}
+
+double FosterProblem::rms(const Part& part, std::size_t channel, const ChannelFit& fit, bool in_records) const {
+  const auto c = static_cast<Eigen::Index>(channel);
+  Eigen::VectorXd e = part.readings.col(c) - part.bodies * fit.weight;
+  if (channel < n_thermometers_) e -= fit.of_ambient * part.ambient_K + Eigen::VectorXd::Constant(e.size(), fit.offset);
+  if (extends_scenario()) e -= fit.kept * part.simulated.col(c);
+  if (in_records) e -= part.of_records * fit.of_records;
+  std::vector<double> zero(static_cast<std::size_t>(n_records_));
+  for (std::size_t r = 0; r < zero.size(); ++r) zero[r] = zero_of(r, channel, fit, in_records);
   double squares = 0.0, n = 0.0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double value = misses[static_cast<Eigen::Index>(i)];
-    if (!rows[i] || !std::isfinite(value)) continue;
+  for (Eigen::Index i = 0; i < e.size(); ++i) {
+    const double value = e[i] - zero[part.records[static_cast<std::size_t>(i)]];
+    if (!std::isfinite(value)) continue;
     squares += value * value;
     n += 1.0;
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "base/parallel.hpp"
 #include "base/rows_as_one.hpp"
@@ -167,14 +168,8 @@ std::vector<std::size_t> blocks_of(std::span<const Record> records) {
   return blocks;
 }
 
-}  // namespace
-
-Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener) {
-  Identified result;
-  result.roles = record_roles(records, hints);
-  const RecordRoles& roles = result.roles;
-  const std::vector<std::size_t> blocks = blocks_of(records);
-
+/// Rise of heated bodies: larger than any thermometer's.
+double rise_of(std::span<const Record> records, const RecordRoles& roles) {
   double rise_K = 0.0;
   for (const std::string& t : roles.thermometers) {
     for (const Record& r : records) {
@@ -182,11 +177,17 @@ Identified identify(std::span<const Record> records, const RoleHints& hints, con
       rise_K = std::max(rise_K, v.maxCoeff() - v.minCoeff());
     }
   }
-  rise_K = rise_K > 0.0 ? kHottest * rise_K : kDefaultRise_K;
+  return rise_K > 0.0 ? kHottest * rise_K : kDefaultRise_K;
+}
 
+struct Chosen {
+  Judged judged;
+  std::vector<double> gains;  ///< of each body
+};
+
+/// The structure that predicts kept-out rows.
+Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, const Listener& listener) {
   listener.begin("laws and number of bodies");
-  const Jury jury(records, roles, rise_K, blocks);
-  std::vector<Judged> tried = structures(records, roles);
   for_each_index(
       tried.size(), [] { return 0; },
       [&](std::size_t i, int&) {
@@ -204,7 +205,6 @@ Identified identify(std::span<const Record> records, const RoleHints& hints, con
   Judged now = **std::find_if(order.begin(), order.end(), [&](const Judged* j) { return is_as_good(j->loss, least.loss); });
 
   listener.begin("bodies that are not missed");
-  const bool has_ambient = !roles.ambient.empty();
   std::vector<double> gains;
   for (bool goes_on = true; goes_on;) {
     goes_on = false;
@@ -223,60 +223,105 @@ Identified identify(std::span<const Record> records, const RoleHints& hints, con
       if (best == less.size() || less[b]->loss.mean < less[best]->loss.mean) best = b;
     }
     if (best < less.size() && less[best]->loss.mean <= now.loss.mean) {
-      const Smoothness kept = now.smoothness;
+      const std::vector<Smoothness> kept = now.smoothness;
       now = *less[best];
       now.smoothness = kept;
       goes_on = true;
     }
   }
+  return {std::move(now), std::move(gains)};
+}
+
+/// Geometric mean of a channel's misses over the folds of a kind; NaN where none judges.
+double missed(const Loss& loss, const std::vector<HiddenRows>& folds, const std::string& kind, std::size_t channel) {
+  double logs = 0.0, there = 0.0;
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    const double log = std::log(loss.rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(channel)));
+    if (folds[f].kind != kind || !std::isfinite(log)) continue;
+    logs += log;
+    there += 1.0;
+  }
+  return there > 0.0 ? std::exp(logs / there) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Geometric mean over the kinds.
+double missed(const Loss& loss, const std::vector<HiddenRows>& folds, std::span<const KeptOutKind> kinds,
+              std::size_t channel) {
+  double sum = 0.0, n = 0.0;
+  for (const KeptOutKind& kind : kinds) {
+    const double of_kind = missed(loss, folds, kind.kind, channel);
+    if (!std::isfinite(of_kind)) continue;
+    sum += std::log(of_kind);
+    n += 1.0;
+  }
+  return n > 0.0 ? std::exp(sum / n) : std::numeric_limits<double>::quiet_NaN();
+}
+
+Identified network_of(std::span<const Record> records, const RecordRoles& roles, std::span<const Record> simulated,
+                      const Listener& listener) {
+  Identified result;
+  result.roles = roles;
+  result.is_extension = !simulated.empty();
+  result.blocks = blocks_of(records);
+  const double rise_K = rise_of(records, roles);
+  const Jury jury(records, roles, rise_K, result.blocks, simulated);
+  const auto [now, gains] = choose(jury, structures(records, roles), !roles.ambient.empty(), listener);
 
   listener.begin("fitting");
-  const FosterProblem problem(records, roles, now.structure, rise_K, blocks);
-  const std::vector<bool> none(problem.n_rows(), false), every(problem.n_rows(), true);
-  const FosterProblem::Normal normal = problem.normal(none);
+  const FosterProblem problem(records, roles, now.structure, rise_K, result.blocks, simulated);
+  const FosterProblem::Normal normal = problem.normal(std::vector<bool>(problem.n_rows(), false));
+  const FosterProblem::Part all = problem.part(std::vector<bool>(problem.n_rows(), true));
   result.structure = now.structure;
-  result.smoothness = now.smoothness;
-  result.blocks = blocks;
   result.reference_degC = problem.reference_degC();
   for (std::size_t b = 0; b < problem.bodies().size(); ++b)
     result.bodies.push_back({problem.bodies()[b], name_of(problem.bodies()[b], now.structure), gains[b]});
-  std::map<std::string, std::size_t> kinds;
+  std::set<std::string> kinds;
   for (const HiddenRows& f : jury.folds()) {
-    if (kinds.emplace(f.kind, result.kinds.size()).second)
-      result.kinds.push_back(
-          {f.kind, std::vector<double>(problem.channels().size(), std::numeric_limits<double>::quiet_NaN())});
+    if (kinds.insert(f.kind).second) result.kinds.push_back({f.kind, {}});
   }
+  const std::optional<Loss> scenario = result.is_extension ? std::optional(jury.of_scenario(now)) : std::nullopt;
+  const bool is_extended = scenario && surely_above(missed_more(*scenario, now.loss)) > 0.0;
   for (std::size_t c = 0; c < problem.channels().size(); ++c) {
     IdentifiedChannel channel;
     channel.name = problem.channels()[c];
     channel.unit = records[0].at(channel.name).unit;
-    channel.fit = problem.fit(normal, c, now.smoothness);
+    channel.fit = problem.fit(normal, c, now.smoothness[c]);
+    const Loss* loss = &now.loss;
+    if (scenario) {
+      channel.missed_more_without = missed_more(*scenario, now.loss, c);
+      channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0;
+      const ChannelFit alone = problem.scenario_alone(normal, c, now.smoothness[c]);
+      channel.scenario_simulated = problem.rms(all, c, alone, false);
+      channel.scenario_kept_out = missed(*scenario, jury.folds(), result.kinds, c);
+      if (!channel.is_extended) {
+        channel.fit = alone;
+        loss = &*scenario;
+      }
+    }
     channel.predicted = problem.predicted(c, channel.fit, true);
     channel.misses = problem.misses(c, channel.fit);
     channel.ledger = ledger(problem, c, channel.fit);
     channel.swing = deviation(problem.measured(c));
-    channel.missed_own = FosterProblem::rms(channel.misses, every);
-    double sum = 0.0, n = 0.0;
-    for (KeptOutKind& kind : result.kinds) {
-      double logs = 0.0, there = 0.0;
-      for (std::size_t f = 0; f < jury.folds().size(); ++f) {
-        const double log = std::log(now.loss.rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c)));
-        if (jury.folds()[f].kind != kind.kind || !std::isfinite(log)) continue;
-        logs += log;
-        there += 1.0;
-      }
-      if (there == 0.0) continue;
-      kind.rms[c] = std::exp(logs / there);
-      sum += logs / there;
-      n += 1.0;
-    }
-    channel.missed_kept_out = n > 0.0 ? std::exp(sum / n) : std::numeric_limits<double>::quiet_NaN();
-    channel.missed_simulated = FosterProblem::rms(problem.misses(c, channel.fit, false), every);
+    channel.missed_own = problem.rms(all, c, channel.fit);
+    for (KeptOutKind& kind : result.kinds) kind.rms.push_back(missed(*loss, jury.folds(), kind.kind, c));
+    channel.missed_kept_out = missed(*loss, jury.folds(), result.kinds, c);
+    channel.missed_simulated = problem.rms(all, c, channel.fit, false);
     if (channel.fit.standard_deviation.size() > 0)
       channel.fit.standard_deviation *= channel.missed_own * std::sqrt(rows_as_one(std::span(&channel.misses, 1)));
     result.channels.push_back(std::move(channel));
   }
   return result;
+}
+
+}  // namespace
+
+Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener) {
+  return network_of(records, record_roles(records, hints), {}, listener);
+}
+
+Identified extend(std::span<const Record> records, const RecordRoles& roles, std::span<const Record> simulated,
+                  const Listener& listener) {
+  return network_of(records, roles, simulated, listener);
 }
 
 }  // namespace driftwright::identification

@@ -11,8 +11,10 @@ namespace driftwright::identification {
 namespace {
 
 constexpr std::array<double, 3> kPenalties = {1e-4, 1e-3, 1e-2};
-constexpr std::array<double, 2> kStarts = {1e6, 1e-3};  // in balance; free
-constexpr double kFloor = 0.02;                         // of a channel's deviation: misses below are not told from nothing
+constexpr std::array<double, 3> kPenaltiesBeside = {1.0, 1e-2, 1e-4};  // of what a scenario is extended by
+constexpr std::array<double, 3> kScenarios = {1e6, 1e-2, 1e-4};        // kept whole; may lose
+constexpr std::array<double, 2> kStarts = {1e6, 1e-3};                 // in balance; free
+constexpr double kFloor = 0.02;  // of a channel's deviation: misses below are not told from nothing
 
 /// Records with the first row of each block: what folds are told by.
 std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks) {
@@ -77,12 +79,70 @@ Eigen::VectorXd mean_over_channels(const Eigen::MatrixXd& log_rms) {
   return mean;
 }
 
+/// Displacements count as much as thermometers do, however many there are.
+void weigh(Loss& loss, std::size_t n_thermometers, const std::vector<HiddenRows>& folds) {
+  const auto n_t = static_cast<Eigen::Index>(n_thermometers), n_d = loss.log_rms.cols() - n_t;
+  const Eigen::VectorXd thermometers = mean_over_channels(loss.log_rms.leftCols(n_t));
+  loss.of_fold = mean_over_channels(loss.log_rms.rightCols(n_d));
+  for (Eigen::Index f = 0; f < loss.of_fold.size(); ++f) {
+    double& of_fold = loss.of_fold[f];
+    if (!std::isfinite(of_fold))
+      of_fold = thermometers[f];
+    else if (std::isfinite(thermometers[f]))
+      of_fold = 0.5 * (of_fold + thermometers[f]);
+  }
+  loss.mean = mean_of_kinds(loss.of_fold, folds);
+}
+
+/// What is tried of a network from records alone: records that begin in balance, and free starts.
+std::array<std::vector<Smoothness>, 2> alone(bool of_thermometers) {
+  std::array<std::vector<Smoothness>, 2> lists;
+  for (std::size_t free : {0, 1}) {
+    for (double p : kPenalties) {
+      if (of_thermometers) {
+        lists[free].push_back({.thermometers = p, .start_of_thermometers = kStarts[free]});
+        continue;
+      }
+      for (double a : kPenalties) lists[free].push_back({.drive = p, .ambient = a, .start_of_displacements = kStarts[free]});
+    }
+  }
+  return lists;
+}
+
+/// The same of what is learned beside a scenario; of equals the first, which is most drawn to it.
+std::array<std::vector<Smoothness>, 2> beside_scenario(bool of_thermometers) {
+  std::array<std::vector<Smoothness>, 2> lists;
+  for (std::size_t free : {0, 1}) {
+    for (double s : kScenarios) {
+      for (double p : kPenaltiesBeside) {
+        if (of_thermometers) {
+          lists[free].push_back({.thermometers = p, .scenario_of_thermometers = s, .start_of_thermometers = kStarts[free]});
+          continue;
+        }
+        for (double a : kPenaltiesBeside)
+          lists[free].push_back(
+              {.drive = p, .ambient = a, .scenario_of_displacements = s, .start_of_displacements = kStarts[free]});
+      }
+    }
+  }
+  return lists;
+}
+
 }  // namespace
 
+MeanError missed_more(const Loss& one, const Loss& other) {
+  const Eigen::VectorXd more = one.of_fold - other.of_fold;
+  return mean_error(std::span(more.data(), static_cast<std::size_t>(more.size())));
+}
+
+MeanError missed_more(const Loss& one, const Loss& other, std::size_t channel) {
+  const Eigen::VectorXd more =
+      one.log_rms.col(static_cast<Eigen::Index>(channel)) - other.log_rms.col(static_cast<Eigen::Index>(channel));
+  return mean_error(std::span(more.data(), static_cast<std::size_t>(more.size())));
+}
+
 bool is_as_good(const Loss& one, const Loss& best) {
-  const Eigen::VectorXd worse = one.of_fold - best.of_fold;
-  const MeanError error = mean_error(std::span(worse.data(), static_cast<std::size_t>(worse.size())));
-  return one.mean - best.mean <= error.standard_error;
+  return one.mean - best.mean <= missed_more(one, best).standard_error;
 }
 
 double deviation(const Eigen::VectorXd& y) {
@@ -96,103 +156,115 @@ double deviation(const Eigen::VectorXd& y) {
   return n > 0.0 ? std::sqrt(std::max(0.0, squares / n - sum / n * sum / n)) : 0.0;
 }
 
-Jury::Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K, const std::vector<std::size_t>& blocks)
+Jury::Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K, const std::vector<std::size_t>& blocks,
+           std::span<const Record> simulated)
     : records_(records),
       roles_(roles),
       rise_K_(rise_K),
       blocks_(blocks),
+      simulated_(simulated),
       folds_(hidden_rows(thinned(records, blocks), roles)) {}
 
-Judged Jury::judged(const Structure& structure, const std::optional<Smoothness>& only) const {
-  const FosterProblem problem(records_, roles_, structure, rise_K_, blocks_);
+Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& only) const {
+  const FosterProblem problem(records_, roles_, structure, rise_K_, blocks_, simulated_);
   std::vector<FosterProblem::Normal> normals;
-  for (const HiddenRows& f : folds_) normals.push_back(problem.normal(f.hidden));
+  std::vector<FosterProblem::Part> parts;
+  std::vector<double> floor;
+  for (const HiddenRows& f : folds_) {
+    normals.push_back(problem.normal(f.hidden));
+    parts.push_back(problem.part(f.hidden));
+  }
+  for (std::size_t c = 0; c < problem.channels().size(); ++c) floor.push_back(kFloor * deviation(problem.measured(c)));
   const std::size_t n_t = problem.n_thermometers(), n_c = problem.channels().size();
-  Judged result{.structure = structure, .smoothness = {}, .loss = {}, .n_bodies = problem.bodies().size()};
+  Judged result{
+      .structure = structure, .smoothness = std::vector<Smoothness>(n_c), .loss = {}, .n_bodies = problem.bodies().size()};
   result.loss.log_rms.setConstant(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(n_c),
                                   std::numeric_limits<double>::quiet_NaN());
   result.loss.rms = result.loss.log_rms;
-  // Of some channels: what penalties do best where records begin in balance, and where their starts are free; these where the scenario that is written, which knows of none, is better with them beyond a standard error.
-  const auto try_all = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& in_balance,
-                           const std::vector<Smoothness>& free, const auto& take) {
-    const auto width = static_cast<Eigen::Index>(to - from);
-    struct Best {
-      Smoothness smoothness;
-      Eigen::MatrixXd log_rms, rms;
-      Loss loss, simulated;  ///< with what is true of a record alone, and as the written scenario is simulated
-    };
-    const auto best_of = [&](const std::vector<Smoothness>& tried) {
-      Best best;
-      best.loss.mean = std::numeric_limits<double>::max();
-      for (const Smoothness& s : tried) {
-        Eigen::MatrixXd log_rms(static_cast<Eigen::Index>(folds_.size()), width), rms = log_rms, simulated = log_rms;
-        for (std::size_t f = 0; f < folds_.size(); ++f) {
-          for (std::size_t c = from; c < to; ++c) {
-            const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c - from);
-            const ChannelFit fit = problem.fit(normals[f], c, s);
-            const double floor = kFloor * deviation(problem.measured(c));
-            rms(row, column) = FosterProblem::rms(problem.misses(c, fit), folds_[f].hidden);
-            log_rms(row, column) = std::log(std::hypot(rms(row, column), floor));
-            simulated(row, column) =
-                std::log(std::hypot(FosterProblem::rms(problem.misses(c, fit, false), folds_[f].hidden), floor));
-          }
-        }
-        const auto loss_of = [&](const Eigen::MatrixXd& logs) {
-          Loss loss{.log_rms = {}, .rms = {}, .of_fold = mean_over_channels(logs)};
-          loss.mean = mean_of_kinds(loss.of_fold, folds_);
-          return loss;
-        };
-        Loss loss = loss_of(log_rms);
-        if (loss.mean < best.loss.mean) best = {s, std::move(log_rms), std::move(rms), std::move(loss), loss_of(simulated)};
-      }
-      return best;
-    };
-    Best best = best_of(in_balance);
-    if (!free.empty()) {
-      Best other = best_of(free);
-      if (!is_as_good(best.simulated, other.simulated)) best = std::move(other);
-    }
-    take(best.smoothness);
-    result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), width) = best.log_rms;
-    result.loss.rms.middleCols(static_cast<Eigen::Index>(from), width) = best.rms;
+  struct Tried {
+    Smoothness smoothness;
+    Eigen::MatrixXd log_rms, rms;
+    Loss loss, simulated;  ///< with what is true of a record alone, and as the written scenario is simulated
   };
-  std::vector<Smoothness> of_thermometers[2], of_displacements[2];
-  if (only) {
-    of_thermometers[0] = of_displacements[0] = {*only};
-  } else {
-    for (std::size_t free : {0, 1}) {
-      for (double p : kPenalties) {
-        of_thermometers[free].push_back({.thermometers = p, .start_of_thermometers = kStarts[free]});
-        for (double a : kPenalties)
-          of_displacements[free].push_back({.drive = p, .ambient = a, .start_of_displacements = kStarts[free]});
+  const auto tried = [&](std::size_t from, std::size_t to, const Smoothness& s) {
+    Tried t{.smoothness = s,
+            .log_rms = Eigen::MatrixXd(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(to - from)),
+            .rms = {},
+            .loss = {},
+            .simulated = {}};
+    t.rms = t.log_rms;
+    Eigen::MatrixXd simulated = Eigen::MatrixXd::Zero(t.rms.rows(), t.rms.cols());
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      for (std::size_t c = from; c < to; ++c) {
+        const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c - from);
+        const ChannelFit fit = problem.fit(normals[f], c, s);
+        t.rms(row, column) = problem.rms(parts[f], c, fit);
+        t.log_rms(row, column) = std::log(std::hypot(t.rms(row, column), floor[c]));
+        if (!problem.extends_scenario())
+          simulated(row, column) = std::log(std::hypot(problem.rms(parts[f], c, fit, false), floor[c]));
       }
     }
+    const auto loss_of = [&](const Eigen::MatrixXd& logs) {
+      Loss loss{.log_rms = {}, .rms = {}, .of_fold = mean_over_channels(logs)};
+      loss.mean = mean_of_kinds(loss.of_fold, folds_);
+      return loss;
+    };
+    t.loss = loss_of(t.log_rms);
+    t.simulated = loss_of(simulated);
+    return t;
+  };
+  const auto best_of = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& list) {
+    Tried best = tried(from, to, list.front());
+    for (const Smoothness& s : std::span(list).subspan(1)) {
+      if (Tried t = tried(from, to, s); t.loss.mean < best.loss.mean) best = std::move(t);
+    }
+    return best;
+  };
+  // Records begin in balance, unless the scenario that is written, which knows of no other start, is better beyond a standard error where starts are free; beside a scenario, unless kept-out
+  // rows are: a heat is not to stand for a warm machine.
+  const auto try_all = [&](std::size_t from, std::size_t to, const std::array<std::vector<Smoothness>, 2>& lists) {
+    Tried best = best_of(from, to, lists[0]);
+    if (!lists[1].empty()) {
+      Tried free = best_of(from, to, lists[1]);
+      const bool is_extension = problem.extends_scenario();
+      if (!is_as_good(is_extension ? best.loss : best.simulated, is_extension ? free.loss : free.simulated))
+        best = std::move(free);
+    }
+    for (std::size_t c = from; c < to; ++c) result.smoothness[c] = best.smoothness;
+    result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), best.rms.cols()) = best.log_rms;
+    result.loss.rms.middleCols(static_cast<Eigen::Index>(from), best.rms.cols()) = best.rms;
+  };
+  if (!only.empty()) {
+    for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, {{{only[c]}, {}}});
+  } else if (problem.extends_scenario()) {  // each channel lacks its own
+    for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, beside_scenario(c < n_t));
+  } else {
+    if (n_t > 0) try_all(0, n_t, alone(true));
+    if (n_c > n_t) try_all(n_t, n_c, alone(false));
   }
-  if (n_t > 0)
-    try_all(0, n_t, of_thermometers[0], of_thermometers[1], [&](const Smoothness& s) {
-      result.smoothness.thermometers = s.thermometers;
-      result.smoothness.start_of_thermometers = s.start_of_thermometers;
-    });
-  if (n_c > n_t)
-    try_all(n_t, n_c, of_displacements[0], of_displacements[1], [&](const Smoothness& s) {
-      result.smoothness.drive = s.drive;
-      result.smoothness.ambient = s.ambient;
-      result.smoothness.start_of_displacements = s.start_of_displacements;
-    });
-  // displacements count as much as thermometers do, however many there are
-  result.loss.of_fold = mean_over_channels(result.loss.log_rms.rightCols(static_cast<Eigen::Index>(n_c - n_t)));
-  if (n_c == n_t) result.loss.of_fold.setConstant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::VectorXd of_thermometers_too =
-      mean_over_channels(result.loss.log_rms.leftCols(static_cast<Eigen::Index>(n_t)));
-  for (Eigen::Index f = 0; f < result.loss.of_fold.size(); ++f) {
-    double& of_fold = result.loss.of_fold[f];
-    if (!std::isfinite(of_fold))
-      of_fold = of_thermometers_too[f];
-    else if (std::isfinite(of_thermometers_too[f]))
-      of_fold = 0.5 * (of_fold + of_thermometers_too[f]);
-  }
-  result.loss.mean = mean_of_kinds(result.loss.of_fold, folds_);
+  weigh(result.loss, n_t, folds_);
   return result;
+}
+
+Loss Jury::of_scenario(const Judged& extension) const {
+  const FosterProblem problem(records_, roles_, extension.structure, rise_K_, blocks_, simulated_);
+  const std::size_t n_c = problem.channels().size();
+  Loss loss;
+  loss.rms.setConstant(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(n_c),
+                       std::numeric_limits<double>::quiet_NaN());
+  loss.log_rms = loss.rms;
+  for (std::size_t f = 0; f < folds_.size(); ++f) {
+    const FosterProblem::Normal normal = problem.normal(folds_[f].hidden);
+    const FosterProblem::Part part = problem.part(folds_[f].hidden);
+    for (std::size_t c = 0; c < n_c; ++c) {
+      const double rms = problem.rms(part, c, problem.scenario_alone(normal, c, extension.smoothness[c]));
+      const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c);
+      loss.rms(row, column) = rms;
+      loss.log_rms(row, column) = std::log(std::hypot(rms, kFloor * deviation(problem.measured(c))));
+    }
+  }
+  weigh(loss, problem.n_thermometers(), folds_);
+  return loss;
 }
 
 }  // namespace driftwright::identification

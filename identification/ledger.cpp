@@ -77,6 +77,7 @@ std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, co
     ambient.gain_tau.emplace_back(fit.of_ambient, 0.0);
   }
   if (problem.ambient_K().cwiseAbs().maxCoeff() > 0.0) parts.push_back(std::move(ambient));
+  if (problem.extends_scenario()) parts.push_back({"the scenario", fit.kept * problem.simulated(channel), {}});
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.n_rows()));
   for (const Parts& p : parts) sum += p.course;
   const Eigen::VectorXd about = (sum.array() - sum.mean()).matrix();

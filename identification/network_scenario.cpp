@@ -11,8 +11,8 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr double kCapacity_J_K = 1e6;
-constexpr double kThermometer_J_K = 1.0, kThermometerTau_s = 20.0;
+constexpr double kCapacity_J_K = 1e4;
+constexpr double kThermometer_J_K = 1e-3, kThermometerTau_s = 20.0;
 constexpr const char* kStill = "floor";
 constexpr double kStill_J_K = 1e12, kStillTau_s = 1e9;  // stands for ever where it began
 
@@ -71,7 +71,8 @@ std::string network_scenario(const Identified& network, const std::string& name,
     }
   }
   text += "  # bodies: each loses heat to the ambient alone, with the time constant that its name says\n";
-  for (std::size_t b : used) text += fmt::format("  - {{type: node, node: {}, capacity: 1 MJ/K}}\n", network.bodies[b].name);
+  for (std::size_t b : used)
+    text += fmt::format("  - {{type: node, node: {}, capacity: 10 kJ/K}}\n", network.bodies[b].name);
   for (std::size_t b : used)
     text += fmt::format("  - {{type: link, node: {}, to: ambient, conductance: {} W/K}}\n", network.bodies[b].name,
                         digits(kCapacity_J_K / network.bodies[b].body.tau_s));

@@ -127,6 +127,14 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   return m;
 }
 
+diagnosis::Prediction read_of(const MeasuredTwin& m, const diagnosis::TwinState& state) {
+  diagnosis::Twin::Workspace workspace(*m.twin);
+  diagnosis::Prediction read;
+  for (const diagnosis::MeasuredRun& run : m.runs)
+    read.push_back(m.twin->read(state, run, m.twin->respond(state, run, workspace)));
+  return read;
+}
+
 std::string one_mesh_text(const MeasuredTwin& m) {
   if (m.on_other_mesh || m.mesh.n_nodes() == 0) return "";
   return fmt::format("there is no second mesh: {}; an error of the mesh can pass for a cause", m.why_one_mesh);

@@ -38,6 +38,10 @@ struct MeasuredTwin {
 [[nodiscard]] MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
                                               const std::vector<std::string>& measured, const Listener& listener);
 
+/// What instruments of a state of the twin say of all rows of all runs.
+/// @throws SolveError  where the state has no solution
+[[nodiscard]] diagnosis::Prediction read_of(const MeasuredTwin& m, const diagnosis::TwinState& state);
+
 /// A sentence without its full stop where what the mesh does could not be told; else empty.
 [[nodiscard]] std::string one_mesh_text(const MeasuredTwin& m);
 

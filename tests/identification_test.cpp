@@ -287,5 +287,90 @@ TEST(RunRecord, HasASpeedAndNothingMissingOfWhatDrives) {
   EXPECT_EQ(run.find("nose"), nullptr);
 }
 
+/// What a scenario says of the rows of records: a part of the truth.
+std::vector<Record> simulated(const std::vector<Record>& records, const std::function<void(Record&)>& change) {
+  std::vector<Record> list;
+  for (const Record& r : records) {
+    list.push_back(r);
+    change(list.back());
+  }
+  return list;
+}
+
+RecordRoles roles_of_machine() {
+  return {.speed = "speed",
+          .drives = {},
+          .ambient = "hall",
+          .thermometers = {"t_box", "t_head"},
+          .displacements = {"nose"},
+          .guesses = {}};
+}
+
+std::vector<Record> without_noise() {
+  return {measured("one.csv", {{60, 0}, {120, 1000}, {60, 0}, {120, 3000}, {90, 0}, {120, 2000}}, 1, 0.0),
+          measured("two.csv", {{30, 2000}, {90, 0}, {120, 1500}, {120, 2500}, {60, 0}, {60, 3000}}, 2, 0.0),
+          measured("three.csv", {{100, 2500}, {100, 500}, {100, 0}, {100, 1750}, {100, 0}}, 3, 0.0)};
+}
+
+TEST(ExtendedMachine, LearnsNothingWhereTheScenarioIsRight) {
+  const Identified e = extend(three_days(), roles_of_machine(), without_noise());
+  for (const IdentifiedChannel& c : e.channels) {
+    EXPECT_FALSE(c.is_extended) << c.name;
+    EXPECT_EQ(c.fit.kept, 1.0);
+    EXPECT_EQ(c.fit.weight.cwiseAbs().sum(), 0.0);
+    EXPECT_NEAR(c.missed_kept_out, c.scenario_kept_out, 1e-12);
+  }
+}
+
+// The scenario knows no heat that goes with the turning spindle: t_box lacks 6 K behind 40 min, the nose -12 um.
+TEST(ExtendedMachine, LearnsTheHeatThatTheScenarioLacks) {
+  const auto lacks = simulated(without_noise(), [](Record& r) {
+    Eigen::VectorXd turns(static_cast<Eigen::Index>(r.n_samples()));
+    for (Eigen::Index i = 0; i < turns.size(); ++i)
+      turns[i] = r.channels[0].values[static_cast<std::size_t>(i)] > 0.0 ? 1.0 : 0.0;
+    const Eigen::VectorXd box = 6.0 * lagged_steps(r.time_s, turns, 2400.0);
+    for (std::size_t i = 0; i < r.n_samples(); ++i) {
+      r.channels[2].values[i] -= box[static_cast<Eigen::Index>(i)];
+      r.channels[4].values[i] += 2.0 * box[static_cast<Eigen::Index>(i)];
+    }
+  });
+  const Identified e = extend(three_days(), roles_of_machine(), lacks);
+  const auto channel = [&](const std::string& name) {
+    return *std::find_if(e.channels.begin(), e.channels.end(), [&](const auto& c) { return c.name == name; });
+  };
+  EXPECT_FALSE(channel("t_head").is_extended);
+  for (const char* name : {"t_box", "nose"}) {
+    const IdentifiedChannel c = channel(name);
+    EXPECT_TRUE(c.is_extended) << name;
+    EXPECT_GT(c.fit.kept, 0.9) << name;
+    EXPECT_LT(c.missed_kept_out, 0.15 * c.scenario_kept_out) << name;
+    EXPECT_GT(c.missed_more_without.mean, 5.0 * c.missed_more_without.standard_error) << name;
+  }
+  EXPECT_GE(channel("t_box").fit.weight.minCoeff(), 0.0) << "a thermometer is passive";
+  double in_the_end = 0.0;
+  for (const Driver& d : channel("t_box").ledger) {
+    if (d.name != "ambient" && d.name != "the scenario") in_the_end += d.in_the_end;
+  }
+  EXPECT_NEAR(in_the_end, 6.0, 0.6);
+}
+
+// A scenario of another machine is of no use: what is kept of it falls, and the network beside it predicts as if there were none.
+TEST(ExtendedMachine, KeepsLittleOfAScenarioOfAnotherMachine) {
+  const auto other = simulated(three_days(), [](Record& r) {
+    for (std::size_t i = 0; i < r.n_samples(); ++i) {
+      for (std::size_t c : {2, 3}) r.channels[c].values[i] = 20.0 + 8.0 * std::sin(static_cast<double>(i) / 37.0);
+      r.channels[4].values[i] = 40.0 * std::sin(static_cast<double>(i) / 53.0);
+    }
+  });
+  const std::vector<Record> records = three_days();
+  const Identified e = extend(records, roles_of_machine(), other);
+  const Identified alone = identify(records, {.ambient = "hall", .drives = {}});
+  for (std::size_t c = 0; c < e.channels.size(); ++c) {
+    EXPECT_TRUE(e.channels[c].is_extended);
+    EXPECT_LT(e.channels[c].fit.kept, 0.1);
+    EXPECT_LT(e.channels[c].missed_kept_out, 2.0 * alone.channels[c].missed_kept_out) << e.channels[c].name;
+  }
+}
+
 }  // namespace
 }  // namespace driftwright::identification::identification_test

@@ -16,6 +16,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 class IdentifyVerb : public ::testing::Test {
@@ -28,7 +29,8 @@ TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
   const CommandOutcome identified = run_program(
       "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o " + out_.string());
   ASSERT_EQ(identified.exit_code, 0) << identified.output;
-  EXPECT_THAT(identified.output, AllOf(ContainsRegex("drift_y +[0-9]+ % speed"), HasSubstr("'t_ambient' is the ambient, by its name")));
+  EXPECT_THAT(identified.output,
+              AllOf(ContainsRegex("drift_y +[0-9]+ % speed"), HasSubstr("'t_ambient' is the ambient, by its name")));
   const CommandOutcome checked = run_program("check " + (out_ / "monday.yaml").string());
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
   const std::filesystem::path run = temporary_folder() / "identified_run";
@@ -51,6 +53,50 @@ TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
   const Json summary = Json::parse(std::ifstream(out_ / "summary.json"));
   EXPECT_EQ(summary.at("channels").size(), 16);
   EXPECT_GT(summary.at("bodies").size(), 2);
+}
+
+// Monday and Tuesday are of a machine that differs from the scenario in one thing; 0.1 K of noise. The file that is written runs, and leaves about the noise of the thermometer that was missed most.
+TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
+  const CommandOutcome learned = run_program(
+      "identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/monday.csv --record "
+      "scenarios/records/tuesday.csv -o " +
+      out_.string());
+  ASSERT_EQ(learned.exit_code, 0) << learned.output;
+  const Json summary = Json::parse(std::ifstream(out_ / "summary.json"));
+  double n_learned = 0.0;
+  for (const Json& channel : summary.at("channels")) {
+    n_learned += channel.at("written") == "yes" ? 1.0 : 0.0;
+    if (channel.at("name") != "t08") continue;
+    EXPECT_GT(channel.at("rms_scenario").get<double>(), 0.4);
+    EXPECT_LT(channel.at("rms_simulated").get<double>(), 0.12);
+    EXPECT_LT(channel.at("rms_kept_out").get<double>(), 0.13);
+  }
+  EXPECT_GT(n_learned, 10.0);
+  const CommandOutcome again =
+      run_program("identify --prior " + (out_ / "extended.yaml").string() +
+                  " --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv --json -o " +
+                  (out_ / "again").string());
+  ASSERT_EQ(again.exit_code, 0) << again.output;
+  for (const Json& channel : Json::parse(std::ifstream(out_ / "again" / "summary.json")).at("channels"))
+    EXPECT_GT(channel.at("rms_kept_out").get<double>(), 0.8 * channel.at("rms_scenario_kept_out").get<double>())
+        << channel.at("name") << ": what was learned once is there";
+}
+
+TEST_F(IdentifyVerb, LearnsNothingBesideAScenarioThatIsRight) {
+  const CommandOutcome run =
+      run_program("identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/good.csv -o " + out_.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("Nothing is learned"));
+  std::ifstream file(out_ / "extended.yaml");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_THAT(text, AllOf(HasSubstr("Deckel FP3"), Not(HasSubstr("type: learned"))));
+}
+
+TEST_F(IdentifyVerb, RefusesASecondSayBesideAScenario) {
+  const CommandOutcome run = run_program(
+      "identify --prior scenarios/fp3_spindle.yaml --ambient t01 --record scenarios/records/good.csv -o " + out_.string());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.output, AllOf(HasSubstr("--prior"), HasSubstr("--ambient")));
 }
 
 TEST_F(IdentifyVerb, SaysWhatARecordLacks) {

@@ -57,6 +57,64 @@ TEST(SensorBias, FadesFromTheStartOfEachCyclogram) {
              1e-12);
 }
 
+// The drive of 150 s at 2000, 450 s at 1000, then rest, behind lags of 1 and 10 min; the ambient grows by 0.01 K/s.
+TEST(Learned, FollowsTheSpeedBehindItsTimeConstants) {
+  const Eigen::MatrixXd t =
+      told(std::vector<std::string>{"{type: learned, displacement: z, follows: speed, at_speed: 2000 rpm, exponent: 2, "
+                                    "grows: [[1 min, 4 um], [10 min, -8 um]]}"});
+  const auto at = [](double t_s, double tau_s) {
+    const double first = -std::expm1(-std::min(t_s, 150.0) / tau_s);
+    if (t_s <= 150.0) return first;
+    const double second = 0.25 + (first - 0.25) * std::exp(-(std::min(t_s, 600.0) - 150.0) / tau_s);
+    return t_s <= 600.0 ? second : second * std::exp(-(t_s - 600.0) / tau_s);
+  };
+  std::vector<double> expected;
+  for (const double t_s : kTime_s) expected.push_back(1e-6 * (4.0 * at(t_s, 60.0) - 8.0 * at(t_s, 600.0)));
+  expect_row(t, kZ, expected, 1e-15);
+}
+
+TEST(Learned, KeepsAShareOfTheChangeAndAddsToIt) {
+  const Eigen::MatrixXd t = told(std::vector<std::string>{
+      "{type: learned, sensor: a, follows: running, above: 1500 rpm, rises: [[0 min, 3 K]]}",
+      "{type: learned, sensor: a, keeps: 0.5, offset: 1 K, follows: ambient, rises: [[0 min, 0.2 K]]}"});
+  // 0 at the start: the ambient's. Half of a, 1 K, 3 K while faster than 1500, 0.2 of the ambient's rise
+  expect_row(t, kA, {2.5 + 4, 2.5 + 4 + 0.2 * 0.6, 4 + 1 + 0.2 * 1.5, 1 + 1 + 0.2 * 3, 1.5 + 1 + 0.2 * 6, 3.5 + 1 + 0.2 * 9},
+             1e-12);
+}
+
+TEST(Learned, LagsBehindTheAmbient) {
+  const Eigen::MatrixXd t =
+      told(std::vector<std::string>{"{type: learned, displacement: z, follows: ambient, grows: [[5 min, 10 um]]}"});
+  const auto at = [](double t_s) { return 0.01 * (t_s - 300.0 * -std::expm1(-t_s / 300.0)); };
+  std::vector<double> expected;
+  for (const double t_s : kTime_s) expected.push_back(1e-5 * at(t_s));
+  expect_row(t, kZ, expected, 1e-12);
+}
+
+TEST(Learned, FollowsARecordedColumn) {
+  Cyclogram heated = kCyclogram;
+  heated.columns = {{"heater", "W", {{0, 150}, {150, 0}}}};
+  const Eigen::MatrixXd t = told(
+      std::vector<std::string>{
+          "{type: learned, sensor: a, follows: column, column: heater_W, at: 100, rises: [[2 min, 1.5 K]]}"},
+      heated);
+  // 150 W are more than was learned from: as much as at 100
+  EXPECT_NEAR(t(kA, 2), 8 + 1.5 * -std::expm1(-150.0 / 120.0), 1e-12);
+  EXPECT_NEAR(t(kA, 3), 2 + 1.5 * -std::expm1(-150.0 / 120.0) * std::exp(-150.0 / 120.0), 1e-12);
+}
+
+TEST(Learned, RefusesWhatDoesNotGoTogether) {
+  for (const auto& [entry, says] : {
+           std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) are of a sensor"},
+           {"{type: learned, sensor: a}", "nothing is learned"},
+           {"{type: learned, sensor: a, follows: running}", "go together"},
+           {"{type: learned, displacement: z, offset: 1 K, keeps: 0.5}", "it is of a sensor"},
+           {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` go together"},
+           {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}", "the `column` go together"},
+       })
+    EXPECT_THAT(([entry = std::string(entry)] { (void)read(entry); }), ThrowsMessage<InputError>(HasSubstr(says))) << entry;
+}
+
 TEST(SensorPlace, ReadsAShareOfTheAirWhileTheSpindleTurns) {
   const Eigen::MatrixXd t = told(
       std::vector<std::string>{"{type: sensor_place, sensor: a, body: ambient, share: 0.2, acts: while_spindle_turns}"});

@@ -121,7 +121,11 @@ def by_strategies(case, program, folder):
 
 
 def converted(case, source, path):
-    """The record as the scenario reads it (bench/measured/to_record.py)."""
+    """The record as the scenario reads it (bench/measured/to_record.py); without a conversion as it is."""
+    if not case.conversion:
+        with open(source, encoding="utf-8") as whole, open(path, "w", encoding="utf-8") as rows:
+            rows.writelines(line for line in whole if not line.startswith("#"))
+        return path
     subprocess.run([sys.executable, os.path.join(ROOT, "bench", "measured", "to_record.py"), case.conversion, source, path], check=True)
     return path
 
@@ -131,14 +135,17 @@ def raw_rows(path):
         return list(csv.reader(file))
 
 
-def simulated_channels(program, scenario, record, folder, name):
-    """{header: [(time, measured, simulated)]} of all channels that record and simulation have, by the scenario driven as the record says; None and why where that fails."""
+def simulated_channels(program, scenario, record, folder, name, ambient=""):
+    """{header: [(time, measured, simulated)]} of all channels that record and simulation have, by the scenario driven as the record says; None and why where that fails.
+
+    ambient: the channel of the surroundings, where it is not called so."""
     with open(scenario, encoding="utf-8") as file:
-        text = file.read()
+        text = re.sub(r"\bcsv: (?![/\"])", f"csv: {os.path.dirname(scenario)}/", file.read())
     text = re.sub(r"^cyclograms:.*\n", lambda m: m.group(0) + f"  kept_out: {{csv: {record}}}\n", text, count=1, flags=re.M)
     rows = raw_rows(record)
-    if "ambient_degC" in rows[0]:
-        text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: ambient}}", text, count=1, flags=re.M)
+    ambient = "ambient" if "ambient_degC" in rows[0] else ambient
+    if ambient:
+        text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: {ambient}}}", text, count=1, flags=re.M)
     # paths of extended.yaml are absolute; it may lie anywhere
     edited, log, out = (os.path.join(folder, name + end) for end in (".yaml", ".log", ""))
     with open(edited, "w", encoding="utf-8") as file:

@@ -1,0 +1,51 @@
+#include "app/identify_beside.hpp"
+
+#include <fmt/format.h>
+
+#include "app/diagnosis_files.hpp"
+#include "app/results.hpp"
+#include "base/delimited_text.hpp"
+#include "base/errors.hpp"
+#include "findings/identification_document.hpp"
+#include "studies/remainder.hpp"
+
+namespace driftwright::app {
+
+void identify_beside(const IdentifyOptions& asked) {
+  IdentifyOptions options = asked;
+  options.scenario = asked.prior;
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.prior);
+  (void)scenarios::require_machine(scenario, "identify --prior");
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  const studies::MeasuredTwin m =
+      studies::open_measured_twin(scenario, "identify --prior", options.records, progress.listener());
+  const double reference_K = m.twin->reference_K();
+  const studies::BesideRecords beside = studies::beside(m.runs, studies::read_of(m, m.twin->as_written()), reference_K);
+  identification::Identified learned =
+      identification::extend(beside.measured, beside.roles, beside.simulated, progress.listener());
+  progress.begin("writing");
+  std::vector<std::string> head = {
+      fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/identification.md)",
+                  clean_name(options.prior))};
+  for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
+  head.emplace_back("");
+  std::string difference;
+  const diagnosis::ExtendedScenario extended =
+      write_scenario("extended", m, studies::stated_extension(learned), head, folder, &difference);
+  if (!extended.not_written.empty())
+    throw InputError(
+        fmt::format("{}: what was learned could not be written: {}", options.prior, extended.not_written.front()));
+  const studies::BesideRecords written = studies::beside(m.runs, read_as_written(m, extended), reference_K);
+  for (identification::IdentifiedChannel& c : learned.channels) c.missed_simulated = studies::missed(written, c.name);
+  findings::IdentificationFindings found{scenario.name, beside.measured, learned, {}};
+  for (const diagnosis::MeasuredRun& run : m.runs) {
+    for (const diagnosis::DataFinding& f : run.findings)
+      found.notes.push_back(
+          fmt::format("{}: {}{}", clean_name(run.path), f.channel.empty() ? "" : f.channel + ": ", f.what));
+  }
+  found.difference = difference;
+  finish(findings::document_of(found, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "effects/doubt.hpp"
+#include "effects/recorded_column.hpp"
+
+namespace driftwright::effects::learned {
+
+const char* const kTables[] = {"rises", "grows", "tilts"};
+
+const std::string& table_of(const Effect& e) {
+  static const std::string kNames[] = {kTables[0], kTables[1], kTables[2]};
+  for (const std::string& name : kNames) {
+    if (e.tables.contains(name)) return name;
+  }
+  static const std::string kNone;
+  return kNone;
+}
+
+/// What the term follows is worth 1 at the stated drive.
+std::function<double(const Drive&)> law_of(const Effect& e) {
+  const std::string& follows = e.words.at("follows");
+  if (follows == "running") return [above_rpm = e["above"]](const Drive& d) { return d.speed_rpm > above_rpm ? 1.0 : 0.0; };
+  if (follows == "speed")
+    return [n0_rpm = e["at_speed"], exponent = e["exponent"]](const Drive& d) {
+      return std::pow(std::min(d.speed_rpm / n0_rpm, 1.0), exponent);
+    };
+  return [value = signal_of(e.words.at("column"), 0.0), at = e["at"]](const Drive& d) {
+    return std::clamp(value(d).value_or(0.0) / at, -1.0, 1.0);
+  };
+}
+
+void change_readings(const Effect& e, ReadingChain& chain) {
+  const bool is_sensor = e.place_kind == Place::kSensor;
+  const auto row_of = [is_sensor, place = e.place](const Readings& r) {
+    return is_sensor ? r.sensor(place) : r.displacement(place);
+  };
+  chain.add(ReadingStage::kKept, [=, keeps = e["keeps"], offset_K = e.has("offset") ? e["offset"] : 0.0](Readings& r) {
+    if (keeps == 1.0 && offset_K == 0.0) return;
+    auto row = r.value.row(row_of(r));
+    const double start = is_sensor ? r.ambient.at(r.time_s.front()) : row[0];
+    row = (start + offset_K + keeps * (row.array() - start)).matrix();
+  });
+  const std::string& table = table_of(e);
+  if (table.empty()) return;
+  chain.add(
+      ReadingStage::kLearned, [=, effect = e, scale = is_sensor ? 1.0 : 1e-6, terms = e.tables.at(table)](Readings& r) {
+        const std::string& follows = effect.words.at("follows");
+        auto row = r.value.row(row_of(r));
+        const bool is_ambient = follows == "ambient";
+        const Cyclogram drive = follows == "column" ? with_signal(r.cyclogram, effect.words.at("column"), 0.0) : r.cyclogram;
+        for (std::size_t k = 0; k < terms.time_s.size(); ++k) {
+          const double lag_s = 60.0 * terms.time_s[k], amount = scale * terms.value[k];
+          if (!is_ambient) {
+            row += amount * driven(r.time_s, drive, law_of(effect), lag_s);
+            continue;
+          }
+          Eigen::RowVectorXd rise(r.n_times());
+          for (Eigen::Index i = 0; i < rise.size(); ++i) rise[i] = r.ambient.at(r.time(i)) - r.ambient.at(r.time_s.front());
+          lag_behind(rise, r.time_s, lag_s);
+          row += amount * rise;
+        }
+      });
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  const std::string& follows = e.words.at("follows");
+  const std::string wanted = e.place_kind == Place::kSensor ? "rises" : e.tables.contains("tilts") ? "tilts" : "grows";
+  for (const char* name : kTables) {
+    if (e.tables.contains(name) && name != wanted)
+      in.fail(name, "`rises` (K) are of a sensor, `grows` (um) or `tilts` (urad) of a displacement, one of them");
+  }
+  if (e.has("offset") && e.place_kind != Place::kSensor)
+    in.fail("offset", "it is of a sensor; displacements count from the start");
+  if (e.tables.contains(wanted) == (follows == "nothing"))
+    in.fail("follows", "what is learned (`" + wanted + "`) and what it `follows` go together");
+  if ((follows == "column") == e.words.at("column").empty())
+    in.fail("column", "`follows: column` and the `column` go together");
+  if ((follows == "speed") != e.has("at_speed")) in.fail("at_speed", "`follows: speed` and `at_speed` go together");
+  if ((follows == "column") != e.has("at")) in.fail("at", "`follows: column` and `at` go together");
+  if (follows == "nothing" && e["keeps"] == 1.0 && !e.has("offset"))
+    in.fail("follows", "nothing is learned: required is what it follows, or `keeps`, or an `offset`");
+}
+
+EffectKind kind() {
+  return {
+      .key = "learned",
+      .title = "what a machine's readings have beside the physics of the scenario, learned from records",
+      .law =
+          "y = y(0) + keeps (y_physics - y(0)) + sum_k a_k x_k, tau_k dx_k/dt = u - x_k, x_k = 0 at t = 0; u = 1 while the "
+          "spindle runs, (n / at_speed)^exponent, a recorded column over `at`, or the ambient less its first value [K]. "
+          "y(0) of a sensor: the ambient at the start. With a_k >= 0 of sensors such terms are bodies that the ambient "
+          "cools "
+          "(Foster)",
+      .places = {Place::kSensor, Place::kDisplacement},
+      .parameters =
+          {{"keeps", "1", 0.0, 1.0, 1.0, "share of the change that the physics give"},
+           {"offset", "K", -1e3, 1e3, kNotGiven, "of a sensor, at all times"},
+           {"above", "rpm", 0.0, 1e6, 0.0, "running: faster than this; a tachometer may tremble at rest"},
+           {"at_speed", "rpm", 1.0, 1e6, kNotGiven, "the fastest that was learned from: there the amounts hold, and beyond"},
+           {"exponent", "1", 0.1, 4.0, 1.0, "growth with speed"},
+           {"at", "1", 1e-12, 1e12, kNotGiven,
+            "the largest value of the column that was learned from, in its unit: there the amounts hold, and beyond"}},
+      .timing = Timing::kInRecord,
+      .change_readings = change_readings,
+      .choices = {{"follows",
+                   {"nothing", "running", "speed", "ambient", "column"},
+                   "nothing",
+                   "what the amounts follow: the turning spindle, a power of its speed, the ambient (amounts for 1 K), a "
+                   "recorded column"}},
+      .tables = {{"rises", "min", "K", -1e4, 1e4, false, "of a sensor: time constant (0: at once), amount in the end"},
+                 {"grows", "min", "um", -1e5, 1e5, false, "of a displacement"},
+                 {"tilts", "min", "urad", -1e5, 1e5, false, "of a tilt"}},
+      .check = check,
+      .mentions = {{"column", Mention::Of::kColumn, false, "that is followed, with its unit or without"}}};
+}
+
+}  // namespace driftwright::effects::learned

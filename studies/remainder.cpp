@@ -1,0 +1,214 @@
+#include "studies/remainder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/errors.hpp"
+#include "base/quantity.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+constexpr double kLeastPart = 1e-4;  // of the largest amount of a channel; less is not written
+constexpr double kTurns = 0.01;      // of the top speed, as identification has it
+
+/// Six digits: more say nothing.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+std::string unit_of(const diagnosis::MeasuredChannel& c) {
+  if (c.unit == "K") return c.recorded_unit == "K" ? "K" : "degC";
+  return c.unit == "rad" ? "urad" : "um";
+}
+
+/// From the twin's units into those of a record.
+Eigen::VectorXd shown(const diagnosis::MeasuredChannel& c, Eigen::VectorXd values, double reference_K) {
+  if (c.unit != "K") return 1e6 * values;
+  if (unit_of(c) == "degC") values.array() += reference_K - kZeroCelsius_K;
+  return values;
+}
+
+std::vector<double> listed(const Eigen::VectorXd& v) {
+  return {v.begin(), v.end()};
+}
+
+template <class Value>
+std::vector<double> at_rows(const std::vector<double>& time_s, const Value& value) {
+  std::vector<double> list;
+  for (double t_s : time_s) list.push_back(value(t_s));
+  return list;
+}
+
+bool changes(const std::vector<Record>& records, const std::string& channel) {
+  const double first = records.front().at(channel).values.front();
+  return std::any_of(records.begin(), records.end(), [&](const Record& r) {
+    const std::vector<double>& v = r.at(channel).values;
+    return std::any_of(v.begin(), v.end(), [&](double x) { return x != first; });
+  });
+}
+
+/// Whether a column may drive heat: not one of temperatures, which is a medium's or a body's.
+bool may_drive(const std::string& unit) {
+  static const char* const kUnits[] = {"W", "V", "percent", "count", "1", "W_m2", "mm_min"};
+  return std::find(std::begin(kUnits), std::end(kUnits), unit) != std::end(kUnits);
+}
+
+}  // namespace
+
+BesideRecords beside(const std::vector<diagnosis::MeasuredRun>& runs, const std::vector<Eigen::MatrixXd>& read,
+                     double reference_K) {
+  BesideRecords b;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const diagnosis::MeasuredRun& run = runs[r];
+    Record measured{.source = run.name, .time_s = run.time_s, .channels = {}};
+    measured.channels.push_back(
+        {"speed", "rpm", at_rows(run.time_s, [&](double t_s) { return run.cyclogram.speed_rpm(t_s); })});
+    measured.channels.push_back(
+        {"cutting_power", "W", at_rows(run.time_s, [&](double t_s) { return run.cyclogram.drive(t_s).cutting_power_W; })});
+    for (const Cyclogram::Column& column : run.cyclogram.columns) {
+      if (may_drive(column.unit) && !measured.find(column.name))
+        measured.channels.push_back(
+            {column.name, column.unit, at_rows(run.time_s, [&](double t_s) { return column.at(t_s); })});
+    }
+    measured.channels.push_back({"ambient", "degC", at_rows(run.time_s, [&](double t_s) {
+                                   return run.ambient.at(t_s) + reference_K - kZeroCelsius_K;
+                                 })});
+    Record simulated{.source = run.name, .time_s = run.time_s, .channels = {}};
+    for (const diagnosis::MeasuredChannel& c : run.channels) {
+      measured.channels.push_back({c.name, unit_of(c), listed(shown(c, c.value, reference_K))});
+      simulated.channels.push_back({c.name, unit_of(c), listed(shown(c, read[r].row(c.output).transpose(), reference_K))});
+    }
+    b.measured.push_back(std::move(measured));
+    b.simulated.push_back(std::move(simulated));
+  }
+  const auto have = [&](const std::string& name) {
+    return std::all_of(b.measured.begin(), b.measured.end(), [&](const Record& r) {
+      const Channel* c = r.find(name);
+      return c && std::any_of(c->values.begin(), c->values.end(), [](double v) { return std::isfinite(v); });
+    });
+  };
+  const Record& first = b.measured.front();
+  const auto turns = [&](const Record& r) {
+    const std::vector<double>& rpm = r.at("speed").values;
+    return std::any_of(rpm.begin(), rpm.end(), [](double x) { return x > 0.0; });
+  };
+  if (std::any_of(b.measured.begin(), b.measured.end(), turns)) b.roles.speed = "speed";
+  b.roles.ambient = "ambient";
+  for (const Channel& c : first.channels) {
+    if (c.name == "speed" || c.name == "ambient" || !have(c.name)) continue;
+    if (b.simulated.front().find(c.name))
+      (c.unit == "degC" || c.unit == "K" ? b.roles.thermometers : b.roles.displacements).push_back(c.name);
+    else if (changes(b.measured, c.name))
+      b.roles.drives.push_back(c.name);
+  }
+  if (b.roles.speed.empty() && b.roles.drives.empty())
+    throw InputError(
+        fmt::format("{}: nothing that drives the machine changes, so that nothing can be learned of it: required is a "
+                    "spindle that turns, or a column such as heater_W that is switched",
+                    runs.front().path));
+  if (b.roles.thermometers.empty() && b.roles.displacements.empty())
+    throw InputError(fmt::format("{}: no channel of the scenario is in all records", runs.front().path));
+  return b;
+}
+
+double missed(const BesideRecords& beside, const std::string& channel) {
+  double squares = 0.0, n = 0.0;
+  for (std::size_t r = 0; r < beside.measured.size(); ++r) {
+    const Channel &measured = beside.measured[r].at(channel), &simulated = beside.simulated[r].at(channel);
+    double zero = measured.unit == "degC" ? 0.0 : std::nan("");
+    for (std::size_t i = 0; i < measured.values.size(); ++i) {
+      const double less = measured.values[i] - simulated.values[i];
+      if (!std::isfinite(less)) continue;
+      if (std::isnan(zero)) zero = less;
+      squares += (less - zero) * (less - zero);
+      n += 1.0;
+    }
+  }
+  return n > 0.0 ? std::sqrt(squares / n) : std::nan("");
+}
+
+std::vector<effects::Effect> learned_effects(const identification::Identified& extension) {
+  using identification::Law;
+  std::vector<effects::Effect> list;
+  for (const identification::IdentifiedChannel& c : extension.channels) {
+    if (!c.is_extended) continue;
+    const bool is_sensor = c.unit == "degC" || c.unit == "K";
+    const std::string table = is_sensor ? "rises" : c.unit == "urad" ? "tilts" : "grows";
+    const std::size_t before = list.size();
+    const auto make = [&] {
+      return effects::make_effect("learned", is_sensor ? effects::Place::kSensor : effects::Place::kDisplacement, c.name);
+    };
+    std::map<std::size_t, std::map<double, double>> of_law;  // time constant [min] -> amount; beyond the laws: the ambient
+    const std::size_t ambient = extension.structure.laws.size();
+    double largest = 0.0;
+    for (std::size_t b = 0; b < extension.bodies.size(); ++b) {
+      const identification::NetworkBody& body = extension.bodies[b].body;
+      double amount = c.fit.weight[static_cast<Eigen::Index>(b)];
+      if (body.law) amount *= body.rise_K * extension.structure.laws[*body.law].sign;
+      of_law[body.law.value_or(ambient)][body.tau_s / 60.0] += amount;
+      if (body.law) largest = std::max(largest, std::abs(amount));
+    }
+    if (is_sensor) of_law[ambient][0.0] += c.fit.of_ambient;
+    for (const auto& [law, terms] : of_law) {
+      effects::Effect e = make();
+      TimeSeries& amounts = e.tables[table];
+      for (const auto& [tau_min, amount] : terms) {
+        if (std::abs(amount) <= (law == ambient ? kLeastPart : kLeastPart * largest)) continue;
+        amounts.time_s.push_back(rounded(tau_min));
+        amounts.value.push_back(rounded(amount));
+      }
+      if (amounts.time_s.empty()) continue;
+      if (law == ambient) {
+        e.words["follows"] = "ambient";
+      } else {
+        const Law& of = extension.structure.laws[law];
+        switch (of.kind) {
+          case Law::Kind::kTurning:
+            e.words["follows"] = "running";
+            e.set("above", rounded(kTurns * of.top));
+            break;
+          case Law::Kind::kPower:
+            e.words["follows"] = "speed";
+            e.set("at_speed", of.top);
+            e.set("exponent", of.exponent);
+            break;
+          case Law::Kind::kColumn:
+            e.words["follows"] = "column";
+            e.words["column"] = of.channel;
+            e.set("at", of.top);
+            break;
+        }
+      }
+      list.push_back(std::move(e));
+    }
+    if (list.size() == before) list.push_back(make());
+    effects::Effect& leading = list[before];
+    leading.set("keeps", std::clamp(rounded(c.fit.kept), 0.0, 1.0));
+    if (is_sensor && std::abs(c.fit.offset) > 0.0) leading.set("offset", rounded(c.fit.offset));
+  }
+  return list;
+}
+
+std::vector<diagnosis::StatedChange> stated_extension(const identification::Identified& extension) {
+  std::vector<diagnosis::StatedChange> changes;
+  std::map<std::string, const identification::IdentifiedChannel*> of;
+  for (const auto& c : extension.channels) of[c.name] = &c;
+  for (effects::Effect& e : learned_effects(extension)) {
+    const identification::IdentifiedChannel& c = *of.at(e.place);
+    changes.push_back(
+        {fmt::format("learned at {}", e.place),
+         fmt::format("learned: kept-out rows are missed by {:.3g} {} with it, by {:.3g} without", c.missed_kept_out,
+                     c.unit == "um"     ? "um"
+                     : c.unit == "urad" ? "urad"
+                                        : "K",
+                     c.scenario_kept_out),
+         [e](diagnosis::TwinState& state) { state.push_back(e); }, "learned"});
+  }
+  return changes;
+}
+
+}  // namespace driftwright::studies
