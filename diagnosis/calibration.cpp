@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "diagnosis/discrepancy.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/missing_data.hpp"
@@ -19,7 +19,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr std::array<double, 3> kTempered = {1.0, 0.5, 0.0};  // as working_noise() has it
 constexpr int kMostTurns = 6;
 constexpr double kSameWeight = 0.02;  // of the logarithm of what a channel is missed by
 
@@ -39,15 +38,14 @@ Attempt fitted_by(const Fitter& fresh, const std::vector<MeasuredRun>& runs,
   return a;
 }
 
-/// Weights and the numbers that they give, found by turns.
-Attempt fitted_by_what_is_missed(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Prediction& as_written,
-                                 const std::map<std::string, NoiseModel>& noise, double tempered, const Listener& listener) {
-  Twin::Workspace workspace(fresh.twin());
+/// Weights and the numbers that they give, found by turns. @param beside  with columns of what the scenario may miss
+Attempt fitted_by_what_is_missed(const Fitter& beside, const std::vector<MeasuredRun>& runs, const Prediction& as_written,
+                                 const std::map<std::string, NoiseModel>& noise, const Listener& listener) {
   std::map<std::string, OutputError> errors = output_errors(runs, as_written);
   Attempt best;
   for (int turn = 0; turn < kMostTurns && (turn == 0 || !listener.wants_end()); ++turn) {
-    best = fitted_by(fresh, runs, working_noise(errors, noise, tempered));
-    const auto next = output_errors(runs, best.fitter->predict_machine({}, best.fitted.fit.x, workspace));
+    best = fitted_by(beside, runs, working_noise(errors, noise));
+    const auto next = output_errors(runs, best.fitted.fit.prediction);
     const bool stays = std::all_of(next.begin(), next.end(), [&](const auto& e) {
       return std::abs(std::log(e.second.rms / errors.at(e.first).rms)) < kSameWeight;
     });
@@ -68,57 +66,50 @@ double over_noise(const std::map<std::string, OutputError>& errors, const Diagno
   return std::sqrt(squares / n);
 }
 
-/// What own and kept-out rows say of one way to weigh readings.
-struct Judgement {
-  std::string why_not = "not judged";  ///< a clause; "": the numbers are worth writing
-  double loss = std::numeric_limits<double>::max();
-  [[nodiscard]] bool is_better_than(const Judgement& other) const {
-    return why_not.empty() != other.why_not.empty() ? why_not.empty() : loss < other.loss;
-  }
-};
-
 /// Where the simulation errs by no more than noise its likelihood is worth its numbers. Where it errs by more, own rows must not be missed by more than by the scenario as it
 /// is, nor kept-out ones beyond a standard error of the folds; displacements, where there are some, are judged by themselves besides: they are what a machine is simulated for.
-Judgement judged(const Judge& judge, const Models& models, const std::map<std::string, OutputError>& own,
-                 const std::map<std::string, OutputError>& before, const Diagnosis& d) {
-  Judgement j{.why_not = ""};
+/// @return  a clause; "": the numbers are worth writing
+std::string why_not_written(const Judge& judge, const Models& models, const std::map<std::string, OutputError>& own,
+                            const std::map<std::string, OutputError>& before, const Diagnosis& d) {
+  if (!d.weighed_by_model_error) return "";
   for (const Judge::Of of : {Judge::Of::kAll, Judge::Of::kDisplacements}) {
     const bool all = of == Judge::Of::kAll;
     const double own_misses = over_noise(own, d, all), own_before = over_noise(before, d, all);
     if (std::isnan(own_before)) continue;  // no displacement
     const MeanError loss =
         kept_out_loss(judge.over_noise_by_fold(models.calibrated, of), judge.over_noise_by_fold(models.written, of));
-    j.loss = loss.mean;  // of displacements, where there are some
     const std::string what = all ? "all channels" : "displacements";
-    if (!j.why_not.empty() || !d.weighed_by_model_error) continue;
     if (own_misses > own_before)
-      j.why_not = fmt::format(
+      return fmt::format(
           "with them {} are missed by {:.3g} times the noise on the very rows that they were fitted to, and by {:.3g} times "
           "with the scenario as "
           "it was",
           what, own_misses, own_before);
-    else if (loss.n < 2)
-      j.why_not = "fewer than two parts of the records could judge them";
-    else if (loss.mean > loss.standard_error)
-      j.why_not = fmt::format(
+    if (loss.n < 2) return "fewer than two parts of the records could judge them";
+    if (loss.mean > loss.standard_error)
+      return fmt::format(
           "rows that were kept out are predicted better by the scenario as it was: {} are missed by {:.3g} times as much "
           "(times or over "
           "{:.3g}, one standard error of the folds)",
           what, std::exp(loss.mean), std::exp(loss.standard_error));
   }
-  return j;
+  return "";
 }
 
-/// Of numbers at x, n rows of a channel counted as n/τ.
-Eigen::MatrixXd tempered_covariance(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Fit& at,
-                                    const std::map<std::string, NoiseModel>& working) {
-  Fitter fitter(fresh, runs);
-  fitter.set_noise(working);
-  fitter.settle({}, at);
-  const Eigen::MatrixXd& slopes = fitter.nuisance_slopes();
-  Eigen::MatrixXd hessian = slopes.transpose() * slopes;
-  hessian.diagonal() += fitter.nuisance_sd().cwiseAbs2().cwiseInverse();
-  return hessian.llt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
+/// The same numbers without the columns that stood for what the scenario misses: what it leaves, for readings weighed by that.
+Attempt without_discrepancy(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Attempt& beside,
+                            const std::map<std::string, NoiseModel>& working) {
+  Attempt a{std::make_unique<Fitter>(fresh, runs), beside.fitted};
+  a.fitter->set_noise(working);
+  Twin::Workspace workspace(fresh.twin());
+  const Eigen::Index n = fresh.n_nuisance();
+  Fit& fit = a.fitted.fit;
+  fit.x.conservativeResize(n);
+  fit.covariance = Eigen::MatrixXd(fit.covariance.topLeftCorner(n, n));
+  fit.prediction = a.fitter->predict({}, fit.x, workspace);
+  fit.residual = a.fitter->comparison().measured() - a.fitter->comparison().whitened(fit.prediction);
+  a.fitted.without = fit;
+  return a;
 }
 
 }  // namespace
@@ -171,45 +162,32 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   d.weighed_by_model_error = models_own_error(runs, chosen.fitted.fit.prediction, d.noise).has_value();
   const Folds folds = folds_of_numbers(runs);
   d.holdout = folds.how;
-  std::vector<Attempt> attempts;
   if (d.weighed_by_model_error) {
-    for (double tempered : kTempered)
-      attempts.push_back(fitted_by_what_is_missed(fresh, runs, d.as_written, d.noise, tempered, listener));
-  } else {
-    attempts.push_back(std::move(chosen));
+    Fitter beside(fresh, runs);
+    beside.add_linear(discrepancy_columns(runs, d.as_written.front().rows(), output_errors(runs, d.as_written)));
+    chosen = fitted_by_what_is_missed(beside, runs, d.as_written, d.noise, listener);
   }
 
   listener.begin("predicting rows that were kept out");
   const auto before = output_errors(runs, d.as_written);
-  Judgement best;
-  for (Attempt& attempt : attempts) {
-    Judge judge(*attempt.fitter, attempt.fitted, d.noise, folds.list);
-    const std::vector<Prediction> filed = judge.filed(0);
-    const Models models{.written = judge.written(), .calibrated = filed, .extended = filed};
-    const auto own = output_errors(runs, attempt.fitter->predict_machine({}, attempt.fitted.fit.x, workspace));
-    Judgement judgement = judged(judge, models, own, before, d);
-    if (!best.is_better_than(judgement)) {
-      best = std::move(judgement);
-      d.misses = misses_of(judge, models);
-      d.gain = channel_gains(runs, d.noise, judge, models);
-      chosen = std::move(attempt);
-    }
-  }
+  Judge judge(*chosen.fitter, chosen.fitted, d.noise, folds.list);
+  const std::vector<Prediction> filed = judge.filed(0);
+  const Models models{.written = judge.written(), .calibrated = filed, .extended = filed};
+  d.extended = chosen.fitter->predict_machine({}, chosen.fitted.fit.x, workspace);
+  const auto own = output_errors(runs, d.extended);
+  const std::string why_not = why_not_written(judge, models, own, before, d);
+  d.misses = misses_of(judge, models);
+  d.gain = channel_gains(runs, d.noise, judge, models);
 
-  const Fitter& fitter = *chosen.fitter;
+  const auto working = working_noise(own, d.noise);
+  if (d.weighed_by_model_error) chosen = without_discrepancy(fresh, runs, chosen, working);
   d.scatter_alone = chosen.fitted.fit.prediction;
-  d.extended = fitter.predict_machine({}, chosen.fitted.fit.x, workspace);
-  const auto after = output_errors(runs, d.extended);
-  const auto working = working_noise(after, d.noise, 1.0);
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
-  d.calibrated = fitted_numbers(
-      fitter, chosen.fitted.fit.x,
-      d.weighed_by_model_error ? tempered_covariance(fresh, runs, chosen.fitted.fit, working) : chosen.fitted.fit.covariance,
-      known_to);
+  d.calibrated = fitted_numbers(*chosen.fitter, chosen.fitted.fit.x, chosen.fitted.fit.covariance, known_to);
 
   listener.begin("looking at what is left");
-  d.unexplained = unexplained_of(fitter, chosen.fitted, d.noise);
+  d.unexplained = unexplained_of(*chosen.fitter, chosen.fitted, d.noise);
   {
     Fitter weighed(fresh, runs);
     weighed.set_noise(d.weighed_by_model_error ? working : d.noise);
@@ -223,7 +201,7 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   if (listener.wants_end()) d.ended_at = "fitting";
 
   d.written.fit = chosen.fitted.fit;
-  d.written.why_nothing = is_too_few ? "the readings are too few" : best.why_not;
+  d.written.why_nothing = is_too_few ? "the readings are too few" : why_not;
   d.written.keeps_numbers = d.written.why_nothing.empty();
   if (!d.written.keeps_numbers) d.extended = d.as_written;
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;

@@ -2,9 +2,8 @@
 // The scenario's uncertain numbers fitted to records; no cause is looked for.
 //
 // What is fitted is what will be asked: what the simulation gives, driven by what was recorded and by no reading. Where it errs by no more than noise, readings are
-// weighed by their noise. Where it errs by more, a working likelihood stands for it (output_error.hpp), and how much rows count against what was known beforehand is
-// chosen by the rows that are kept out: n/τ of n rows, the root of n n/τ, or all n, which is plain least squares.
-// Source: Grünwald & van Ommen, Bayesian Analysis 12 (2017) 1069-1103: the power of a likelihood whose model is wrong is learnt from what it predicts.
+// weighed by their noise. Where it errs by more, numbers are fitted beside a discrepancy in which the model's error may lie (discrepancy.hpp), readings weighed by a working
+// likelihood of what both together miss (output_error.hpp); what is written and judged is the machine without the discrepancy.
 
 #include "base/mean_error.hpp"
 #include "diagnosis/diagnosis.hpp"

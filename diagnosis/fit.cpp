@@ -275,6 +275,13 @@ void Fitter::whiten_slopes() {
   squares_.noalias() = slopes_.transpose() * slopes_;
 }
 
+void Fitter::add_linear(const std::vector<Prediction>& columns) {
+  linear_.insert(linear_.end(), columns.begin(), columns.end());
+  const Eigen::Index before = nuisance_.size();
+  nuisance_.conservativeResize(n_nuisance());
+  nuisance_.tail(n_nuisance() - before).setZero();
+}
+
 void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared) {
   noise_ = noise;
   shared_ = std::move(shared);

@@ -66,6 +66,8 @@ class Fitter {
   /// The same with other readings: some of them left out, the noise as it is, where there is one. @param runs  with the same rows, the missing ones NaN; outlive it
   Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs);
 
+  /// Further columns with an unknown amplitude of standard deviation 1; the noise is to be set anew.
+  void add_linear(const std::vector<Prediction>& columns);
   /// How well one of scatter's numbers is known: 1 sigma of its prior.
   void set_prior_sd(std::size_t number, double prior_sd) { scatter_.at(number).prior_sd = prior_sd; }
   /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing

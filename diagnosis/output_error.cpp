@@ -36,10 +36,10 @@ std::map<std::string, OutputError> output_errors(const std::vector<MeasuredRun>&
 }
 
 std::map<std::string, NoiseModel> working_noise(const std::map<std::string, OutputError>& errors,
-                                                const std::map<std::string, NoiseModel>& least, double tempered) {
+                                                const std::map<std::string, NoiseModel>& least) {
   std::map<std::string, NoiseModel> noise = least;
   for (const auto& [name, error] : errors)
-    noise[name] = {.white = std::max(error.rms, least.at(name).total()) * std::pow(error.rows_as_one, 0.5 * tempered)};
+    noise[name] = {.white = std::max(error.rms, least.at(name).total()) * std::sqrt(error.rows_as_one)};
   return noise;
 }
 

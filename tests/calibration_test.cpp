@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/discrepancy.hpp"
 #include "diagnosis/output_error.hpp"
 #include "tests/lumped_records.hpp"
 
@@ -64,6 +65,28 @@ TEST(KeptOutLosses, AreMeansOfLogarithmsOverTheFoldsThatCouldJudge) {
   EXPECT_EQ(kept_out_loss({2.0}, {1.0}).standard_error, 0.0);
 }
 
+// Two runs of 100 min, the spindle on for the first half of the one: of its four lags the first is known in closed form, each column is of one output, and as large as what that is missed by.
+TEST(Discrepancy, IsOfOneChannelAndAsLargeAsWhatItIsMissedBy) {
+  std::vector<MeasuredRun> runs = {run_missed_by(Eigen::VectorXd::Constant(101, 2.0)),
+                                   run_missed_by(Eigen::VectorXd::Constant(101, 2.0))};
+  runs[0].cyclogram.sections = {{3000.0, {.speed_rpm = 1000}}, {3000.0, {}}};
+  runs[1].cyclogram.sections = {{6000.0, {}}};
+  for (MeasuredRun& run : runs) run.ambient = {{0.0}, {20.0}};
+  const auto columns = discrepancy_columns(runs, 2, {{"t", {.unit = "K", .rms = 2.0, .rows_as_one = 1.0, .n = 202}}});
+  ASSERT_EQ(columns.size(), 4u * 4u) << "of four lags: the spindle on, its speed, the start of each run; the ambient is "
+                                        "constant and there is no other drive";
+  for (const Prediction& c : columns) {
+    EXPECT_EQ(c[0].row(1).cwiseAbs().sum() + c[1].row(1).cwiseAbs().sum(), 0.0);
+    EXPECT_NEAR(std::sqrt((c[0].squaredNorm() + c[1].squaredNorm()) / 202.0), 2.0, 1e-9);
+  }
+  const double tau_s = std::exp(std::log(180.0) + 0.125 * std::log(2000.0 / 180.0));
+  const Eigen::RowVectorXd on = columns[0][0].row(0);
+  for (const int i : {5, 20, 50})
+    EXPECT_NEAR(on[i] / on[50], std::expm1(-60.0 * i / tau_s) / std::expm1(-3000.0 / tau_s), 1e-9) << i;
+  EXPECT_NEAR(on[60] / on[50], std::exp(-600.0 / tau_s), 1e-9);
+  EXPECT_EQ(columns[0][1].row(0).cwiseAbs().sum(), 0.0);
+}
+
 class Calibration : public ::testing::Test {
  protected:
   static Diagnosis of(const std::string& scenario, const std::string& truth, const std::string& prefix) {
@@ -104,6 +127,8 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
   EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   EXPECT_LT(d.misses.extended, d.misses.as_written);
   for (const ChannelGain& g : d.gain) EXPECT_GT(g.rmse_all_before, 0.0) << g.name;
+  for (const Estimate& e : d.calibrated)  // all numbers are right: none may stand for the heat
+    EXPECT_LT(std::abs(e.deviation), 2.0) << e.name;
 }
 
 // One record has wrong speeds, which no number mends.
