@@ -127,8 +127,10 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
   EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   EXPECT_LT(d.misses.extended, d.misses.as_written);
   for (const ChannelGain& g : d.gain) EXPECT_GT(g.rmse_all_before, 0.0) << g.name;
-  for (const Estimate& e : d.calibrated)  // all numbers are right: none may stand for the heat
-    EXPECT_LT(std::abs(e.deviation), 2.0) << e.name;
+  for (
+      const Estimate& e :
+      d.calibrated)  // all numbers are right, and none may stand for the heat: without the discrepancy five go by 1.2 to 1.6
+    EXPECT_LT(std::abs(e.deviation), 0.6) << e.name;
 }
 
 // One record has wrong speeds, which no number mends.
