@@ -199,14 +199,13 @@ std::vector<diagnosis::StatedChange> stated_extension(const identification::Iden
   for (const auto& c : extension.channels) of[c.name] = &c;
   for (effects::Effect& e : learned_effects(extension)) {
     const identification::IdentifiedChannel& c = *of.at(e.place);
-    changes.push_back(
-        {fmt::format("learned at {}", e.place),
-         fmt::format("learned: kept-out rows are missed by {:.3g} {} with it, by {:.3g} without", c.missed_kept_out,
-                     c.unit == "um"     ? "um"
-                     : c.unit == "urad" ? "urad"
-                                        : "K",
-                     c.scenario_kept_out),
-         [e](diagnosis::TwinState& state) { state.push_back(e); }, "learned"});
+    changes.push_back({fmt::format("learned at {}", e.place),
+                       fmt::format("kept-out rows are missed by {:.3g} {} with it, by {:.3g} without", c.missed_kept_out,
+                                   c.unit == "um"     ? "um"
+                                   : c.unit == "urad" ? "urad"
+                                                      : "K",
+                                   c.scenario_kept_out),
+                       [e](diagnosis::TwinState& state) { state.push_back(e); }, "learned"});
   }
   return changes;
 }
