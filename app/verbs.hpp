@@ -187,7 +187,7 @@ struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::vector<std::string> records;
   std::string ambient;              ///< channel; empty: guessed
   std::vector<std::string> drives;  ///< channels that drive beside those whose unit says so
-  std::string prior;                ///< scenario that is extended by what it misses; empty: none
+  std::string prior;                ///< scenario to extend; empty: none
 };
 /// A network from records alone, or what a scenario misses, learned beside it.
 void identify(const IdentifyOptions& options);

@@ -127,9 +127,8 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
   EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   EXPECT_LT(d.misses.extended, d.misses.as_written);
   for (const ChannelGain& g : d.gain) EXPECT_GT(g.rmse_all_before, 0.0) << g.name;
-  for (
-      const Estimate& e :
-      d.calibrated)  // all numbers are right, and none may stand for the heat: without the discrepancy five go by 1.2 to 1.6
+  // All numbers are right, and none may stand for the heat: without the discrepancy five go by 1.2 to 1.6, with it 0.33 at most.
+  for (const Estimate& e : d.calibrated)
     EXPECT_LT(std::abs(e.deviation), 0.6) << e.name;
 }
 
