@@ -11,6 +11,7 @@ Rules (README.md, "Scoring statements"), written before the sets seventh, ninth,
   spindle). coolant, radiation and recorded_drive are heat or exchange. run_state is heat or exchange of "all", of heat the speed as well. A hidden body with a path to the hall is an exchange with it, too.
 - A statement is right if quantity and place are: of an exchange both ends, of one named by a single body that body (of a film with the ambient); of an expansion the body or the channel; of a swap both.
 - The statements of a case are taken in order of probability. "Said" is a probability of 0.9 or more; "silent" a probability of more than a half that nothing is wrong.
+- A truth that lists `statements` itself (the set `stranger`) accepts these quantities and places, and no others.
 - A run that has no statements counts as wrong, and not silent.
 """
 import argparse
@@ -37,6 +38,9 @@ def places(where):
 
 
 def right(statement, effect):
+    if "statements" in effect:      # a truth that says itself which statements are right
+        told = {p.replace("hall", "ambient") for p in statement["place"]}
+        return any(statement["quantity"] == s["quantity"] and told == {p.replace("hall", "ambient") for p in s["place"]} for s in effect["statements"])
     names = [(effect["key"], effect["where"])] + [(a["effect"], a["where"]) for a in effect.get("also", [])]
     if effect["key"] == "hidden_body" and any(p["name"] == "to_hall" and p["value"] > 0 for p in effect["parameters"]):
         names.append(("link", effect["where"] + ",hall"))
@@ -119,9 +123,9 @@ def main():
                 c[group + " said wrong"] += said_wrong
                 c[group + " both"] += all(any(right(s, e) for s in told[:3]) for e in effects)
             if len(effects) == 1:
-                kinds[effects[0]["key"]].append(correct[:1] == [True])
+                kinds[effects[0].get("key", "sayable" if truth.get("sayable") else "alien")].append(correct[:1] == [True])
             if a.list and ((effects and correct[:1] != [True]) or (not effects and nothing <= 0.5)):
-                what = [(e["key"], e["where"], round(e.get("nats", 0))) for e in effects]
+                what = [(e.get("key", e.get("what")), e.get("where"), round(e.get("nats", 0))) for e in effects]
                 print(f"{case.parent.name}/{case.name} {truth['class']} {what} nothing {nothing:.2f}",
                       [(s["quantity"], ",".join(s["place"]), s["follows"], round(s["probability"], 2)) for s in told[:3]])
     for who, c in counts.items():
