@@ -6,6 +6,7 @@
 
 #include "diagnosis/experiment.hpp"
 #include "diagnosis/heat_wander.hpp"
+#include "diagnosis/posterior.hpp"
 #include "diagnosis/search.hpp"
 #include "diagnosis/unnamed.hpp"
 #include "diagnosis/waveform.hpp"
@@ -114,6 +115,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;
   std::string reason;
   std::vector<Cause> causes;
+  Posterior statements;  ///< what is missing, in a grammar that is wider than the catalogue, and how sure that is
   std::optional<Experiment> experiment;
   std::optional<Unexplained> unexplained;
   /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.

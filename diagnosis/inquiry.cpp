@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/ambient_doubt.hpp"
 #include "diagnosis/event_candidates.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/signatures.hpp"
@@ -127,6 +128,7 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
                                         const std::vector<MeasuredRun>& runs, const TwinState& state) {
   std::vector<Prediction> columns = start_columns(twin, runs);
   for (Prediction& c : hole_columns(twin, runs)) columns.push_back(std::move(c));
+  for (Prediction& c : ambient_columns(twin, runs)) columns.push_back(std::move(c));
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
@@ -153,8 +155,12 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
 
 Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {
   const DiagnosisOptions& options = ground.options;
-  const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
   Inquiry of;
+  const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
+  if (of_all && options.most_effects > 0 && !listener.wants_end()) {
+    listener.begin("weighing statements");
+    (void)has_solution([&] { of.statements = statements_of(ground.fresh, ground.as_written, options.floor); });
+  }
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {

@@ -4,33 +4,18 @@
 #include <cmath>
 
 #include "base/dense.hpp"
+#include "diagnosis/linear_operator.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kStart_K = 0.3;     // to which the start of a body is known
-constexpr double kSameModes = 0.03;  // relative change of a coefficient below which modes are kept
-
-/// A law's value at a state; zero while its thermostat is off.
-double value_of(const solver::BoundLaw& law, const solver::ReducedSystem& system, const effects::Inputs& u,
-                const Eigen::VectorXd& z) {
-  if (law.thermostat >= 0) {
-    const solver::Thermostat& t = system.thermostats[static_cast<std::size_t>(law.thermostat)];
-    const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.ambient_K);
-    if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) return 0.0;
-  }
-  if (!law.looks_at_state()) return law(u);
-  effects::Inputs with_probes = u;
-  for (int p : law.probes)
-    with_probes.probe_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, u.ambient_K));
-  return law.law(with_probes);
-}
 
 /// Coefficients of a system's exchanges at a state.
 Eigen::VectorXd coefficients(const solver::ReducedSystem& system, const effects::Inputs& u, const Eigen::VectorXd& z) {
   Eigen::VectorXd c(static_cast<Eigen::Index>(system.exchanges.size()));
   for (std::size_t e = 0; e < system.exchanges.size(); ++e)
-    c[static_cast<Eigen::Index>(e)] = value_of(system.exchanges[e].coefficient, system, u, z);
+    c[static_cast<Eigen::Index>(e)] = law_value(system.exchanges[e].coefficient, system, u, z);
   return c;
 }
 
@@ -44,7 +29,7 @@ Eigen::VectorXd turning_heat_W(const solver::ReducedSystem& system, const std::v
   for (const solver::HeatSource& s : system.sources) {
     const auto body = std::find(bodies.begin(), bodies.end(), s.body);
     if (body != bodies.end())
-      heat_W[body - bodies.begin()] += value_of(s.power_W, system, u, z) - value_of(s.power_W, system, standing, z);
+      heat_W[body - bodies.begin()] += law_value(s.power_W, system, u, z) - law_value(s.power_W, system, standing, z);
   }
   return heat_W;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "base/quantity.hpp"
 #include "diagnosis/record_faults.hpp"
@@ -131,16 +132,27 @@ TimeSeries with_few_knots(const TimeSeries& s, double within) {
   return few;
 }
 
-/// A recorded ambient without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
-/// machine that starts as warm as the ambient would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
-/// what it meets. One reading at least.
-TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
+/// Those that are there.
+Readings present_readings(const std::vector<double>& time_s, const std::vector<double>& value) {
   Readings r;
   for (std::size_t i = 0; i < value.size(); ++i) {
     if (std::isnan(value[i])) continue;
     r.time_s.push_back(time_s[i]);
     r.value.push_back(value[i]);
   }
+  return r;
+}
+
+/// Step that a thermometer reads in; 0: none, or none was seen, as of a temperature that stays.
+double seen_step(const std::vector<double>& value) {
+  constexpr std::size_t kFewest = 3;
+  return std::set<double>(value.begin(), value.end()).size() < kFewest ? 0.0 : quantum_of(value);
+}
+
+/// A recorded ambient without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
+/// machine that starts as warm as the ambient would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
+/// what it meets. One reading at least.
+TimeSeries smoothed(const Readings& r) {
   const double noise_K = white_noise(r);
   if (usual_noise(r) > kMostNoise_K + 0.5 * quantum_of(r.value)) return gusty(r);
   const double enough_K = std::max(kAmbientKnown_K, 1.1 * noise_K), length_s = r.time_s.back() - r.time_s.front();
@@ -310,7 +322,10 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
     std::vector<double> ambient_K;
     for (double v : record.at(recorded_run.ambient_channel).values)
       ambient_K.push_back(v + kZeroCelsius_K - model.reference_K);
-    run.ambient = smoothed(run.time_s, ambient_K);
+    const Readings ambient = present_readings(run.time_s, ambient_K);
+    run.ambient = smoothed(ambient);
+    run.ambient_noise_K = white_noise(ambient);
+    run.ambient_quantum_K = seen_step(present_readings(run.time_s, record.at(recorded_run.ambient_channel).values).value);
   }
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   scenarios::require_columns(model, run.cyclogram);
@@ -333,7 +348,10 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
     inspect(record, run.time_s, channel, run.findings);
     const bool left_out = std::any_of(run.findings.begin() + static_cast<std::ptrdiff_t>(n_before), run.findings.end(),
                                       [](const DataFinding& f) { return f.leaves_out; });
-    if (left_out) continue;
+    if (left_out) {
+      run.left_out.push_back({channel.name, run.findings.back().what});
+      continue;
+    }
     MeasuredChannel measured{channel.name, static_cast<int>(o), outputs.unit[o], {}, 0.0, channel.unit};
     const double scale = outputs.unit[o] == "K" ? 1.0 : channel.unit == "mm" ? 1e-3 : 1e-6;
     const double offset = channel.unit == "degC" ? reference_C : 0.0;
@@ -360,7 +378,9 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   for (const Channel& c : record.channels) {
     const bool is_input = c.name == "speed" || c.name == "ambient" || effects::is_drive_channel(c.name);
     if (is_input || std::find(outputs.name.begin(), outputs.name.end(), c.name) != outputs.name.end()) continue;
-    (run.cyclogram.column(c.name) ? drives : unknown).push_back(c.header());
+    const bool is_drive = run.cyclogram.column(c.name) != nullptr;
+    (is_drive ? drives : unknown).push_back(c.header());
+    if (!is_drive) run.left_out.push_back({c.name, "the scenario has no sensor or displacement of that name"});
   }
   if (!unknown.empty()) {
     run.findings.push_back(

@@ -38,12 +38,19 @@ struct MeasuredRun {
   Cyclogram cyclogram;       ///< recorded
   TimeSeries ambient;        ///< recorded, smoothed to knots; minus the reference [K]
   bool has_ambient = false;  ///< else the ambient is the scenario's
-  std::vector<Hole> holes;     ///< in order of time
+  double ambient_noise_K = 0.0,
+         ambient_quantum_K = 0.0;  ///< of the recorded one: 1 sigma of white noise, step that it reads in
+  std::vector<Hole> holes;         ///< in order of time
   /// Of a run that begins warm (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
   /// directions of what that is not known to.
   Eigen::VectorXd start_K;
   Eigen::MatrixXd start_doubt_K;
   std::vector<MeasuredChannel> channels;
+  /// Columns of the record that are neither compared nor a drive, and why.
+  struct LeftOut {
+    std::string name, why;
+  };
+  std::vector<LeftOut> left_out;
   std::vector<DataFinding> findings;
 
   [[nodiscard]] const MeasuredChannel* find(const std::string& channel) const;

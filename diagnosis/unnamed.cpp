@@ -18,7 +18,7 @@ constexpr std::array<double, 3> kSizes = {0.1, 0.3, 1.0};           // of what a
 constexpr std::array<double, 2> kCorrelated_s = {3600.0, 10800.0};  // of a course over time
 constexpr double kLaws = 5.0 * kSizes.size();
 
-struct Place {
+struct UnnamedPlace {
   Unnamed::Quantity quantity;
   std::string where;
   effects::Body body = {};
@@ -46,8 +46,8 @@ std::vector<Piece> pieces_of(const std::vector<MeasuredRun>& runs) {
   return pieces;
 }
 
-std::vector<Place> places_of(const effects::DoubtScene& s, const Twin& twin) {
-  std::vector<Place> places;
+std::vector<UnnamedPlace> places_of(const effects::DoubtScene& s, const Twin& twin) {
+  std::vector<UnnamedPlace> places;
   for (const effects::Body& body : s.bodies)
     places.push_back({Unnamed::Quantity::kHeat, body.name, body, -1, s.unknown_heat_W()});
   places.push_back({Unnamed::Quantity::kAmbient, "ambient", {}, -1, kAmbient_K});
@@ -71,7 +71,7 @@ class Columns {
     base_ = read(best, workspace);
   }
 
-  [[nodiscard]] std::vector<Column> at(const Place& place, Twin::Workspace& workspace) const {
+  [[nodiscard]] std::vector<Column> at(const UnnamedPlace& place, Twin::Workspace& workspace) const {
     return place.quantity == Unnamed::Quantity::kReading ? of_reading(place) : of_machine(place, workspace);
   }
 
@@ -106,7 +106,7 @@ class Columns {
   }
 
   /// Heat and ambient go through the machine: a fifth of their size at a time, laws stay where they are.
-  [[nodiscard]] std::vector<Column> of_machine(const Place& place, Twin::Workspace& workspace) const {
+  [[nodiscard]] std::vector<Column> of_machine(const UnnamedPlace& place, Twin::Workspace& workspace) const {
     constexpr double kTrial = 0.2;
     const bool is_heat = place.quantity == Unnamed::Quantity::kHeat;
     const auto step = [&](double from_s, std::optional<std::size_t> run) {
@@ -148,7 +148,7 @@ class Columns {
   }
 
   /// An error of a reading is added to it.
-  [[nodiscard]] std::vector<Column> of_reading(const Place& place) const {
+  [[nodiscard]] std::vector<Column> of_reading(const UnnamedPlace& place) const {
     const auto& runs = fitter_.runs();
     const auto column = [&](const std::function<double(std::size_t run, double t_s)>& value) {
       Prediction p;
@@ -278,7 +278,7 @@ std::vector<Subset> subsets_of(const Fitter& fitter, const std::vector<Candidate
 std::optional<Unnamed> best_unnamed(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                     const Hypothesis& hypothesis, const Fit& fit, const Listener& listener) {
   if (hypothesis.empty()) return std::nullopt;
-  const std::vector<Place> places = places_of(scene_of(fitter.twin(), fitter.runs()), fitter.twin());
+  const std::vector<UnnamedPlace> places = places_of(scene_of(fitter.twin(), fitter.runs()), fitter.twin());
   const std::vector<Piece> pieces = pieces_of(fitter.runs());
   const std::vector<Course> courses = courses_of(pieces);
   const std::vector<Subset> subsets = subsets_of(fitter, candidates, hypothesis, fit);

@@ -1,6 +1,9 @@
 #include "findings/diagnosis_data.hpp"
 
+#include <limits>
+
 #include "effects/where_in_files.hpp"
+#include "findings/diagnosis_words.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -102,15 +105,57 @@ void add_waveforms_data(Section& section, const diagnosis::Diagnosis& d) {
   if (n == 0) add(section, no_items("waveforms"));
 }
 
+Section compared_data(const std::vector<diagnosis::MeasuredRun>& runs) {
+  const Compared compared = compared_of(runs);
+  Section section{.key = "compared"};
+  put(section, "channels", compared.n);
+  put(section, "of", compared.of);
+  if (compared.left_out.empty()) add(section, no_items("left_out"));
+  for (const auto& [name, why] : compared.left_out) {
+    Section item{.key = "left_out", .item = output::Item{"name", name}};
+    put(item, "why", why);
+    section.sections.push_back(std::move(item));
+  }
+  return section;
+}
+
+void add_statements_data(Section& section, const diagnosis::Diagnosis& d) {
+  put(section, "probability_nothing_wrong", d.statements.nothing);
+  if (d.statements.stated.empty()) add(section, no_items("statements"));
+  for (const diagnosis::Stated& s : d.statements.stated) {
+    const auto [unit, scale] = shown_unit(s);
+    Section item{.key = "statements", .item = output::Item{"quantity", diagnosis::word(s.says.quantity)}};
+    put(item, "place", s.says.place);
+    put(item, "follows", s.says.follows);
+    put(item, "law", s.says.law);
+    std::vector<std::string> records;
+    for (std::size_t r = 0; r < s.says.in_run.size(); ++r) {
+      if (s.says.in_run[r]) records.push_back(s.says.record[r]);
+    }
+    put(item, "records", records);
+    put(item, "size", scale * s.size);
+    put(item, "unit", unit);
+    put(item, "ci95", std::vector<double>{scale * s.low, scale * s.high});
+    put(item, "probability", s.probability);
+    put(item, "p_quantity", s.p_quantity);
+    put(item, "p_place", s.p_place);
+    put(item, "p_follows", s.p_follows);
+    put(item, "log_evidence", s.log_evidence);
+    section.sections.push_back(std::move(item));
+  }
+}
+
 Section search_data(const diagnosis::Diagnosis& d) {
   Section section;
   put(section, "complete", d.ended_at.empty());
   put(section, "weighed_by_model_error", d.weighed_by_model_error);
   put(section, "n_candidates", d.n_candidates);
   // evidence that the best candidate has where nothing is wrong: at one machine in two, in a hundred, in ten thousand
-  put(section, "chance.median", d.search.chance.gain_at(0.5));
-  put(section, "chance.one_in_100", d.search.chance.gain_at(0.01));
-  put(section, "chance.one_in_10000", d.search.chance.gain_at(1e-4));
+  const bool is_simulated = d.search.chance.n_simulated > 0;
+  const auto if_simulated = [&](double value) { return is_simulated ? value : std::numeric_limits<double>::quiet_NaN(); };
+  put(section, "chance.median", if_simulated(d.search.chance.gain_at(0.5)));
+  put(section, "chance.one_in_100", if_simulated(d.search.chance.gain_at(0.01)));
+  put(section, "chance.one_in_10000", if_simulated(d.search.chance.gain_at(1e-4)));
   put(section, "chance.simulations", d.search.chance.n_simulated);
   // and the bars in force, which chance is no lower than, with the share of faultless machines at which it reaches them
   const diagnosis::Bars& bars = d.search.bars;

@@ -11,6 +11,10 @@ void add_causes_data(output::Section& section, const std::vector<diagnosis::Caus
                      const std::string& key = "causes");
 /// Items `waveforms`, with their courses.
 void add_waveforms_data(output::Section& section, const diagnosis::Diagnosis& d);
+/// `compared`: how many channels of the records are in the scenario, and which are left out.
+[[nodiscard]] output::Section compared_data(const std::vector<diagnosis::MeasuredRun>& runs);
+/// `probability_nothing_wrong` and the items `statements`.
+void add_statements_data(output::Section& section, const diagnosis::Diagnosis& d);
 /// `complete`, `n_candidates`, `chance` and how causes were weighed.
 [[nodiscard]] output::Section search_data(const diagnosis::Diagnosis& d);
 /// An empty list, where there would be items.

@@ -27,10 +27,12 @@ using output::Value;
 
 constexpr output::Digits kThree = output::significant(3);
 
-output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
+/// @param compared  what was: a verdict of half the channels or fewer is none that all is well
+output::Verdict verdict_box(const diagnosis::Diagnosis& d, const Compared& compared) {
   using diagnosis::Verdict;
   using Kind = output::Verdict::Kind;
-  const Kind kind = d.verdict == Verdict::kConsistent    ? Kind::kGood
+  const bool is_of_few = 2 * compared.n <= compared.of;
+  const Kind kind = d.verdict == Verdict::kConsistent    ? is_of_few ? Kind::kNeutral : Kind::kGood
                     : d.verdict == Verdict::kUnexplained ? Kind::kBad
                                                          : Kind::kNeutral;
   static const std::map<Verdict, const char*> titles = {{Verdict::kConsistent, "Consistent with the scenario"},
@@ -39,7 +41,9 @@ output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
                                                         {Verdict::kAmbiguous, "Ambiguous: several causes would do"},
                                                         {Verdict::kUnexplained, "Something is left unexplained"},
                                                         {Verdict::kInsufficientData, "Too few data for a verdict"}};
-  return {.key = "", .kind = kind, .title = titles.at(d.verdict), .text = d.reason};
+  std::string text = compared_text(compared);
+  if (!text.empty()) text += " ";
+  return {.key = "", .kind = kind, .title = titles.at(d.verdict), .text = text + d.reason};
 }
 
 Table causes_table(const diagnosis::Diagnosis& d) {
@@ -61,6 +65,30 @@ Table causes_table(const diagnosis::Diagnosis& d) {
       table.rows.push_back({fmt::format("or {} at {}", a.effect, a.where), "", a.log_evidence_gain, parameters_text(a)});
   }
   return table;
+}
+
+/// What is missing in the grammar's words.
+Section statements_section(const diagnosis::Diagnosis& d) {
+  constexpr std::size_t kMost = 5;
+  Section section{.title = "What is missing, and how sure that is"};
+  Table table{.caption =
+                  "Each row is a quantity that may be wrong at a place, by the evidence of all that it might follow, "
+                  "everything else marginalised. It need not "
+                  "be in the catalogue. Sizes are of linear theory.",
+              .columns = {{.title = "what"},
+                          {.title = "size (95 % interval)"},
+                          {.title = "records"},
+                          {.title = "probability", .digits = output::percent(0)}}};
+  for (const diagnosis::Stated& s : d.statements.stated) {
+    if (table.rows.size() == kMost) break;
+    table.rows.push_back({statement_text(s.says), size_text(s), records_text(s.says), s.probability});
+  }
+  table.rows.push_back({"nothing", "", "", d.statements.nothing});
+  add(section, std::move(table));
+  if (d.causes.empty() && d.ended_at.empty() && d.statements.nothing < 0.5)
+    add(section,
+        Text{"No law of the catalogue, fitted in full, stands up as a cause: the statements are of linear theory alone."});
+  return section;
 }
 
 /// What is found and does not stand in the file, with the reason; and the bars that causes were held to.
@@ -321,7 +349,8 @@ Section gain_section(const diagnosis::Diagnosis& d) {
           "Noise floor: what the readings scatter by themselves. Regression: ridge on memories of speed, ambient and "
           "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. Named causes: "
           "these alone beside the scenario's numbers; found: what the searches without these rows found, whatever of it is "
-          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a calibration was chosen by them. "
+          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written; "
+          "how much rows weigh in a calibration was chosen by them. "
           "The "
           "file: what the written scenario gives over the whole of all records, to which its numbers were fitted.",
       .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
@@ -390,13 +419,15 @@ Section candidates_section(const diagnosis::Diagnosis& d) {
     bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
                          fmt::format("{:.1f}", s.gain)});
   }
-  const diagnosis::Chance& chance = d.search.chance;
-  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  add(section,
-      Text{fmt::format("The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
-                       "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
-                       "it is named; found by simulating this machine with these records.",
-                       chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
+  if (d.search.chance.n_simulated > 0) {
+    const diagnosis::Chance& chance = d.search.chance;
+    const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+    add(section, Text{fmt::format(
+                     "The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
+                     "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
+                     "it is named; found by simulating this machine with these records.",
+                     chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
+  }
   if (bars.bars.empty()) {
     add(section, Text{"None would bring evidence."});
     return section;
@@ -480,6 +511,7 @@ output::Document begin(const std::string& what, const DiagnosisFindings& found, 
 /// What both have below their own findings. @param after  what Diagnosis::extended is called
 void add_evidence(Section& body, const DiagnosisFindings& found, const std::string& after) {
   const diagnosis::Diagnosis& d = found.diagnosis;
+  body.sections.push_back(compared_data(found.measured.runs));
   if (d.unexplained)
     body.sections.push_back(unexplained_section(*d.unexplained));
   else
@@ -511,9 +543,11 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   const diagnosis::Diagnosis& d = found.diagnosis;
   output::Document document = begin("diagnosis", found, made_by);
   Section& body = document.body;
-  add(body, verdict_box(d));
+  add(body, verdict_box(d, compared_of(found.measured.runs)));
   add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
+  if (!d.statements.best.empty() || !d.statements.stated.empty()) body.sections.push_back(statements_section(d));
+  add_statements_data(body, d);
   add(body, causes_table(d));
   add_beside_causes(body, d);
   for (std::size_t i = 0; i < d.causes.size(); ++i) body.sections.push_back(cause_section(d, i));

@@ -39,37 +39,63 @@ void add_causes(std::vector<ResultKey>& keys) {
   using diagnosis::Standing;
   const std::vector<std::string> standings = {diagnosis::word(Standing::kSuspected), diagnosis::word(Standing::kAmbiguous),
                                               diagnosis::word(Standing::kNamed)};
-  keys.insert(keys.end(), {object("causes[]", "what the simulation gets wrong, surest first"),
-                           text("causes[].effect", "key of the catalogue of effects"),
-                           words("causes[].standing", standings, "how surely it is a cause"),
-                           text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
-                           text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
-                           object("causes[].parameters[]", "its numbers"),
-                           text("causes[].parameters[].name", "key in the scenario"),
-                           number("causes[].parameters[].value", "in `unit`"),
-                           text("causes[].parameters[].unit", "\"1\" or empty: none"),
-                           number("causes[].parameters[].ci95[]", "interval of 95 %, from and to"),
-                           sometimes(text("causes[].doubt", "why it is only suspected")),
-                           flag("causes[].written", "whether the extended scenario holds it"),
-                           sometimes(text("causes[].why_not_written", "why it does not")),
-                           sometimes(object("causes[].found_again")),
-                           count("causes[].found_again.searches", "searches that were made without a part of the rows"),
-                           count("causes[].found_again.found", "of these, how many found it again"),
-                           or_null(number("causes[].kept_out_nats",
-                                          "how much likelier rows kept out of the fit are with it than without it [nats]")),
-                           or_null(number("causes[].chance",
-                                          "share of faultless machines of which the best candidate has as much evidence; of "
-                                          "a cause below the bars, some candidate is as rare")),
-                           object("causes[].odds", "how the evidence shares what was fitted in its place"),
-                           number("causes[].odds.share", "its own"),
-                           number("causes[].odds.kind", "of its effect, wherever it sits"),
-                           number("causes[].odds.place", "of its place, within its kind"),
-                           number("causes[].log_evidence_gain",
-                                  "logarithm of how much more probable the data are with it, after its price [nats]"),
-                           ResultKey{.path = "causes[].alternatives",
-                                     .kind = ResultKind::kLike,
-                                     .meaning = "what the data cannot tell from it",
-                                     .like = "causes[]"}});
+  keys.insert(keys.end(),
+              {object("causes[]", "what the simulation gets wrong, surest first"),
+               text("causes[].effect", "key of the catalogue of effects"),
+               words("causes[].standing", standings, "how surely it is a cause"),
+               text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
+               text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
+               object("causes[].parameters[]", "its numbers"),
+               text("causes[].parameters[].name", "key in the scenario"),
+               number("causes[].parameters[].value", "in `unit`"),
+               text("causes[].parameters[].unit", "\"1\" or empty: none"),
+               number("causes[].parameters[].ci95[]", "interval of 95 %, from and to"),
+               sometimes(text("causes[].doubt", "why it is only suspected")),
+               flag("causes[].written", "whether the extended scenario holds it"),
+               sometimes(text("causes[].why_not_written", "why it does not")),
+               sometimes(object("causes[].found_again")),
+               count("causes[].found_again.searches", "searches that were made without a part of the rows"),
+               count("causes[].found_again.found", "of these, how many found it again"),
+               or_null(number("causes[].kept_out_nats",
+                              "how much likelier rows kept out of the fit are with it than without it [nats]")),
+               or_null(number("causes[].chance",
+                              "share of faultless machines of which the best candidate has as much evidence; null: not "
+                              "simulated")),
+               object("causes[].odds", "how the evidence shares what was fitted in its place"),
+               number("causes[].odds.share", "its own"),
+               number("causes[].odds.kind", "of its effect, wherever it sits"),
+               number("causes[].odds.place", "of its place, within its kind"),
+               number("causes[].log_evidence_gain",
+                      "logarithm of how much more probable the data are with it, after its price [nats]"),
+               ResultKey{.path = "causes[].alternatives",
+                         .kind = ResultKind::kLike,
+                         .meaning = "what the data cannot tell from it",
+                         .like = "causes[]"}});
+}
+
+void add_statements(std::vector<ResultKey>& keys) {
+  keys.insert(
+      keys.end(),
+      {number("probability_nothing_wrong", "that the scenario with its numbers as they are known explains the records"),
+       object("statements[]",
+              "what is missing, quantity by quantity and place by place, likeliest first; those of a hundredth and more"),
+       words("statements[].quantity",
+             {"heat", "exchange", "capacity", "reading", "displacement", "ambient", "speed", "clock"}, "what is wrong"),
+       text("statements[].place[]",
+            "body, surface, joint, thermometer or displacement; of an exchange both ends; \"all\": of the whole machine"),
+       text("statements[].follows",
+            "constant, running, power of NAME, temperature of NAME, difference to NAME, since start, since stop, window, "
+            "unknown ..."),
+       text("statements[].law", "the same in full, with exponent, lag or times; empty: `follows` says all"),
+       text("statements[].records[]", "the records in which it holds"),
+       number("statements[].size", "in `unit`; of an unknown course its root mean square"),
+       text("statements[].unit", "\"1\": a factor's logarithm, or a share"),
+       number("statements[].ci95[]", "interval of 95 % by linear theory, from and to"),
+       number("statements[].probability", "that this quantity is wrong at this place"),
+       number("statements[].p_quantity", "that this quantity is wrong, wherever"),
+       number("statements[].p_place", "that the place is this one, if the quantity is wrong"),
+       number("statements[].p_follows", "that it follows this, if quantity and place are right"),
+       number("statements[].log_evidence", "of the best set that it is in, over nothing [nats]")});
 }
 
 void add_experiment(std::vector<ResultKey>& keys) {
@@ -228,6 +254,13 @@ void add_search(std::vector<ResultKey>& keys) {
                sometimes(flag("calibrated[].written", "whether the scenario written holds it"))});
 }
 
+void add_compared(std::vector<ResultKey>& keys) {
+  keys.insert(keys.end(), {object("compared", "channels of the records that the scenario has"),
+                           count("compared.channels", "that were compared"), count("compared.of", "with those left out"),
+                           object("compared.left_out[]", "columns that are neither compared nor a drive"),
+                           text("compared.left_out[].name", ""), text("compared.left_out[].why", "in words")});
+}
+
 std::vector<ResultKey> common_keys(const std::string& scenario) {
   using diagnosis::Verdict;
   std::vector<std::string> verdicts;
@@ -237,6 +270,7 @@ std::vector<ResultKey> common_keys(const std::string& scenario) {
   std::vector<ResultKey> keys = {text("program", "driftwright"), text("version", "of the program"),
                                  text("scenario", "its file"), words("verdict", verdicts, "what it comes to"),
                                  text("reason", "in a sentence")};
+  add_compared(keys);
   add_causes(keys);
   add_experiment(keys);
   add_unexplained(keys);
@@ -252,7 +286,9 @@ std::vector<ResultKey> common_keys(const std::string& scenario) {
 }  // namespace
 
 std::vector<ResultKey> diagnosis_keys() {
-  return common_keys("extended");
+  std::vector<ResultKey> keys = common_keys("extended");
+  add_statements(keys);
+  return keys;
 }
 
 std::vector<ResultKey> calibration_keys() {

@@ -17,6 +17,24 @@ namespace driftwright::findings {
 /// "15 min at 3000 rpm, 20 min at 0 rpm, ..."
 [[nodiscard]] std::string sections_text(const Cyclogram& cyclogram);
 
+/// Channels of records that were compared with the scenario, each counted once.
+struct Compared {
+  int n = 0, of = 0;
+  std::vector<std::pair<std::string, std::string>> left_out;  ///< name, why
+};
+[[nodiscard]] Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs);
+/// "1 of 6 channels of the records is in the scenario; ..." where some are left out, else "".
+[[nodiscard]] std::string compared_text(const Compared& compared);
+
+/// The unit that a statement's size is shown in, and what it is multiplied by for that.
+[[nodiscard]] std::pair<std::string, double> shown_unit(const diagnosis::Stated& stated);
+/// "heat in spindle, while it runs", "thermometer t_head, 84 % of the ambient from 95 min on": what is missing, where, and what it follows.
+[[nodiscard]] std::string statement_text(const diagnosis::Statement& statement);
+/// Its size with the interval of 95 %: "40 W (35 to 46)".
+[[nodiscard]] std::string size_text(const diagnosis::Stated& stated);
+/// Its records: "all", "monday", "tuesday and friday".
+[[nodiscard]] std::string records_text(const diagnosis::Statement& statement);
+
 /// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
 [[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
 /// "temperature t_head", "displacement drift_z", "tilt rx": a channel with what it measures. @param unit  K, um or urad

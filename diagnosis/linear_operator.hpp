@@ -1,0 +1,88 @@
+#pragma once
+// What a little heat more does to the readings of one run: the machine linear from row to row, about the states that a prediction went through.
+//
+//     z' = -K(t) z + b(t) in the modes K V = M V Λ of each stretch in which K is the same; a load is constant from row to row
+
+#include "diagnosis/twin.hpp"
+
+namespace driftwright::diagnosis {
+
+/// Relative change of a coefficient below which modes are kept.
+inline constexpr double kSameModes = 0.03;
+/// A law's value at a state; zero while its thermostat is off.
+[[nodiscard]] double law_value(const solver::BoundLaw& law, const solver::ReducedSystem& system, const effects::Inputs& u,
+                               const Eigen::VectorXd& z);
+
+class LinearOperator {
+ public:
+  /// @throws SolveError  where the state has no solution
+  LinearOperator(const Twin& twin, const MeasuredRun& run, const TwinState& state, Twin::Workspace& workspace);
+
+  /// Heat that enters the machine from row to row, in its modes, n_modes x n_rows - 1: a loadcourse times any course over the intervals is another one.
+  using Load = Eigen::MatrixXd;
+  /// 1 W in a body. @return  empty where no heat can enter it
+  [[nodiscard]] Load heat(const effects::Body& body) const;
+  /// 1 W/K between two bodies, or a body and the ambient, by the temperatures that the machine runs with.
+  [[nodiscard]] Load conductance(const effects::Body& a, const effects::Body& b) const;
+  /// What one of the system's own exchanges moves: 1 W/K or 1 W/(m² K).
+  [[nodiscard]] Load exchange(std::size_t e) const;
+  /// What heat [W] there would be more if the spindle stood.
+  [[nodiscard]] Load standing() const;
+  /// What a part of the machine conducts within itself, once more.
+  [[nodiscard]] Load conduction(std::size_t part) const;
+  /// All heat of the machine's own, and all that it exchanges with the ambient.
+  [[nodiscard]] Load all_heat() const;
+  [[nodiscard]] Load all_loss() const;
+  /// 1 K more of the ambient, of what exchanges have of it.
+  [[nodiscard]] Load ambient() const;
+  /// J/K more in a body, behind a lag: the heat that follows it. @param lag_s  0: at once
+  [[nodiscard]] Load capacity(const effects::Body& body, double lag_s) const;
+
+  /// What a load does to the channels. @param course  of the intervals. @param before  the course before the run, of a machine that starts at rest; 0: nothing
+  /// @return n_channels x n_rows
+  [[nodiscard]] Eigen::MatrixXd response(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
+  /// And to the machine's state, size x n_rows.
+  [[nodiscard]] Eigen::MatrixXd states(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
+  /// Moves the states that conductances, capacities and instruments see: temperatures that the machine really had make what is bilinear exact.
+  void correct(const Eigen::MatrixXd& states);
+
+  [[nodiscard]] Eigen::Index size() const { return z_.rows(); }
+  [[nodiscard]] Eigen::Index n_rows() const { return static_cast<Eigen::Index>(time_s_.size()); }
+  [[nodiscard]] const std::vector<double>& time_s() const { return time_s_; }
+  /// Mean temperature of a body at the rows over the reference [K]; empty where it has none.
+  [[nodiscard]] Eigen::RowVectorXd temperature(const effects::Body& body) const;
+  [[nodiscard]] const Eigen::RowVectorXd& ambient_K() const { return ambient_K_; }
+  /// Heat of the machine's own laws in a body from row to row [W].
+  [[nodiscard]] Eigen::RowVectorXd own_heat(const effects::Body& body) const;
+  [[nodiscard]] const std::vector<Drive>& drive() const { return drive_; }  ///< of the intervals
+  /// What the model's channels say, n_channels x n_rows.
+  [[nodiscard]] const Eigen::MatrixXd& predicted() const { return predicted_; }
+  /// What 1 K more of each part's temperature has of each channel by the expansion of that part alone, n_channels x n_rows.
+  [[nodiscard]] Eigen::MatrixXd expansion(std::size_t part) const;
+  [[nodiscard]] double coefficient(std::size_t e) const;  ///< of an exchange, the mean over the run
+
+ private:
+  struct Modes {
+    Eigen::VectorXd rate_1_s;
+    Eigen::MatrixXd vectors, observe, from;
+  };
+  /// Modal states of a load, each stretch in its own modes, n_modes x n_rows; of() is told the stretches: modes, first row, number of rows.
+  template <class Of>
+  void run_modes(const Load& load, const Eigen::RowVectorXd& course, double before, Of of) const;
+  void read();
+  [[nodiscard]] Load in_modes(const Eigen::MatrixXd& load) const;
+  [[nodiscard]] const Eigen::VectorXd* load_of(const effects::Body& body) const;
+
+  const Twin& twin_;
+  solver::ReducedSystem system_;
+  const MeasuredRun& run_;
+  std::vector<double> time_s_;
+  std::vector<Drive> drive_;
+  Eigen::MatrixXd z_, weights_, observe_, predicted_, coefficients_, middle_;
+  Eigen::RowVectorXd ambient_K_, ambient_middle_K_;
+  Eigen::MatrixXd heats_, standing_;  // of each source, n_sources x n_rows - 1
+  std::vector<Modes> modes_;
+  std::vector<std::size_t> of_interval_;
+};
+
+}  // namespace driftwright::diagnosis

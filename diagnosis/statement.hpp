@@ -1,0 +1,92 @@
+#pragma once
+// What may be missing, as one grammar: quantity x place x what it follows x records x size. Each statement is a column (or, of an unknown course, several): what
+// a unit of it does to the whitened readings, by the twin's own linear operator.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/fit.hpp"
+#include "diagnosis/linear_operator.hpp"
+
+namespace driftwright::diagnosis {
+
+enum class StatedQuantity { kHeat, kExchange, kCapacity, kReading, kDisplacement, kAmbient, kSpeed, kClock };
+[[nodiscard]] const char* word(StatedQuantity quantity);
+
+/// A statement without its size.
+struct Statement {
+  StatedQuantity quantity = StatedQuantity::kHeat;
+  std::vector<std::string> place;
+  std::string follows;                   ///< constant, running, power of NAME, temperature of NAME, window, unknown ...
+  std::string law;                       ///< what it follows in full: exponent, lag, times
+  std::vector<char> in_run;              ///< in which records it holds
+  std::vector<std::string> record = {};  ///< their names
+  double unit_size = 1.0;                ///< size that a column of a unit stands for, in `unit`: what is typical of it
+  std::string unit;
+};
+
+/// What acts in the machine or on its readings by a unit of a statement. Of all runs.
+struct Acting {
+  std::shared_ptr<const std::vector<LinearOperator::Load>> loads;  ///< null: it acts on a channel alone
+  std::string channel;
+  std::vector<Eigen::RowVectorXd> course;  ///< over the intervals, of a channel over the rows
+  bool always = false;                     ///< it acted before the run as at its beginning
+};
+
+/// A statement that is known but for its size, or, in cells of time, but for when: windows and unknown courses are put together from these.
+struct StatementColumn {
+  Statement says;  ///< in_run is left open
+  std::vector<Acting> acts;
+  std::vector<Eigen::VectorXd> of_run;  ///< whitened and condensed
+};
+struct StatementCells {
+  Statement says;  ///< follows and in_run are left open
+  std::vector<Acting> acts;
+  struct Run {
+    std::vector<Eigen::Index> edge;  ///< rows between the cells, one more than these
+    std::vector<double> edge_s;
+    Eigen::MatrixXd of_cell;  ///< whitened and condensed, a column a cell
+  };
+  std::vector<Run> runs;
+};
+
+/// One statement of a set as it is taken: which records, which times, how much.
+struct Chosen {
+  bool is_cells = false;
+  std::size_t index = 0;
+  /// Of each record, what the unit is times there: one number, or one of each cell; empty where it does nothing.
+  std::vector<Eigen::VectorXd> amount;
+};
+
+/// All that the grammar can say of a machine in its records.
+class StatementSpace {
+ public:
+  /// @param state  that the machine is linear about
+  /// @param moved  how much warmer it really was, by run, size x n_rows; empty: not at all
+  /// @throws SolveError  where the state has no solution
+  StatementSpace(const Fitter& fitter, const TwinState& state, const std::vector<Eigen::MatrixXd>& moved = {});
+
+  std::vector<StatementColumn> columns;
+  std::vector<StatementCells> cells;
+  struct Rows {
+    Eigen::Index first = 0, n = 0;
+  };
+  std::vector<Rows> rows;           ///< of each run
+  std::vector<std::string> record;  ///< its name
+  Eigen::Index together = 1;        ///< of the comparison's condensed readings in each
+  /// Whitened readings as the columns have them.
+  [[nodiscard]] Eigen::MatrixXd condense(const Comparison& comparison, const Eigen::MatrixXd& whitened) const;
+
+  /// What chosen statements do to the machine's states, and to its channels, of each run.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> states(const std::vector<Chosen>& chosen) const;
+  [[nodiscard]] std::vector<Eigen::MatrixXd> readings(const std::vector<Chosen>& chosen) const;
+
+ private:
+  friend class StatementBuilder;
+  [[nodiscard]] Eigen::RowVectorXd course_of(const Chosen& chosen, const Acting& acting, std::size_t run) const;
+  std::vector<LinearOperator> machine_;
+  std::vector<std::vector<std::string>> channels_;  ///< of each run
+};
+
+}  // namespace driftwright::diagnosis

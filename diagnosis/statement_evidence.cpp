@@ -1,0 +1,504 @@
+#include "diagnosis/statement_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/dense.hpp"
+#include "base/parallel.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kNothingLeft = 1e-9;  // of a column's squares: the numbers known roughly have all of it
+constexpr double kSeen = 1e-6;         // squares of a direction of the nuisance that noise does not hide
+constexpr Eigen::Index kPieces = 12;   // steps of an unknown course in a record
+constexpr int kMostWindows = 12;
+constexpr std::size_t kFewRecords = 5;  // of more, choices of no order are left out
+
+double log_mean(const std::vector<double>& terms) {
+  const double most = *std::max_element(terms.begin(), terms.end());
+  double sum = 0.0;
+  for (double t : terms) sum += std::exp(t - most);
+  return most + std::log(sum / static_cast<double>(terms.size()));
+}
+
+Eigen::Index n_pieces_of(Eigen::Index n_cells) {
+  return std::min(n_cells, kPieces);
+}
+
+/// Cells to steps that last: a random walk's, n_cells x n_pieces.
+Eigen::MatrixXd walk(Eigen::Index n_cells) {
+  const Eigen::Index n = n_pieces_of(n_cells);
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(n_cells, n);
+  for (Eigen::Index p = 0; p < n; ++p) w.col(p).tail(n_cells - p * n_cells / n).setOnes();
+  return w;
+}
+
+}  // namespace
+
+StatementEvidence::StatementEvidence(const StatementSpace& space, const StatementOptions& options,
+                                     const Eigen::VectorXd& residual, const Eigen::MatrixXd& nuisance)
+    : space_(space), options_(options) {
+  const dense::SymmetricEigen eigen(nuisance.transpose() * nuisance);
+  const Eigen::VectorXd squares = eigen.eigenvalues().cwiseMax(0.0);
+  const auto n_kept = (squares.array() > kSeen).count();
+  const Eigen::VectorXd kept = squares.tail(n_kept);
+  q_ = nuisance * eigen.eigenvectors().rightCols(n_kept) * kept.cwiseSqrt().cwiseInverse().asDiagonal();
+  share_ = kept.array() / (1.0 + kept.array());
+  residual_ = {residual, q_.transpose() * residual};
+  const auto n_columns = static_cast<Eigen::Index>(space.columns.size());
+  for (std::size_t r = 0; r < space.rows.size(); ++r) {
+    const auto& [first, n] = space.rows[r];
+    OfRun of{.x = Eigen::MatrixXd(n, n_columns), .nuisance = {}, .squares = {}, .along = {}};
+    for (Eigen::Index i = 0; i < n_columns; ++i) of.x.col(i) = space.columns[static_cast<std::size_t>(i)].of_run[r];
+    of.nuisance = q_.middleRows(first, n).transpose() * of.x;
+    of.squares = of.x.colwise().squaredNorm().transpose();
+    of.along = of.x.transpose() * residual.segment(first, n);
+    of_run_.push_back(std::move(of));
+  }
+  for (const StatementCells& c : space.cells) cells_.push_back(cells_of(c));
+  set_records();
+  set_priors();
+}
+
+StatementEvidence::Cells StatementEvidence::cells_of(const StatementCells& c) const {
+  Cells cells;
+  Eigen::Index n_cells = 0;
+  for (const auto& run : c.runs) {
+    cells.first.push_back(n_cells);
+    n_cells += run.of_cell.cols();
+  }
+  cells.first.push_back(n_cells);
+  cells.nuisance.resize(q_.cols(), n_cells);
+  cells.squares = Eigen::MatrixXd::Zero(n_cells, n_cells);
+  cells.along.resize(n_cells);
+  for (std::size_t r = 0; r < c.runs.size(); ++r) {
+    const auto& [first, n] = space_.rows[r];
+    const Eigen::MatrixXd& of = c.runs[r].of_cell;
+    cells.nuisance.middleCols(cells.first[r], of.cols()).noalias() = q_.middleRows(first, n).transpose() * of;
+    cells.squares.block(cells.first[r], cells.first[r], of.cols(), of.cols()).noalias() = of.transpose() * of;
+    cells.along.segment(cells.first[r], of.cols()).noalias() = of.transpose() * residual_.x.col(0).segment(first, n);
+  }
+  const Eigen::MatrixXd shared = share_.asDiagonal() * cells.nuisance;
+  cells.squares.noalias() -= cells.nuisance.transpose() * shared;
+  cells.along.noalias() -= shared.transpose() * residual_.nuisance;
+  return cells;
+}
+
+Eigen::MatrixXd StatementEvidence::products(const TakenColumns& a, const TakenColumns& b) const {
+  Eigen::MatrixXd p = a.x.transpose() * b.x;
+  p.noalias() -= a.nuisance.transpose() * (share_.asDiagonal() * b.nuisance);
+  return p;
+}
+
+StatementEvidence::Sizes StatementEvidence::sizes(const std::vector<Item>& set) const {
+  Sizes s;
+  s.columns.x.resize(residual_.x.rows(), 0);
+  s.columns.nuisance.resize(q_.cols(), 0);
+  Eigen::VectorXd width(0);
+  const auto append = [](Eigen::MatrixXd& to, const Eigen::MatrixXd& of) {
+    to.conservativeResize(Eigen::NoChange, to.cols() + of.cols());
+    to.rightCols(of.cols()) = of;
+  };
+  for (const Item& i : set) {
+    append(s.columns.x, i.columns.x);
+    append(s.columns.nuisance, i.columns.nuisance);
+    width.conservativeResize(width.size() + i.width.size());
+    width.tail(i.width.size()) = i.width;
+  }
+  if (width.size() == 0) return s;
+  Eigen::MatrixXd a = products(s.columns, s.columns);
+  a.diagonal().array() += width.array().square().inverse();
+  s.covariance = dense::solve_definite(a, Eigen::MatrixXd::Identity(a.rows(), a.cols()));
+  s.size = s.covariance * products(s.columns, residual_);
+  return s;
+}
+
+double StatementEvidence::mixed(double squares, double along, double& best_width) const {
+  double best = -1e300, sum = 0.0;
+  for (double w : options_.widths) {
+    const double e = -0.5 * std::log1p(w * w * squares) + 0.5 * along * along / (squares + 1.0 / (w * w));
+    if (e > best) {
+      sum = sum * std::exp(best - e) + 1.0;
+      best = e;
+      best_width = w;
+    } else {
+      sum += std::exp(e - best);
+    }
+  }
+  return best + std::log(sum / static_cast<double>(options_.widths.size()));
+}
+
+std::vector<Scored> StatementEvidence::scored(const std::vector<Item>& set) const {
+  const Sizes on = sizes(set);
+  std::vector<Scored> list;
+  score_columns(on, list);
+  std::vector<std::vector<Scored>> of_cells(cells_.size());
+  for_each_index(
+      cells_.size(), [] { return 0; },
+      [&](std::size_t k, int) {
+        Eigen::MatrixXd g = cells_[k].squares;
+        Eigen::VectorXd along = cells_[k].along;
+        if (!set.empty()) {
+          Eigen::MatrixXd common = -on.columns.nuisance.transpose() * (share_.asDiagonal() * cells_[k].nuisance);
+          for (std::size_t r = 0; r < space_.rows.size(); ++r) {
+            const auto& [first, n] = space_.rows[r];
+            const Eigen::MatrixXd& of = space_.cells[k].runs[r].of_cell;
+            common.middleCols(cells_[k].first[r], of.cols()).noalias() += on.columns.x.middleRows(first, n).transpose() * of;
+          }
+          g.noalias() -= common.transpose() * (on.covariance * common);
+          along.noalias() -= common.transpose() * on.size;
+        }
+        score_windows(k, g, along, of_cells[k]);
+        score_several(k, g, along, of_cells[k]);
+        score_unknown(k, g, along, of_cells[k]);
+      });
+  for (auto& l : of_cells) list.insert(list.end(), std::make_move_iterator(l.begin()), std::make_move_iterator(l.end()));
+  return list;
+}
+
+void StatementEvidence::score_columns(const Sizes& on, std::vector<Scored>& list) const {
+  const bool is_set = on.size.size() > 0;
+  std::vector<Eigen::MatrixXd> c(of_run_.size());  // what the set has in common with each column of a run
+  for (std::size_t r = 0; is_set && r < of_run_.size(); ++r)
+    c[r] = on.columns.x.middleRows(space_.rows[r].first, space_.rows[r].n).transpose() * of_run_[r].x;
+  const Eigen::MatrixXd set_nuisance = share_.asDiagonal() * on.columns.nuisance;
+  const Eigen::VectorXd r_nuisance = share_.asDiagonal() * residual_.nuisance;
+  const auto n_columns = static_cast<Eigen::Index>(space_.columns.size());
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    Eigen::MatrixXd p = Eigen::MatrixXd::Zero(q_.cols(), n_columns),
+                    common = Eigen::MatrixXd::Zero(on.columns.x.cols(), n_columns);
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(n_columns), along = d;
+    for (std::size_t r = 0; r < of_run_.size(); ++r) {
+      if (!records_[k].in[r]) continue;
+      p += of_run_[r].nuisance;
+      d += of_run_[r].squares;
+      along += of_run_[r].along;
+      if (is_set) common += c[r];
+    }
+    const Eigen::VectorXd whole = d;
+    d -= (share_.asDiagonal() * p.cwiseAbs2()).colwise().sum().transpose();
+    along -= p.transpose() * r_nuisance;
+    if (is_set) {
+      common.noalias() -= set_nuisance.transpose() * p;
+      d -= common.cwiseProduct(on.covariance * common).colwise().sum().transpose();
+      along -= common.transpose() * on.size;
+    }
+    for (Eigen::Index j = 0; j < n_columns; ++j) {
+      if (!(d[j] > kNothingLeft * whole[j]) || !(whole[j] > 0.0)) continue;
+      Scored s{.of = static_cast<std::size_t>(j), .records = k};
+      s.log_prior = prior_[static_cast<std::size_t>(j)] + records_[k].log_prior;
+      s.log_evidence = mixed(d[j], along[j], s.width);
+      list.push_back(s);
+    }
+  }
+}
+
+Item StatementEvidence::item(const Scored& s) const {
+  Item i{.says = said(s), .chosen = chosen(s), .columns = {}, .width = {}};
+  const Eigen::Index n_pieces = s.when == When::kUnknown || s.when == When::kUnknownInAll ? n_pieces_of(s) : 1;
+  i.columns.x = Eigen::MatrixXd::Zero(residual_.x.rows(), n_pieces);
+  Eigen::Index at = 0;
+  for (std::size_t r = 0; r < space_.rows.size(); ++r) {
+    const Eigen::VectorXd& amount = i.chosen.amount[r];
+    if (amount.size() == 0) continue;
+    const auto& [first, n] = space_.rows[r];
+    if (!i.chosen.is_cells) {
+      i.columns.x.col(0).segment(first, n) = of_run_[r].x.col(static_cast<Eigen::Index>(s.of));
+    } else if (n_pieces == 1) {
+      i.columns.x.col(0).segment(first, n) = space_.cells[i.chosen.index].runs[r].of_cell * amount;
+    } else {
+      const Eigen::MatrixXd walks = space_.cells[i.chosen.index].runs[r].of_cell * walk(amount.size());
+      i.columns.x.block(first, at, n, walks.cols()) = walks;
+      at += walks.cols();
+    }
+  }
+  i.columns.nuisance = q_.transpose() * i.columns.x;
+  i.width = Eigen::VectorXd::Constant(n_pieces, s.width);
+  return i;
+}
+
+Chosen StatementEvidence::chosen(const Scored& s) const {
+  Chosen c{.is_cells = s.when != When::kGiven, .index = s.of, .amount = std::vector<Eigen::VectorXd>(space_.rows.size())};
+  if (!c.is_cells) {
+    for (std::size_t r = 0; r < c.amount.size(); ++r) {
+      if (records_[s.records].in[r]) c.amount[r] = Eigen::VectorXd::Ones(1);
+    }
+    return c;
+  }
+  c.index -= space_.columns.size();
+  const auto& runs = space_.cells[c.index].runs;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Eigen::Index n = runs[r].of_cell.cols();
+    const bool is_it = r == s.run;
+    if (s.when == When::kUnknownInAll || (s.when == When::kUnknown && is_it) || (s.when == When::kLastingOn && r > s.run))
+      c.amount[r] = Eigen::VectorXd::Ones(n);
+    else if (s.when == When::kWindows)
+      c.amount[r] = Eigen::Map<const Eigen::VectorXd>(s.cells.data() + cells_[c.index].first[r], n);
+    else if (is_it) {
+      c.amount[r] = Eigen::VectorXd::Zero(n);
+      c.amount[r].segment(s.first, s.end - s.first).setOnes();
+    }
+  }
+  return c;
+}
+
+void StatementEvidence::scale(Chosen& c, const Scored& s, const Eigen::VectorXd& size) const {
+  Eigen::Index at = 0;
+  for (Eigen::VectorXd& amount : c.amount) {
+    if (amount.size() == 0) continue;
+    if (s.when == When::kUnknown || s.when == When::kUnknownInAll) {
+      const Eigen::MatrixXd w = walk(amount.size());
+      amount = w * size.segment(at, w.cols());
+      at += w.cols();
+    } else {
+      amount *= size[0];
+    }
+  }
+}
+
+Statement StatementEvidence::said(const Scored& s) const {
+  const Chosen c = chosen(s);
+  Statement says = c.is_cells ? space_.cells[c.index].says : space_.columns[c.index].says;
+  for (const Eigen::VectorXd& amount : c.amount)
+    says.in_run.push_back(amount.size() > 0 && amount.cwiseAbs().maxCoeff() > 0.0);
+  says.record = space_.record;
+  if (!c.is_cells) return says;
+  const std::string of = says.law.empty() ? "" : says.law + ", ";
+  const auto& edge = space_.cells[c.index].runs[s.run].edge_s;
+  const auto at_min = [&](Eigen::Index i) { return edge[static_cast<std::size_t>(i)] / 60.0; };
+  says.follows = "window";
+  switch (s.when) {
+    case When::kWindow:
+      says.law = of + fmt::format("{:.4g} to {:.4g} min", at_min(s.first), at_min(s.end));
+      break;
+    case When::kLasting:
+    case When::kLastingOn:
+      says.law = of + fmt::format("from {:.4g} min on", at_min(s.first));
+      break;
+    case When::kWindows:
+      says.law = of + fmt::format("{} windows", s.n_windows);
+      break;
+    default:
+      says.follows = "unknown";
+      says.law = of + "any course";
+  }
+  return says;
+}
+
+Eigen::Index StatementEvidence::n_pieces_of(const Scored& s) const {
+  Eigen::Index n = 0;
+  const auto& runs = space_.cells[s.of - space_.columns.size()].runs;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (s.when == When::kUnknownInAll || r == s.run) n += diagnosis::n_pieces_of(runs[r].of_cell.cols());
+  }
+  return n;
+}
+
+void StatementEvidence::score_windows(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
+                                      std::vector<Scored>& list) const {
+  const Cells& cells = cells_[k];
+  const std::size_t n_runs = cells.first.size() - 1, of = space_.columns.size() + k;
+  for (std::size_t r = 0; r < n_runs; ++r) {
+    const Eigen::Index at = cells.first[r], n = cells.first[r + 1] - at;
+    const Eigen::Index after = cells.first[r + 1], n_after = g.cols() - after;
+    const Eigen::VectorXd with_after = n_after > 0 ? Eigen::VectorXd(g.middleRows(at, n).rightCols(n_after).rowwise().sum())
+                                                   : Eigen::VectorXd(Eigen::VectorXd::Zero(n));
+    const double d_after = n_after > 0 ? g.bottomRightCorner(n_after, n_after).sum() : 0.0,
+                 along_after = n_after > 0 ? along.tail(n_after).sum() : 0.0;
+    Scored window{.of = of, .when = When::kWindow, .run = r}, lasting{.of = of, .when = When::kLasting, .run = r},
+        on{.of = of, .when = When::kLastingOn, .run = r};
+    std::vector<double> of_windows, of_lasting, of_on;
+    double best_window = -1e300, best_lasting = -1e300, best_on = -1e300;
+    for (Eigen::Index end = n; end > 1; --end) {
+      double d = 0.0, b = 0.0;
+      for (Eigen::Index first = end - 1; first > 0; --first) {
+        d += g(at + first, at + first) + 2.0 * g.col(at + first).segment(at + first + 1, end - first - 1).sum();
+        b += along[at + first];
+        if (!(d > kNothingLeft)) continue;
+        double w = 1.0;
+        if (end < n) {
+          of_windows.push_back(mixed(d, b, w));
+          if (of_windows.back() > best_window) {
+            best_window = of_windows.back();
+            window.first = first, window.end = end, window.width = w;
+          }
+        } else {
+          of_lasting.push_back(mixed(d, b, w));
+          if (of_lasting.back() > best_lasting) {
+            best_lasting = of_lasting.back();
+            lasting.first = first, lasting.end = end, lasting.width = w;
+          }
+          if (n_after == 0) continue;
+          of_on.push_back(mixed(d + 2.0 * with_after.segment(first, n - first).sum() + d_after, b + along_after, w));
+          if (of_on.back() > best_on) {
+            best_on = of_on.back();
+            on.first = first, on.end = end, on.width = w;
+          }
+        }
+      }
+    }
+    const double runs = std::log(static_cast<double>(n_runs));
+    const auto take = [&](Scored& s, const std::vector<double>& terms, double share) {
+      if (terms.empty()) return;
+      s.log_prior = prior_cells_[k].window + std::log(share) - runs;
+      s.log_evidence = log_mean(terms);
+      list.push_back(s);
+    };
+    take(window, of_windows, options_.once);
+    take(lasting, of_lasting, options_.lasting + (n_after > 0 ? 0.0 : options_.lasting_on));
+    take(on, of_on, options_.lasting_on);
+  }
+}
+
+/// Windows of one size, one after the other: each in the place that is likeliest beside those before. What each costs for having been chosen is
+/// what the best place has over the mean of all.
+void StatementEvidence::score_several(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
+                                      std::vector<Scored>& list) const {
+  const Cells& cells = cells_[k];
+  const std::size_t n_runs = cells.first.size() - 1;
+  Eigen::VectorXd in = Eigen::VectorXd::Zero(g.rows());
+  Scored s{.of = space_.columns.size() + k, .when = When::kWindows};
+  double paid = 0.0, best = -1e300;
+  for (int windows = 1; windows <= kMostWindows; ++windows) {
+    const Eigen::VectorXd beside = g * in;
+    const double d_before = in.dot(beside), b_before = in.dot(along);
+    double most = -1e300, sum = 0.0, n_places = 0.0, width = 1.0;
+    Eigen::Index first = 0, end = 0;
+    for (std::size_t r = 0; r < n_runs; ++r) {
+      for (Eigen::Index from = cells.first[r]; from < cells.first[r + 1]; ++from) {
+        double d = d_before, b = b_before;
+        for (Eigen::Index last = from; last < cells.first[r + 1] && in[last] == 0.0; ++last) {
+          d += 2.0 * beside[last] + g(last, last) + 2.0 * g.col(last).segment(from, last - from).sum();
+          b += along[last];
+          if (!(d > kNothingLeft)) continue;
+          double w = 1.0;
+          const double e = mixed(d, b, w);
+          n_places += 1.0;
+          if (e > most) {
+            sum = sum * std::exp(most - e) + 1.0;
+            most = e, width = w, first = from, end = last + 1;
+          } else {
+            sum += std::exp(e - most);
+          }
+        }
+      }
+    }
+    if (n_places == 0.0) break;
+    const double stage = most + std::log(sum / n_places);
+    const double whole = stage - paid - windows * std::log(2.0);
+    in.segment(first, end - first).setOnes();
+    paid += most - stage;
+    if (windows == 1) continue;  // kWindow is that
+    if (whole > best) {
+      best = whole;
+      s.cells.assign(in.data(), in.data() + in.size());
+      s.width = width;
+      s.n_windows = windows;
+    } else if (windows > 3) {
+      break;
+    }
+  }
+  if (s.n_windows == 0) return;
+  s.log_prior = prior_cells_[k].window + std::log(options_.several);
+  s.log_evidence = best;
+  list.push_back(s);
+}
+
+void StatementEvidence::score_unknown(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
+                                      std::vector<Scored>& list) const {
+  const Cells& cells = cells_[k];
+  const std::size_t n_runs = cells.first.size() - 1, of = space_.columns.size() + k;
+  for (std::size_t r = 0; r <= n_runs; ++r) {
+    if (r == n_runs && n_runs == 1) break;
+    const std::size_t from = r == n_runs ? 0 : r, to = r == n_runs ? n_runs : r + 1;
+    const Eigen::Index at = cells.first[from], n = cells.first[to] - at;
+    Eigen::Index n_pieces = 0;
+    for (std::size_t i = from; i < to; ++i) n_pieces += diagnosis::n_pieces_of(cells.first[i + 1] - cells.first[i]);
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n_pieces);
+    Eigen::Index p = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const Eigen::MatrixXd w = walk(cells.first[i + 1] - cells.first[i]);
+      sum.block(cells.first[i] - at, p, w.rows(), w.cols()) = w;
+      p += w.cols();
+    }
+    const Eigen::MatrixXd walks = sum.transpose() * (g.block(at, at, n, n) * sum);
+    const Eigen::VectorXd b = sum.transpose() * along.segment(at, n);
+    const dense::SymmetricEigen eigen(walks);
+    const Eigen::ArrayXd d = eigen.eigenvalues().cwiseMax(0.0).array();
+    const Eigen::ArrayXd in = (eigen.eigenvectors().transpose() * b).array();
+    Scored s{.of = of, .when = r == n_runs ? When::kUnknownInAll : When::kUnknown, .run = from};
+    std::vector<double> terms;
+    double best = -1e300;
+    for (double w : options_.widths) {
+      terms.push_back((-0.5 * (w * w * d).log1p() + 0.5 * in.square() / (d + 1.0 / (w * w))).sum());
+      if (terms.back() > best) best = terms.back(), s.width = w;
+    }
+    s.log_prior =
+        prior_cells_[k].unknown + (n_runs == 1   ? 0.0
+                                   : r == n_runs ? std::log(options_.all_records)
+                                                 : std::log((1.0 - options_.all_records) / static_cast<double>(n_runs)));
+    s.log_evidence = log_mean(terms);
+    list.push_back(s);
+  }
+}
+
+/// All records, one alone, up to one or from one on; of a few any others, too.
+void StatementEvidence::set_records() {
+  const std::size_t n = space_.rows.size();
+  if (n == 1) {
+    records_.push_back({{1}, 0.0});
+    return;
+  }
+  std::vector<std::vector<char>> near, far;
+  if (n <= kFewRecords) {
+    for (unsigned mask = 1; mask + 1 < (1u << n); ++mask) {
+      std::vector<char> in;
+      std::size_t changes = 0, count = 0;
+      for (std::size_t r = 0; r < n; ++r) {
+        in.push_back((mask >> r & 1u) != 0);
+        count += in.back();
+        if (r > 0 && in[r] != in[r - 1]) ++changes;
+      }
+      (count == 1 || changes == 1 ? near : far).push_back(std::move(in));
+    }
+  } else {
+    for (std::size_t r = 0; r < n; ++r) {
+      near.emplace_back(n, 0);
+      near.back()[r] = 1;
+      if (r < 1 || r + 1 >= n) continue;
+      near.emplace_back(n, 0);
+      std::fill(near.back().begin() + static_cast<std::ptrdiff_t>(r), near.back().end(), 1);
+      near.emplace_back(n, 1);
+      std::fill(near.back().begin() + static_cast<std::ptrdiff_t>(r), near.back().end(), 0);
+    }
+  }
+  records_.push_back({std::vector<char>(n, 1), std::log(options_.all_records)});
+  const double some = 1.0 - options_.all_records, rare = far.empty() ? 0.0 : options_.rare_records;
+  for (auto& in : near)
+    records_.push_back({std::move(in), std::log(some * (1.0 - rare) / static_cast<double>(near.size()))});
+  for (auto& in : far) records_.push_back({std::move(in), std::log(some * rare / static_cast<double>(far.size()))});
+}
+
+/// Uniform on each level: quantity, place, what it follows, shape; records.
+void StatementEvidence::set_priors() {
+  std::map<StatedQuantity, std::map<std::vector<std::string>, std::map<std::string, std::set<std::string>>>> tree;
+  for (const StatementColumn& c : space_.columns) tree[c.says.quantity][c.says.place][c.says.follows].insert(c.says.law);
+  for (const StatementCells& c : space_.cells) {
+    tree[c.says.quantity][c.says.place]["window"].insert(c.says.law);
+    tree[c.says.quantity][c.says.place]["unknown"].insert(c.says.law);
+  }
+  const auto price = [&](const Statement& s, const std::string& follows) {
+    const auto& places = tree.at(s.quantity);
+    const auto& all = places.at(s.place);
+    return -std::log(static_cast<double>(tree.size())) - std::log(static_cast<double>(places.size())) -
+           std::log(static_cast<double>(all.size())) - std::log(static_cast<double>(all.at(follows).size()));
+  };
+  for (const StatementColumn& c : space_.columns) prior_.push_back(price(c.says, c.says.follows));
+  for (const StatementCells& c : space_.cells) prior_cells_.push_back({price(c.says, "window"), price(c.says, "unknown")});
+}
+
+}  // namespace driftwright::diagnosis
