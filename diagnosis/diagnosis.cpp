@@ -18,14 +18,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kUnnamed = 3.0;  // nats by which one cause without a name must be better than those with one
+constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
 /// And, where it follows time in any shape, of what the best of these explains: better by less, it follows what that one's law leaves.
 constexpr double kBetterOfCause = 0.1;
 constexpr double kWrongAmbient_K = 1.0;  // a recorded ambient is known to a third of it
-constexpr double kBeyondBelief = 2.0;    // mean square of how far the scenario's numbers moved, in their sigmas
-constexpr double kMostWork = 2e7;        // some ten seconds
-constexpr double kSmallMachine = 15.0;   // unknowns, below which a prediction costs the same
-constexpr double kNotLinear = 6.0;       // of what one of a linear machine costs
+constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
+constexpr double kMostWork = 2e7;       // some ten seconds
+constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
+constexpr double kNotLinear = 6.0;      // of what one of a linear machine costs
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -107,7 +107,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
-    c.chance = chance_of(d.search, gain);
+    c.chance = d.search.chance.share_above(gain);
     if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
     c.standing = gain >= d.search.bars.named ? Standing::kNamed : Standing::kSuspected;
     if (c.standing == Standing::kNamed &&
@@ -158,9 +158,9 @@ void doubt_all(Diagnosis& d, const std::string& why) {
 void say_what_is_written(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
   for (std::size_t i = 0; i < d.written.causes.size(); ++i) {
     Cause& c = d.causes.at(d.written.causes[i]);
-    c.parameters =
-        cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain, listener)
-            .parameters;
+    c.parameters = cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain,
+                            listener)
+                       .parameters;
   }
 }
 
@@ -259,11 +259,12 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.scatter = fitter.scatter();  // with the priors of faults where numbers have gone too far
   const std::vector<Candidate>& list = d.search.candidates;
-  d.n_candidates = static_cast<int>(std::max(standing.size(), list.size()));
+  d.n_candidates = static_cast<int>(list.size());
   listener.begin("one cause without a name");
   const bool is_faint = !d.search.findings.empty() && d.search.findings.front().faint_chance.has_value();
-  auto unnamed = listener.wants_end() || is_faint ? std::nullopt
-                                                  : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
+  auto unnamed = listener.wants_end() || is_faint
+                     ? std::nullopt
+                     : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
   double explained = 0.0;
   for (const Finding& f : d.search.findings) explained = std::max(explained, f.log_evidence_gain);
   const bool has_any_shape = unnamed && unnamed->follows == "time";
@@ -294,9 +295,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       Hypothesis other = d.search.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
-      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
+      cause.alternatives.push_back(
+          cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
       leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
-      cause.alternatives.back().chance = chance_of(d.search, a.log_evidence_gain);
+      cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
       cause.alternatives.back().share = a.share;
     }
     cause.share = f.share;

@@ -46,7 +46,10 @@ LinearOperator::LinearOperator(const Twin& twin, const MeasuredRun& run, const T
     const int o = run.channels[static_cast<std::size_t>(c)].output;
     observe_.col(c).head(bound.outputs.rows()) = bound.outputs.col(o);
   }
-  read();
+  middle_ = 0.5 * (z_.leftCols(n - 1) + z_.rightCols(n - 1));
+  predicted_ = observe_.transpose() * z_;
+  for (Eigen::Index c = 0; c < predicted_.rows(); ++c)
+    predicted_.row(c) += twin_.outputs().ambient[run_.channels[static_cast<std::size_t>(c)].output] * ambient_K_;
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const double middle_s = 0.5 * (time_s_[static_cast<std::size_t>(i)] + time_s_[static_cast<std::size_t>(i + 1)]);
     effects::Inputs u{
@@ -264,27 +267,6 @@ Eigen::MatrixXd LinearOperator::response(const Load& load, const Eigen::RowVecto
     readings.middleCols(first, n).noalias() = m.observe.transpose() * a.middleCols(first, n);
   });
   return readings;
-}
-
-Eigen::MatrixXd LinearOperator::states(const Load& load, const Eigen::RowVectorXd& course, double before) const {
-  Eigen::MatrixXd z(system_.size(), n_rows());
-  run_modes(load, course, before, [&](const Modes& m, const Eigen::MatrixXd& a, Eigen::Index first, Eigen::Index n) {
-    z.middleCols(first, n).noalias() = m.vectors * a.middleCols(first, n);
-  });
-  return z;
-}
-
-void LinearOperator::read() {
-  const Eigen::Index n = n_rows();
-  middle_ = 0.5 * (z_.leftCols(n - 1) + z_.rightCols(n - 1));
-  predicted_ = observe_.transpose() * z_;
-  for (Eigen::Index c = 0; c < predicted_.rows(); ++c)
-    predicted_.row(c) += twin_.outputs().ambient[run_.channels[static_cast<std::size_t>(c)].output] * ambient_K_;
-}
-
-void LinearOperator::correct(const Eigen::MatrixXd& states) {
-  z_ += states;
-  read();
 }
 
 }  // namespace driftwright::diagnosis

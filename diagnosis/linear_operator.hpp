@@ -35,18 +35,12 @@ class LinearOperator {
   [[nodiscard]] Load all_loss() const;
   /// 1 K more of the ambient, of what exchanges have of it.
   [[nodiscard]] Load ambient() const;
-  /// J/K more in a body, behind a lag: the heat that follows it. @param lag_s  0: at once
+  /// Heat that 1 J/K more in a body would take up. @param lag_s  time constant of its way to the body; 0: it is the body's own
   [[nodiscard]] Load capacity(const effects::Body& body, double lag_s) const;
 
   /// What a load does to the channels. @param course  of the intervals. @param before  the course before the run, of a machine that starts at rest; 0: nothing
   /// @return n_channels x n_rows
   [[nodiscard]] Eigen::MatrixXd response(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
-  /// And to the machine's state, size x n_rows.
-  [[nodiscard]] Eigen::MatrixXd states(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
-  /// Moves the states that conductances, capacities and instruments see: temperatures that the machine really had make what is bilinear exact.
-  void correct(const Eigen::MatrixXd& states);
-
-  [[nodiscard]] Eigen::Index size() const { return z_.rows(); }
   [[nodiscard]] Eigen::Index n_rows() const { return static_cast<Eigen::Index>(time_s_.size()); }
   [[nodiscard]] const std::vector<double>& time_s() const { return time_s_; }
   /// Mean temperature of a body at the rows over the reference [K]; empty where it has none.
@@ -69,7 +63,6 @@ class LinearOperator {
   /// Modal states of a load, each stretch in its own modes, n_modes x n_rows; of() is told the stretches: modes, first row, number of rows.
   template <class Of>
   void run_modes(const Load& load, const Eigen::RowVectorXd& course, double before, Of of) const;
-  void read();
   [[nodiscard]] Load in_modes(const Eigen::MatrixXd& load) const;
   [[nodiscard]] const Eigen::VectorXd* load_of(const effects::Body& body) const;
 

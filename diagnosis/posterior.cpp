@@ -139,7 +139,7 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
   for (double& w : weights) total += w = std::exp(w - most);
   for (double& w : weights) w /= total;
 
-  Posterior p{.nothing = weights.front(), .stated = {}, .best = sized(evidence, *best, power)};
+  Posterior p{.nothing = weights.front(), .stated = {}};
   struct Sum {
     double probability = 0.0;
     struct Follows {

@@ -1,6 +1,8 @@
 #pragma once
 // What is missing, as probabilities: sets of statements found by beam search, and their evidence summed facet by facet.
 
+#include <limits>
+
 #include "diagnosis/statement_evidence.hpp"
 
 namespace driftwright::diagnosis {
@@ -18,10 +20,8 @@ struct Stated {
 };
 
 struct Posterior {
-  double nothing = 1.0;        ///< probability that nothing is wrong
+  double nothing = std::numeric_limits<double>::quiet_NaN();  ///< probability that nothing is wrong; NaN: not weighed
   std::vector<Stated> stated;  ///< by falling probability, each quantity and place once; those of a hundredth and more
-  /// The likeliest set: what it is, how much of it there is, and what it leaves of the numbers known roughly, in sigmas.
-  std::vector<Stated> best;
 };
 
 /// @param residual, nuisance  as StatementEvidence has them

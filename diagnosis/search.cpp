@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <sstream>
 
@@ -16,7 +15,6 @@
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/pairs.hpp"
 #include "diagnosis/rivals.hpp"
-#include "diagnosis/said_by.hpp"
 #include "diagnosis/some_records.hpp"
 
 namespace driftwright::diagnosis {
@@ -31,8 +29,6 @@ constexpr double kNearBest = 12.0;         // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
-
-constexpr double kEvenOdds = 0.5;  // that nothing is wrong
 
 constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes of two numbers more, at 95 %
 
@@ -297,25 +293,15 @@ Bars bars_of(const Chance& chance, const SearchOptions& options) {
   return bars;
 }
 
-double chance_of(const SearchResult& result, double gain) {
-  return result.chance.n_simulated > 0 ? result.chance.share_above(gain) : std::numeric_limits<double>::quiet_NaN();
-}
-
 SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
                     const Listener& listener, const SearchResult* before) {
   SearchResult result;
-  const std::size_t n_all = candidates.size();
   double price = 0.0;
-  const auto is_stated = [&](const std::string& effect, const std::string& where) {
-    return !options.stated || stated_as(*options.stated, effect, where) != nullptr;
-  };
-  std::erase_if(candidates, [&](const Candidate& c) { return !is_stated(c.effect, c.where); });
-  const auto add = [&](std::vector<Event> events) {
-    std::erase_if(events, [&](const Event& e) { return !is_stated(e.doubt.finding, e.doubt.where); });
+  const auto add = [&](const std::vector<Event>& events) {
     std::vector<Law> laws;
     for (const auto& [candidate, variant] : add_events(candidates, events, options.without))
       laws.push_back({candidate, variant});
-    price = std::log(std::max(1.0, static_cast<double>(std::max(n_all, candidates.size()))));
+    price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
     return laws;
   };
   const auto evidence = [&](const Fit& f, const Hypothesis& h) {
@@ -339,14 +325,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     weighed_at = best_fit;
   }
   result.without = best_fit;
-  if (options.stated && options.stated->nothing > kEvenOdds) {
-    result.fit = std::move(best_fit);
-    result.bars = bars_of(result.chance, options);
-    result.candidates = std::move(candidates);
-    return result;
-  }
   listener.begin("looking for windows of time");
-  if (!options.stated) add(events_seen(fitter.twin(), fitter.runs(), listener));
+  add(events_seen(fitter.twin(), fitter.runs(), listener));
   add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at), listener));
   const Hypothesis begun = is_bent && before ? carried_over(*before, candidates) : Hypothesis{};
   listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
@@ -359,8 +339,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   };
   add_of_some_records({}, weighed_at);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
-  Chances chances;
-  if (!options.stated) chances = chances_of(fitter, candidates, columns, weighed_at);
+  Chances chances = chances_of(fitter, candidates, columns, weighed_at);
   result.chance = chances.best;
   result.rarest = chances.rarest;
   result.bars = bars_of(result.chance, options);
@@ -518,7 +497,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     result.findings.push_back(std::move(finding));
     ++i;
   }
-  if (best.empty() && !options.stated && options.most_effects > 0 && !listener.wants_end()) {
+  if (best.empty() && options.most_effects > 0 && !listener.wants_end()) {
     if (is_bent || is_pruned) {
       settle_well(fitter, {}, best_fit);
       columns = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);

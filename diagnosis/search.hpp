@@ -4,7 +4,6 @@
 #include <optional>
 #include <set>
 
-#include "diagnosis/posterior.hpp"
 #include "diagnosis/rivals.hpp"
 #include "diagnosis/signatures.hpp"
 
@@ -35,8 +34,6 @@ struct SearchOptions {
       12.0;  ///< nor one that begins or ends at a time of its own, unless it is an instrument's: it bends to what it is not
   int refits = 16;                     ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
-  /// What is missing in words of the grammar: where nothing is, nothing is looked for; else what says a statement of it. Null: everything is looked for.
-  const Posterior* stated = nullptr;
 };
 
 /// What the evidence of a claim must reach [nats, the price of the number of candidates paid]: what chance has to offer, or what is asked for at least.
@@ -76,9 +73,6 @@ struct SearchResult {
   Bars bars;                  ///< that were held to
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
-
-/// Share of faultless machines at which the best candidate has as much evidence; NaN where that was not simulated.
-[[nodiscard]] double chance_of(const SearchResult& result, double gain);
 
 /// @param candidates  windows that the readings ask for are added
 /// @param listener    once it wants an end, what has stood up so far is the result

@@ -63,9 +63,8 @@ struct Chosen {
 class StatementSpace {
  public:
   /// @param state  that the machine is linear about
-  /// @param moved  how much warmer it really was, by run, size x n_rows; empty: not at all
   /// @throws SolveError  where the state has no solution
-  StatementSpace(const Fitter& fitter, const TwinState& state, const std::vector<Eigen::MatrixXd>& moved = {});
+  StatementSpace(const Fitter& fitter, const TwinState& state);
 
   std::vector<StatementColumn> columns;
   std::vector<StatementCells> cells;
@@ -78,8 +77,7 @@ class StatementSpace {
   /// Whitened readings as the columns have them.
   [[nodiscard]] Eigen::MatrixXd condense(const Comparison& comparison, const Eigen::MatrixXd& whitened) const;
 
-  /// What chosen statements do to the machine's states, and to its channels, of each run.
-  [[nodiscard]] std::vector<Eigen::MatrixXd> states(const std::vector<Chosen>& chosen) const;
+  /// What chosen statements do to the channels of each run, n_channels x n_rows.
   [[nodiscard]] std::vector<Eigen::MatrixXd> readings(const std::vector<Chosen>& chosen) const;
 
  private:

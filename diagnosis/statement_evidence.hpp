@@ -45,7 +45,7 @@ enum class When {
 
 /// A statement with its evidence on top of a set.
 struct Scored {
-  std::size_t of = 0;  ///< column of the space; or cells, counted on behind all columns
+  std::size_t of = 0;  ///< index of the column; the first cells follow the last column
   When when = When::kGiven;
   std::size_t run = 0;              ///< of what is in one
   std::size_t records = 0;          ///< of columns: which choice of records

@@ -16,8 +16,8 @@ using effects::Body;
 using Row = Eigen::RowVectorXd;
 
 constexpr Eigen::Index kCells = 48;  // of a record, of windows and unknown courses
-constexpr double kAmbient_K = 2.0;   // 1 sigma of an ambient that is wrong, of a speed's logarithm, of a clock
-constexpr double kLogarithm = 0.7;
+constexpr double kAmbient_K = 2.0;   // typical size of an ambient that is wrong
+constexpr double kLogarithm = 0.7;   // of a factor's logarithm
 constexpr double kExponents[] = {0.5, 1.0, 1.5, 2.0, 3.0};
 constexpr double kDriveLags_s[] = {0.0, 120.0, 600.0, 1800.0, 5400.0};
 constexpr double kSpeedFactors[] = {0.5, 0.8, 0.95, 1.05, 1.25, 2.0};
@@ -50,8 +50,7 @@ struct TimedCourse {
 
 class StatementBuilder {
  public:
-  StatementBuilder(StatementSpace& space, const Fitter& fitter, const TwinState& state,
-                   const std::vector<Eigen::MatrixXd>& moved)
+  StatementBuilder(StatementSpace& space, const Fitter& fitter, const TwinState& state)
       : space_(space),
         machine_(space.machine_),
         fitter_(fitter),
@@ -61,7 +60,6 @@ class StatementBuilder {
     Twin::Workspace workspace(fitter.twin());
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       machine_.emplace_back(fitter.twin(), runs_[r], state, workspace);
-      if (!moved.empty()) machine_.back().correct(moved[r]);
       space_.record.push_back(runs_[r].name);
       space_.channels_.emplace_back();
       for (const MeasuredChannel& c : runs_[r].channels) space_.channels_.back().push_back(c.name);
@@ -119,7 +117,7 @@ class StatementBuilder {
     return n > 1.0 ? std::sqrt(std::max(1e-18, squares / n - sum * sum / n / n)) : 1.0;
   }
 
-  /// TimedCourse of a function of the drive. @param lag_s  of its rows
+  /// Course of a function of the drive.
   TimedCourse of_drive(std::string follows, std::string law, const std::function<double(const Drive&)>& u) const {
     TimedCourse c{.follows = std::move(follows), .law = std::move(law), .at_row = {}, .in_interval = {}, .rests = true};
     for (std::size_t r = 0; r < runs_.size(); ++r) {
@@ -134,8 +132,7 @@ class StatementBuilder {
   }
 
   void make_courses() {
-    const auto constant = [&](double) { return 1.0; };
-    TimedCourse c = of_drive("constant", "constant", [&](const Drive&) { return constant(0); });
+    TimedCourse c = of_drive("constant", "constant", [](const Drive&) { return 1.0; });
     c.rests = false;
     courses_.push_back(c);
     const double top = std::max(1.0, scene_.top_rpm);
@@ -504,15 +501,6 @@ class StatementBuilder {
     return {};
   }
 
-  Row rate(std::size_t r, const Row& y) const {
-    const auto& t = machine_[r].time_s();
-    Row d = Row::Zero(y.size());
-    for (Eigen::Index i = 1; i < y.size(); ++i)
-      d[i] = (y[i] - y[i - 1]) / (t[static_cast<std::size_t>(i)] - t[static_cast<std::size_t>(i - 1)]);
-    if (d.size() > 1) d[0] = 0.0;
-    return d;
-  }
-
   template <class Of>
   std::vector<Row> by_run(Of of) const {
     std::vector<Row> rows;
@@ -785,8 +773,8 @@ Eigen::MatrixXd StatementSpace::condense(const Comparison& comparison, const Eig
   return few;
 }
 
-StatementSpace::StatementSpace(const Fitter& fitter, const TwinState& state, const std::vector<Eigen::MatrixXd>& moved) {
-  StatementBuilder(*this, fitter, state, moved).build();
+StatementSpace::StatementSpace(const Fitter& fitter, const TwinState& state) {
+  StatementBuilder(*this, fitter, state).build();
 }
 
 Eigen::RowVectorXd StatementSpace::course_of(const Chosen& chosen, const Acting& acting, std::size_t run) const {
@@ -802,25 +790,6 @@ Eigen::RowVectorXd StatementSpace::course_of(const Chosen& chosen, const Acting&
     course.segment(from, to - from) = amount[c] * acting.course[run].segment(from, to - from);
   }
   return course;
-}
-
-std::vector<Eigen::MatrixXd> StatementSpace::states(const std::vector<Chosen>& chosen) const {
-  std::vector<Eigen::MatrixXd> all;
-  for (std::size_t r = 0; r < machine_.size(); ++r) {
-    Eigen::MatrixXd& z = all.emplace_back();
-    for (const Chosen& c : chosen) {
-      const auto& acts = c.is_cells ? cells[c.index].acts : columns[c.index].acts;
-      const double unit = (c.is_cells ? cells[c.index].says : columns[c.index].says).unit_size;
-      for (const Acting& a : acts) {
-        if (!a.loads || c.amount[r].size() == 0) continue;
-        const Eigen::RowVectorXd course = unit * course_of(c, a, r);
-        const Eigen::MatrixXd of = machine_[r].states((*a.loads)[r], course, a.always ? course[0] : 0.0);
-        z = z.size() > 0 ? Eigen::MatrixXd(z + of) : of;
-      }
-    }
-    if (z.size() == 0) z = Eigen::MatrixXd::Zero(machine_[r].size(), machine_[r].n_rows());
-  }
-  return all;
 }
 
 std::vector<Eigen::MatrixXd> StatementSpace::readings(const std::vector<Chosen>& chosen) const {

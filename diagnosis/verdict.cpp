@@ -98,7 +98,7 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
 
 /// Machines without fault per one at which chance offers as much.
 std::string odds_words(const Cause& c) {
-  return !(c.chance >= 1e-6) ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
+  return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
 }
 
 /// Whether a claim that stands beside a stronger one was found in none of several searches without a part of the rows: it is what the stronger one leaves of these rows.
@@ -202,7 +202,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
     const Finding& finding = d.search.findings[c];
-    cause.chance = finding.faint_chance.value_or(chance_of(d.search, cause.log_evidence_gain));
+    cause.chance = finding.faint_chance.value_or(d.search.chance.share_above(cause.log_evidence_gain));
     cause.n_searched = held.n_searched;
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (finding.faint_chance) cause.doubt = kFaint;

@@ -1,7 +1,5 @@
 #include "findings/diagnosis_data.hpp"
 
-#include <limits>
-
 #include "effects/where_in_files.hpp"
 #include "findings/diagnosis_words.hpp"
 
@@ -151,11 +149,9 @@ Section search_data(const diagnosis::Diagnosis& d) {
   put(section, "weighed_by_model_error", d.weighed_by_model_error);
   put(section, "n_candidates", d.n_candidates);
   // evidence that the best candidate has where nothing is wrong: at one machine in two, in a hundred, in ten thousand
-  const bool is_simulated = d.search.chance.n_simulated > 0;
-  const auto if_simulated = [&](double value) { return is_simulated ? value : std::numeric_limits<double>::quiet_NaN(); };
-  put(section, "chance.median", if_simulated(d.search.chance.gain_at(0.5)));
-  put(section, "chance.one_in_100", if_simulated(d.search.chance.gain_at(0.01)));
-  put(section, "chance.one_in_10000", if_simulated(d.search.chance.gain_at(1e-4)));
+  put(section, "chance.median", d.search.chance.gain_at(0.5));
+  put(section, "chance.one_in_100", d.search.chance.gain_at(0.01));
+  put(section, "chance.one_in_10000", d.search.chance.gain_at(1e-4));
   put(section, "chance.simulations", d.search.chance.n_simulated);
   // and the bars in force, which chance is no lower than, with the share of faultless machines at which it reaches them
   const diagnosis::Bars& bars = d.search.bars;

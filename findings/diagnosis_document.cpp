@@ -27,7 +27,7 @@ using output::Value;
 
 constexpr output::Digits kThree = output::significant(3);
 
-/// @param compared  what was: a verdict of half the channels or fewer is none that all is well
+/// @param compared  where half the channels or fewer were compared, no verdict is shown as good
 output::Verdict verdict_box(const diagnosis::Diagnosis& d, const Compared& compared) {
   using diagnosis::Verdict;
   using Kind = output::Verdict::Kind;
@@ -419,15 +419,13 @@ Section candidates_section(const diagnosis::Diagnosis& d) {
     bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
                          fmt::format("{:.1f}", s.gain)});
   }
-  if (d.search.chance.n_simulated > 0) {
-    const diagnosis::Chance& chance = d.search.chance;
-    const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-    add(section, Text{fmt::format(
-                     "The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
-                     "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
-                     "it is named; found by simulating this machine with these records.",
-                     chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
-  }
+  const diagnosis::Chance& chance = d.search.chance;
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+  add(section,
+      Text{fmt::format("The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
+                       "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
+                       "it is named; found by simulating this machine with these records.",
+                       chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
   if (bars.bars.empty()) {
     add(section, Text{"None would bring evidence."});
     return section;
@@ -546,7 +544,7 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   add(body, verdict_box(d, compared_of(found.measured.runs)));
   add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
-  if (!d.statements.best.empty() || !d.statements.stated.empty()) body.sections.push_back(statements_section(d));
+  if (!std::isnan(d.statements.nothing)) body.sections.push_back(statements_section(d));
   add_statements_data(body, d);
   add(body, causes_table(d));
   add_beside_causes(body, d);
