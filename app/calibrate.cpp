@@ -9,7 +9,7 @@
 namespace driftwright::app {
 
 void calibrate(const CalibrateOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options);
   (void)scenarios::require_machine(scenario, "calibrate");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

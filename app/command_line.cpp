@@ -47,6 +47,8 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   CLI::App* verb = app.add_subcommand(name, what);
   verb->add_option(input, options.scenario, input + " YAML")->required();
   add_results(verb, options, "<name of the " + input + ">", example);
+  verb->add_flag("--strict", options.strict,
+                 "refuse what no machine has or does in place of warning of it (docs/scenario.md, Plausibility)");
   return verb;
 }
 
@@ -307,13 +309,15 @@ void add_init(CLI::App& cli, app::InitOptions& options) {
 }
 
 void add_list(CLI::App& cli, app::ListOptions& options) {
-  CLI::App* verb =
-      cli.add_subcommand("list", "what there is to choose from: effects, materials, scenarios, joints, cyclograms");
-  verb->add_option("what", options.what, "effects, materials, scenarios, joints or cyclograms")
-      ->check(CLI::IsMember({"effects", "materials", "scenarios", "joints", "cyclograms"}))
+  CLI::App* verb = cli.add_subcommand(
+      "list",
+      "what there is to choose from: effects, materials, scenarios, joints, cyclograms; the ranges of what machines have");
+  verb->add_option("what", options.what, "effects, materials, scenarios, joints, cyclograms or ranges")
+      ->check(CLI::IsMember({"effects", "materials", "scenarios", "joints", "cyclograms", "ranges"}))
       ->capture_default_str();
   verb->add_option("of", options.of, "scenario YAML, of joints and cyclograms; folder, of scenarios [scenarios]");
-  verb->add_flag("--markdown", options.markdown, "effects with their places, keys, units and laws, as a table");
+  verb->add_flag("--markdown", options.markdown,
+                 "effects with their places, keys, units and laws, or ranges with their sources, as a table");
   verb->footer("Example:\n  driftwright list effects --markdown\n  driftwright list joints scenarios/c_frame.yaml");
   verb->callback([&] { app::list(options); });
 }
@@ -417,8 +421,9 @@ int app::command_line(int argc, const char* const* argv) {
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
-  add_verb(cli, "check", "read and mesh a scenario, place its sensors, compute nothing", "check scenarios/fp3_spindle.yaml",
-           check)
+  add_verb(cli, "check",
+           "read and mesh a scenario, place its sensors, say what no machine has; lumped nodes are run, a mesh is not",
+           "check scenarios/fp3_spindle.yaml", check)
       ->callback([&] { app::check(check); });
   CLI::App* verb =
       cli.add_subcommand("mesh", "build or read a mesh, report its quality, picture its named surfaces, write mesh.vtu");

@@ -170,7 +170,7 @@ void require_options_that_go_together(const CompensateOptions& options) {
 
 void compensate(const CompensateOptions& options) {
   require_options_that_go_together(options);
-  const Scenario scenario = scenarios::read_scenario(options.scenario);
+  const Scenario scenario = read_scenario(options);
   if (options.through == "frame") {
     (void)scenarios::require_machine(scenario, "compensate");
     return compensate_through_frame(scenario, options);

@@ -40,7 +40,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
 }  // namespace
 
 void diagnose(const DiagnoseOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options);
   (void)scenarios::require_machine(scenario, "diagnose");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

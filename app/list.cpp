@@ -7,6 +7,7 @@
 #include "app/verbs.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
+#include "base/usual_ranges.hpp"
 #include "base/version.hpp"
 #include "effects/catalogue_table.hpp"
 #include "effects/effect.hpp"
@@ -36,6 +37,15 @@ void list_effects() {
   for (const effects::EffectKind& kind : effects::catalogue()) fmt::print("{:<{}}  {}\n", kind.key, width, kind.title);
 }
 
+void list_ranges(bool markdown) {
+  if (markdown) fmt::print("| what | usual | source |\n|---|---|---|\n");
+  for (const UsualRange& r : usual_ranges()) {
+    const std::string usual = fmt::format("{:g} to {:g} {}", r.low, r.high, r.unit);
+    fmt::print("{}", markdown ? fmt::format("| {} | {} | {} |\n", r.what, usual, r.source)
+                              : fmt::format("{:<50} {:<28} {}\n", r.what, usual, r.source));
+  }
+}
+
 /// What a scenario opens with: its first comment, up to where the sentence or the line ends.
 std::string opening(const std::string& text) {
   if (!text.starts_with("# ")) return "";
@@ -61,8 +71,8 @@ void list_scenarios(const std::string& folder) {
 }  // namespace
 
 void list(const ListOptions& options) {
-  if (options.markdown && options.what != "effects")
-    throw InputError("--markdown goes with effects; the others are plain text");
+  if (options.markdown && options.what != "effects" && options.what != "ranges")
+    throw InputError("--markdown goes with effects and ranges; the others are plain text");
   const bool of_a_scenario = options.what == "joints" || options.what == "cyclograms";
   if (of_a_scenario && options.of.empty())
     throw InputError(fmt::format("of which scenario? driftwright list {} SCENARIO", options.what));
@@ -70,6 +80,7 @@ void list(const ListOptions& options) {
     throw InputError(fmt::format("'{}' is not looked at: {} are the same for all scenarios", options.of, options.what));
   const output::Provenance made_by{kVersion, options.of};
   if (options.what == "materials") return list_materials();
+  if (options.what == "ranges") return list_ranges(options.markdown);
   if (options.what == "scenarios") return list_scenarios(options.of.empty() ? "scenarios" : options.of);
   if (options.what == "cyclograms") {
     fmt::print("{}",

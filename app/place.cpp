@@ -52,7 +52,7 @@ std::vector<std::string> words_of(const PlaceOptions& options) {
 }  // namespace
 
 void place(const PlaceOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options);
   scenarios::require_nothing_before(scenarios::require_machine(scenario, "place"), "place");
   const studies::PlacementOptions how = options_of(options, scenario);
   (void)studies::with_sensors(scenario.path, {"{name: tried}"},

@@ -29,7 +29,7 @@ bool is_of_spindle_alone(const Cyclogram& c) {
 }  // namespace
 
 void plan_test(const PlanTestOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options);
   (void)scenarios::require_machine(scenario, "plan-test");
   studies::TestPlanOptions how{
       .interval_s = scenario.solver.output_interval_s, .n_programmes = options.n_programmes, .seed = options.seed};

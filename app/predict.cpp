@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include "app/results.hpp"
+#include "findings/plausibility.hpp"
 #include "findings/prediction_document.hpp"
+#include "scenarios/reader/unusual.hpp"
 
 namespace driftwright::app {
 
 void predict(const PredictOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "predict");
   const Cyclogram cyclogram = studies::named_cyclogram(scenario, options.cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
@@ -19,8 +21,9 @@ void predict(const PredictOptions& options) {
                     record_csv(prediction.record,
                                provenance_lines(folder.made_by(), fmt::format("{}{}, predicted by the {}", options.cyclogram,
                                                                               after, prediction.predicted_by))));
-  finish(findings::document_of(prediction, scenario, cyclogram, options.cyclogram, folder.made_by()), folder, progress,
-         options);
+  output::Document document = findings::document_of(prediction, scenario, cyclogram, options.cyclogram, folder.made_by());
+  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(prediction.record));
+  finish(document, folder, progress, options);
 }
 
 }  // namespace driftwright::app

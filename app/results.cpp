@@ -12,6 +12,7 @@
 #include "base/delimited_text.hpp"
 #include "base/quantity.hpp"
 #include "base/version.hpp"
+#include "findings/plausibility.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/heat_flow_record.hpp"
 #include "output/document_csv.hpp"
@@ -20,10 +21,35 @@
 #include "output/document_text.hpp"
 #include "output/json_text.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/stress.hpp"
 
 namespace driftwright::app {
+
+namespace {
+
+void refuse_unusual(const std::string& path, const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return;
+  throw InputError(
+      fmt::format("{}: --strict refuses what no machine has or does\n  {}", clean_name(path), fmt::join(warnings, "\n  ")));
+}
+
+}  // namespace
+
+scenarios::Scenario read_scenario(const CommonOptions& options, Told told) {
+  scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const std::vector<std::string> unusual = scenarios::unusual_numbers(scenario);
+  if (options.strict) refuse_unusual(options.scenario, unusual);
+  if (told == Told::kAtOnce && !options.quiet) {
+    for (const std::string& sentence : unusual) fmt::print(stderr, "warning: {}\n", sentence);
+  }
+  return scenario;
+}
+
+void refuse_implausible(const std::string& scenario_path, const output::Document& document) {
+  refuse_unusual(scenario_path, findings::implausible(document));
+}
 
 output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name) {
   const std::string target = options.out.empty() ? "results/" + scenario_name : options.out;
@@ -61,6 +87,7 @@ void show(const output::Document& document, const CommonOptions& options) {
 
 void finish(const output::Document& document, output::ResultsFolder& folder, Progress& progress,
             const CommonOptions& options, const std::string& also, const std::string& json_file) {
+  if (options.strict) refuse_implausible(options.scenario, document);
   progress.begin("writing");
   const std::string json = output::json_text(output::document_json(document));
   folder.write_text("summary.json", json);  // of every verb

@@ -13,6 +13,12 @@
 
 namespace driftwright::app {
 
+/// Who warns of numbers that no machine has (scenarios/reader/unusual.hpp): the document of results, or standard error at once.
+enum class Told { kInDocument, kAtOnce };
+
+/// The scenario that a verb is given. @throws InputError  with --strict, for numbers that no machine has
+[[nodiscard]] scenarios::Scenario read_scenario(const CommonOptions& options, Told told = Told::kAtOnce);
+
 /// The folder of results of a command on a scenario.
 [[nodiscard]] output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name);
 
@@ -20,10 +26,14 @@ namespace driftwright::app {
 [[nodiscard]] std::filesystem::path checked_results(const CommonOptions& options, const std::string& scenario_name);
 
 /// Writes a document's renderings (report.html, tables and its JSON) into the folder, puts that in place, and shows the document.
+/// @throws InputError  with --strict, for a document that warns of what no machine does; the folder is not put in place then
 /// @param also  lines for the terminal alone, such as what was known from disk
 /// @param json_file  another name of the JSON, beside summary.json
 void finish(const output::Document& document, output::ResultsFolder& folder, Progress& progress,
             const CommonOptions& options, const std::string& also = "", const std::string& json_file = "summary.json");
+
+/// @throws InputError  for a document that warns of what no machine has or does
+void refuse_implausible(const std::string& scenario_path, const output::Document& document);
 
 /// Prints a document as the options want it.
 void show(const output::Document& document, const CommonOptions& options);

@@ -3,6 +3,7 @@
 #include "app/results.hpp"
 #include "base/file_name.hpp"
 #include "findings/machine_study_document.hpp"
+#include "findings/plausibility.hpp"
 #include "machine/ways_out.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "studies/table_study.hpp"
@@ -10,7 +11,7 @@
 namespace driftwright::app {
 
 void run(const CommonOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "run");
   if (scenario.table) return run_table(options, scenario);
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
@@ -39,7 +40,11 @@ void run(const CommonOptions& options) {
   }
   folder.write_text("heat_flows.csv", heat_flows_csv(study.judged.trajectory, scenario.study->judge, folder.made_by()));
   folder.write_text("schedule.txt", findings::schedule_text(study));
-  finish(findings::document_of(study, scenario, machine, worst, folder.made_by()), folder, progress, options,
+  output::Document document = findings::document_of(study, scenario, machine, worst, folder.made_by());
+  std::vector<std::string> unusual = unusual_results(study.train, model);
+  for (std::string& sentence : unusual_results({&study.judged, 1}, model)) unusual.push_back(std::move(sentence));
+  findings::add_plausibility(document.body, scenario, unusual);
+  finish(document, folder, progress, options,
          fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
                      fields ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open()) : "",
                      fields ? fields_note(*fields) : ""));

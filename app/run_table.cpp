@@ -3,8 +3,10 @@
 #include "app/results.hpp"
 #include "base/quantity.hpp"
 #include "compensation/frames/frame_programs.hpp"
+#include "findings/plausibility.hpp"
 #include "findings/table_document.hpp"
 #include "machine/ways_out.hpp"
+#include "scenarios/reader/unusual.hpp"
 
 namespace driftwright::app {
 
@@ -54,6 +56,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
       folder.write_text("control/" + file.name, file.text);
   }
   output::Document document = findings::document_of(study, scenario, machine.mesh(), worst, folder.made_by());
+  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(study.run.record));
   std::vector<std::string> warnings;
   if (!why_no_program.empty()) warnings.push_back("no programs for controls: " + why_no_program);
   add(document.body, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});

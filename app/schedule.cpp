@@ -11,8 +11,10 @@
 #include "base/delimited_text.hpp"
 #include "base/file_bytes.hpp"
 #include "base/file_name.hpp"
+#include "findings/plausibility.hpp"
 #include "findings/schedule_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "studies/planner.hpp"
 
 namespace driftwright::app {
@@ -126,7 +128,7 @@ void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& 
 }  // namespace
 
 void schedule(const ScheduleVerbOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "schedule");
   const std::filesystem::path given = options.program;
   CorrectedSeries series{.file = file_name(given.stem().string(), given.extension().string()),
@@ -176,7 +178,9 @@ void schedule(const ScheduleVerbOptions& options) {
   folder.write_text("schedule.txt", notation);
   folder.write_text("schedule.csv",
                     schedule_csv(series, provenance_lines(folder.made_by(), "corrections of the drift " + what)));
-  finish(findings::document_of(series, scenario.name, notation, folder.made_by()), folder, progress, options);
+  output::Document document = findings::document_of(series, scenario.name, notation, folder.made_by());
+  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(prediction.record));
+  finish(document, folder, progress, options);
 }
 
 }  // namespace driftwright::app

@@ -4,7 +4,7 @@
 namespace driftwright::app {
 
 void select(const RecordOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options);
   const studies::SensorStudy study = studies::study_sensors(scenario, options);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

@@ -4,6 +4,7 @@
 
 #include "app/results.hpp"
 #include "base/file_name.hpp"
+#include "findings/plausibility.hpp"
 #include "findings/simulation_document.hpp"
 #include "machine/reduced_files.hpp"
 #include "studies/prediction.hpp"
@@ -31,7 +32,7 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
 }  // namespace
 
 void simulate(const SimulateOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "simulate");
   const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
   std::vector<const Cyclogram*> cyclograms;
@@ -68,7 +69,9 @@ void simulate(const SimulateOptions& options) {
     scenarios::export_reduced(reduced->system, reduced->start, reduced->error, drives,
                               [&](const std::string& file) { return folder.path("reduced_model/" + file); });
   }
-  finish(findings::document_of(runs, cyclograms, scenario, machine, worst, folder.made_by()), folder, progress, options,
+  output::Document document = findings::document_of(runs, cyclograms, scenario, machine, worst, folder.made_by());
+  findings::add_plausibility(document.body, scenario, unusual_results(runs, *scenario.machine));
+  finish(document, folder, progress, options,
          fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
                      fields                       ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open())
                      : !has_mesh || !wants_fields ? ""

@@ -64,7 +64,7 @@ void validate(const RecordOptions& options) {
     if (on_records && list->empty())
       throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
   }
-  scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  scenarios::Scenario scenario = read_scenario(options);
   if (!options.target.empty()) {
     if (!on_records || scenario.study)
       throw InputError("--target: it is for records of a scenario without `study`, which would name the target itself");

@@ -18,6 +18,7 @@ struct CommonOptions {
   bool json = false;     ///< print the JSON document in place of text
   bool quiet = false;    ///< print no results, show no progress
   bool details = false;  ///< print all tables
+  bool strict = false;   ///< refuse what no machine has (base/usual_ranges.hpp)
 };
 
 /// What verbs take whose work several processes may share.

@@ -4,8 +4,10 @@
 
 #include "app/results.hpp"
 #include "base/option_quantity.hpp"
+#include "findings/plausibility.hpp"
 #include "findings/warm_up_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "studies/warm_up_program.hpp"
 
 namespace driftwright::app {
@@ -41,7 +43,7 @@ Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
 }  // namespace
 
 void warmup(const WarmUpVerbOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "warmup");
   studies::WarmUpOptions how{.from = {.start = options.start, .after_pause = options.after_pause, .model = options.model},
                              .channels = options.channels,
@@ -68,9 +70,12 @@ void warmup(const WarmUpVerbOptions& options) {
     const std::string from = plan.started_from.empty() ? "from the scenario's start" : "after " + plan.started_from;
     folder.write_text("warmup.csv", record_csv(rows, provenance_lines(folder.made_by(), fmt::format("{}, {}", what, from))));
   }
-  folder.write_text("record.csv",
-                    record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
-  finish(findings::document_of(plan, scenario, job, options.then, folder.made_by()), folder, progress, options);
+  folder.write_text(
+      "record.csv",
+      record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
+  output::Document document = findings::document_of(plan, scenario, job, options.then, folder.made_by());
+  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(plan.job_at_once));
+  finish(document, folder, progress, options);
 }
 
 }  // namespace driftwright::app

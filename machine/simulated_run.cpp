@@ -10,6 +10,7 @@
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "solver/energy_balance.hpp"
 #include "solver/reduced_transient.hpp"
 
@@ -69,6 +70,16 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
   return simulated;
 }
 
+std::vector<std::string> unusual_results(std::span<const SimulatedRun> runs, const MachineModel& machine) {
+  std::vector<std::string> found;
+  for (const SimulatedRun& run : runs) {
+    for (std::string& sentence : unusual_temperatures(run.bodies, machine, run.record.source))
+      found.push_back(std::move(sentence));
+    for (std::string& sentence : unusual_values(run.record, run.bodies.empty())) found.push_back(std::move(sentence));
+  }
+  return found;
+}
+
 Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
   return model.reduced() ? model.reduced()->start : start_state(machine, *model.full());
 }
@@ -104,8 +115,11 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
   parallel_for(cyclograms.size(), [&](std::size_t i) {
     const Cyclogram& cyclogram = *cyclograms[i];
     FieldTimes field_times(settings, cyclogram.duration_s());
+    const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
+    BodyRangeWatch watch(machine, model, times_s.size());
     double last_s = 0.0;
     const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
+      watch.take(time_s, state);
       std::exception_ptr failure;  // none may leave the critical section
 #pragma omp critical(simulated)
       try {
@@ -119,10 +133,10 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
         write_fields(scenario, model, materials, time_s, state, fields);
       }
     };
-    const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
     const Eigen::VectorXd from = after_what_was_before(
         machine, settings.transient, model, start + warmer_start_K(machine, cyclogram) * ones_of(model), cyclogram);
     runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
+    runs[i].bodies = watch.bodies();
   });
   return runs;
 }

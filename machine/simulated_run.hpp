@@ -2,9 +2,10 @@
 // Cyclograms simulated by a machine's model, and the whole fields of one of them.
 
 #include <optional>
+#include <span>
 
 #include "base/listener.hpp"
-#include "machine/model.hpp"
+#include "machine/body_range.hpp"
 #include "solver/stress.hpp"
 
 namespace driftwright::scenarios {
@@ -13,7 +14,11 @@ namespace driftwright::scenarios {
 struct SimulatedRun {
   Record record;
   solver::Trajectory trajectory;
+  std::vector<BodyRange> bodies = {};  ///< where simulate_cyclograms() made it
 };
+
+/// What no machine does, of runs: temperatures of bodies and thermometers, displacements and tilts (base/usual_ranges.hpp).
+[[nodiscard]] std::vector<std::string> unusual_results(std::span<const SimulatedRun> runs, const MachineModel& machine);
 
 /// Runs one cyclogram.
 /// @param machine   the scenario's, or one that differs from it in the ambient

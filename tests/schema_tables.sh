@@ -3,13 +3,17 @@
 #
 #     schema_tables.sh PROGRAM FOLDER_OF_THE_PROJECT
 set -eu
-for page in scenario sweep diagnosis; do
-  file="$2/docs/$page.md"
-  "$1" schema "$page" --markdown >"$file.tables"
-  awk -v tables="$file.tables" -v begin="<!-- driftwright schema $page --markdown -->" '
+write() {  # PROGRAM FOLDER PAGE COMMAND...
+  file="$2/docs/$3.md"
+  program=$1
+  shift 3
+  "$program" "$@" --markdown >"$file.tables"
+  awk -v tables="$file.tables" -v begin="<!-- driftwright $* --markdown -->" '
     $0 == begin { print; while ((getline line < tables) > 0) print line; skips = 1 }
     $0 == "<!-- end -->" { skips = 0 }
     !skips { print }' "$file" >"$file.new"
   mv "$file.new" "$file"
   rm "$file.tables"
-done
+}
+for page in scenario sweep diagnosis; do write "$1" "$2" "$page" schema "$page"; done
+write "$1" "$2" scenario list ranges

@@ -261,11 +261,13 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   } else if (kind == "csv") {
     std::optional<ColumnMap> columns;
     if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
-    Cyclogram recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {},
-                                in.flag("measured") ? Reading::kStrict : Reading::kPlan)
-                             .cyclogram;
-    cyclogram.sections = std::move(recorded.sections);
-    cyclogram.columns = std::move(recorded.columns);
+    RecordedRun recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {},
+                                  in.flag("measured") ? Reading::kStrict : Reading::kPlan);
+    cyclogram.sections = std::move(recorded.cyclogram.sections);
+    cyclogram.columns = std::move(recorded.cyclogram.columns);
+    for (DataFinding& finding : recorded.findings) {
+      if (finding.channel == "speed") cyclogram.remarks.push_back(std::move(finding.what));
+    }
   } else {
     read_nc_cyclogram(in, cyclogram);
   }

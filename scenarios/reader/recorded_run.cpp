@@ -9,6 +9,8 @@
 
 #include "base/errors.hpp"
 #include "base/foreign_temperature.hpp"
+#include "base/median.hpp"
+#include "base/usual_ranges.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::scenarios {
@@ -162,6 +164,19 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
   return ambient;
 }
 
+/// Rows too far apart for what drove the machine to be known between them.
+void note_coarse_rows(RecordedRun& run) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < run.time_s.size(); ++i) steps_s.push_back(run.time_s[i] - run.time_s[i - 1]);
+  if (const auto what = beyond_usual(Usual::kRowInterval, upper_median(steps_s)))
+    run.findings.push_back(
+        {"speed",
+         fmt::format(
+             "the time from row to row is {}: the speed is held over it, and what the spindle did meanwhile is not known",
+             *what),
+         false});
+}
+
 /// As it may become the name of a cyclogram.
 std::string name_of(const std::string& source) {
   std::string name = std::filesystem::path(source).stem().string();
@@ -199,7 +214,10 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
            false});
   };
   attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
-  if (!run.cyclogram.sections.empty()) note_gaps(record.at("speed"));
+  if (!run.cyclogram.sections.empty()) {
+    note_gaps(record.at("speed"));
+    if (reading != Reading::kPlan) note_coarse_rows(run);
+  }
   run.cyclogram.name = name_of(record.source);
   run.cyclogram.columns = columns_of(record, run.time_s, machine, on_ambient);
   if (machine) run.ambient = machine->ambient;
