@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "machine/heat_flow_record.hpp"
 
@@ -99,17 +100,22 @@ Table heat_table(const solver::Trajectory& run) {
   const auto last = run.heat_J.cols() - 1;
   const double duration_s = run.time_s.back();
   Table table{.key = "heat_flows",
-              .title = "Mean heat flow over the cyclogram",
+              .title = "Heat by source and path, mean over the cyclogram",
               .caption = fmt::format("In = stored + out to {:.0e}.", std::max(1e-16, run.energy_gap())),
               .columns = {{.key = "flow", .title = "flow"},
                           {.key = "to_or_from", .title = "to or from"},
                           {.key = "into_machine_W", .title = "into the machine", .unit = "W"},
                           {.key = "out_of_machine_W", .title = "out of it", .unit = "W"},
-                          {.key = "heat_kJ", .title = "heat", .unit = "kJ"}},
-              .detail = true};
+                          {.key = "heat_kJ", .title = "heat", .unit = "kJ"}}};
+  std::vector<std::size_t> by_size(run.flows.size());
+  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
+  std::stable_sort(by_size.begin(), by_size.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(run.heat_J(static_cast<Eigen::Index>(a), last)) >
+           std::abs(run.heat_J(static_cast<Eigen::Index>(b), last));
+  });
   double in_W = 0.0, lost_W = 0.0;
   for (FlowKind kind : {FlowKind::kSource, FlowKind::kSurrounding, FlowKind::kPrescribed}) {
-    for (std::size_t j = 0; j < run.flows.size(); ++j) {
+    for (std::size_t j : by_size) {
       if (run.flows[j].kind != kind) continue;
       const double heat_J = run.heat_J(static_cast<Eigen::Index>(j), last), mean_W = heat_J / duration_s;
       (mean_W > 0.0 ? in_W : lost_W) += std::abs(mean_W);

@@ -100,6 +100,14 @@ TEST(Plausibility, RunsWarnOfWhatCameOutAndStrictLeavesNoFolder) {
               AllOf(HasSubstr("\"plausibility\""), HasSubstr("spindle reaches")));
 }
 
+TEST(Plausibility, HeatBySourceAndPathStandsOnTheTerminal) {
+  const std::string file = scenario("heat");
+  const CommandOutcome outcome = run_program("simulate " + file + " -o " + (fs::path(file).parent_path() / "out").string());
+  // 150 W go in; at the end of 120 min, some six time constants of the slower body (24.6 kJ/K over 5 W/K), all but a few W leave by the link.
+  EXPECT_THAT(outcome.output, ContainsRegex("heat_source spindle +source +150.0"));
+  EXPECT_THAT(outcome.output, ContainsRegex("link housing - ambient +ambient +- +[0-9]"));
+}
+
 TEST(Plausibility, ShippedScenariosHoldNothingUnusual) {
   for (const char* folder : {"scenarios", "scenarios/measured"}) {
     for (const auto& entry : fs::directory_iterator(folder)) {
