@@ -22,7 +22,7 @@ std::vector<std::string> unusual_in_runs(scenarios::Scenario scenario, const Lis
       const auto runs = scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, listener);
       for (std::string& sentence : scenarios::unusual_results(runs, *scenario.machine)) found.push_back(std::move(sentence));
     } catch (const SolveError& e) {
-      found.push_back(fmt::format("cyclogram '{}' cannot be run: {}", cyclogram.name, e.what()));
+      found.push_back(fmt::format("cannot be run: {}", e.what()));
     } catch (const InputError&) {  // it wants a column that this cyclogram does not have: whoever runs it is told
     }
   }

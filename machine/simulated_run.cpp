@@ -13,6 +13,7 @@
 #include "scenarios/reader/unusual.hpp"
 #include "solver/energy_balance.hpp"
 #include "solver/reduced_transient.hpp"
+#include "solver/stage_ode.hpp"
 
 namespace driftwright::scenarios {
 
@@ -51,6 +52,25 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   fields.take(whole);
 }
 
+/// The source that heats, or cools, most when temperatures leave all bounds: "heat_source spindle is 1.5e+05 W at 6000 rpm; "; "" where none does.
+std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& felt, const MachineModel& machine,
+                         const solver::TemperatureOutOfBounds& failure) {
+  effects::Inputs at{.drive = felt.drive(failure.time_s), .time_s = felt.clock_s + failure.time_s};
+  at.run = felt.name;
+  const double sign = failure.temperature_K > 0.0 ? 1.0 : -1.0;
+  const effects::HeatInput* largest = nullptr;
+  double most_W = 0.0;
+  for (const effects::HeatInput& heat : balance.heats) {
+    at.probe_K.assign(heat.power_W.probes.size(), machine.reference_K);
+    try {
+      if (const double power_W = sign * heat.power_W(at); power_W > most_W) most_W = power_W, largest = &heat;
+    } catch (const RangeError&) {  // its formula holds elsewhere
+    }
+  }
+  if (!largest) return "";
+  return fmt::format("{} is {:.4g} W at {:g} rpm; ", largest->name, sign * most_W, at.drive.speed_rpm);
+}
+
 }  // namespace
 
 SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
@@ -58,7 +78,14 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
                           const solver::OutputCallback& at_output) {
   const FeltRun felt = felt_run(machine, cyclogram);
   const auto run = [&](const auto& system) {
-    return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, options, from, at_output);
+    try {
+      return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, options, from, at_output);
+    } catch (const solver::TemperatureOutOfBounds& e) {
+      throw SolveError(fmt::format("cyclogram '{}': {}{}", cyclogram.name,
+                                   largest_heat(model.balance, felt.cyclogram, machine, e), e.what()));
+    } catch (const SolveError& e) {
+      throw SolveError(fmt::format("cyclogram '{}': {}", cyclogram.name, e.what()));
+    }
   };
   SimulatedRun simulated{.record = {},
                          .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};

@@ -38,6 +38,8 @@ Eigen::VectorXd times(const SparseRow& a, const Eigen::VectorXd& x) {
   return y;
 }
 
+constexpr double kMostTemperature_K = 5000.0;
+
 /// Coldest and warmest of what surrounds the machine at a time.
 std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& ambient, double t_s) {
   double low = ambient.at(t_s), high = low;
@@ -52,16 +54,20 @@ std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSer
 }  // namespace
 
 void require_sane(const double* theta, int n, double reference_K, double t_s) {
-  constexpr double kMost_K = 5000.0;
   for (int i = 0; i < n; ++i) {
     const double t_K = reference_K + theta[i];
-    if (t_K >= 0.0 && t_K <= kMost_K) continue;
-    throw SolveError(
-        fmt::format("a temperature of {:.3g} K at t = {:.1f} s: a source cools or heats more than films, links "
-                    "and joints can make up for",
-                    t_K, t_s));
+    if (t_K >= 0.0 && t_K <= kMostTemperature_K) continue;
+    throw TemperatureOutOfBounds(t_K, t_s);
   }
 }
+
+TemperatureOutOfBounds::TemperatureOutOfBounds(double temperature, double time)
+    : SolveError(
+          fmt::format("a source {} than films, links and joints {}: {:.3g} K at t = {:.1f} s; 0 to {:g} K can be computed",
+                      temperature > 0.0 ? "heats more" : "cools more", temperature > 0.0 ? "carry away" : "bring",
+                      temperature, time, kMostTemperature_K)),
+      temperature_K(temperature),
+      time_s(time) {}
 
 HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid)
     : system_(system),

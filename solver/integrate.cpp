@@ -105,10 +105,11 @@ void check(int flag, const char* call, double time_s, Callee& callee) {
   if (callee.failure) std::rethrow_exception(callee.failure);
   if (flag >= 0) return;
   const std::unique_ptr<char, decltype(&std::free)> name(ARKStepGetReturnFlagName(flag), &std::free);
-  const std::string remedy = callee.out_of_range.empty()
-                                 ? "try looser tolerances in `solver`; a machine whose heat grows as it warms may run away"
-                                 : "a law refused a trial state: " + callee.out_of_range;
-  throw SolveError(fmt::format("{} failed at t = {:.1f} s with {}; {}", call, time_s, name.get(), remedy));
+  const std::string at = fmt::format("t = {:.1f} s ({})", time_s, name.get());
+  if (!callee.out_of_range.empty())
+    throw SolveError(fmt::format("a law refused the state, {}, at {}", callee.out_of_range, at));
+  throw SolveError(fmt::format(
+      "{} failed at {}; try looser tolerances in `solver`; a machine whose heat grows as it warms may run away", call, at));
 }
 
 /// y = the cubic through two states and their slopes; without the slope at the start, which is rough after a jump, the parabola.

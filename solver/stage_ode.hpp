@@ -66,5 +66,11 @@ class StageOde {
 
 /// @throws SolveError  at temperatures that no machine has: below absolute zero, or above what melts any part of it
 void require_sane(const double* theta, int n, double reference_K, double t_s);
+/// What it throws: why first, then temperature and time.
+class TemperatureOutOfBounds : public SolveError {
+ public:
+  TemperatureOutOfBounds(double temperature_K, double time_s);
+  double temperature_K, time_s;
+};
 
 }  // namespace driftwright::solver

@@ -1,5 +1,7 @@
 #include "studies/sweep_member.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -46,9 +48,13 @@ std::vector<double> collected(const scenarios::Scenario& scenario, const solver:
     auto found = records.find(c.cyclogram);
     if (found == records.end()) {
       const Cyclogram& cyclogram = scenario.cyclogram(c.cyclogram);
-      const solver::Trajectory trajectory = run(scenarios::felt_run(model, cyclogram),
-                                                scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s));
-      found = records.emplace(c.cyclogram, scenarios::as_recorded(model, trajectory, outputs, cyclogram)).first;
+      try {
+        const solver::Trajectory trajectory = run(scenarios::felt_run(model, cyclogram),
+                                                  scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s));
+        found = records.emplace(c.cyclogram, scenarios::as_recorded(model, trajectory, outputs, cyclogram)).first;
+      } catch (const SolveError& e) {
+        throw SolveError(fmt::format("cyclogram '{}': {}", cyclogram.name, e.what()));
+      }
     }
     const double neutral = c.unit == "degC" ? model.reference_K - kZeroCelsius_K : 0.0;
     results.push_back(scalar_of(found->second, found->second.at(c.channel), c.scalar, neutral));
