@@ -9,6 +9,7 @@
 
 #include "base/delimited_text.hpp"
 #include "base/logger_header.hpp"
+#include "base/no_reading.hpp"
 #include "base/record_span.hpp"
 #include "base/row_clock.hpp"
 #include "base/tag_log.hpp"
@@ -161,9 +162,9 @@ ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
 }  // namespace
 
 ReadRecord read_record(const std::string& path, const std::optional<ColumnMap>& columns) {
-  if (!columns) return {read_record_csv(path), {}};
-  ReadRecord read = read_mapped(path, *columns);
-  require_possible_span(path, read.record.time_s.front(), read.record.time_s.back());
+  ReadRecord read = columns ? read_mapped(path, *columns) : ReadRecord{read_record_csv(path), {}};
+  if (columns) require_possible_span(path, read.record.time_s.front(), read.record.time_s.back());
+  for (const std::string& sentence : take_out_no_readings(read.record)) read.notes.push_back(path + ": " + sentence);
   return read;
 }
 

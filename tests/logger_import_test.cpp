@@ -162,6 +162,17 @@ TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
   EXPECT_THAT(yaml_text(import.map), HasSubstr("unit: \"degC\", offset: -273.15 K"));
 }
 
+TEST(LoggerImport, SaysReadingsThatAreNone) {
+  std::string text = "time [s];T1 (°C);n [U/min]\n";
+  for (int i = 0; i < 30; ++i)
+    text += fmt::format("{};{};1500\n", 60 * i, i >= 10 && i < 20 ? "-273.15" : fmt::format("{:.2f}", 20 + 0.1 * i));
+  const studies::LoggerImport import = studies::import_logger(write_file("log.csv", text), "", {});
+  EXPECT_THAT(import.read.notes,
+              Contains(HasSubstr("t1_degC reads -273.15 degC in 10 rows from 10 to 19 min: an open or broken sensor")));
+  EXPECT_TRUE(std::isnan(import.read.record.at("t1_degC").values[15]));
+  EXPECT_NEAR(import.read.record.at("t1_degC").values[20], 22.0, 1e-9);
+}
+
 TEST(LoggerImport, SaysThatAWorkbookIsNoText) {
   EXPECT_THAT(
       [] { (void)studies::import_logger(write_file("log.xlsx", std::string("PK\x03\x04 of a zip archive")), "", {}); },

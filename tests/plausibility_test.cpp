@@ -118,6 +118,23 @@ TEST(Plausibility, NumericsThatGiveUpNameTheCauseTheCyclogramAndTheTime) {
                   "more than films, links and joints carry away: [0-9.e+]+ K at t = [0-9.]+ s"));
 }
 
+TEST(Plausibility, ABrokenSensorIsNoCause) {
+  const fs::path cases = "../shared/cases/record_broken_sensor";
+  if (!fs::exists(cases)) GTEST_SKIP() << cases << " is not there";
+  for (const auto& [file, words] : {std::pair{"fm_n2.csv", "t_housing_degC reads 888.8 degC in 2 rows"},
+                                    std::pair{"fm_n3.csv", "t_housing_degC reads 888.8 degC in 3 rows"},
+                                    std::pair{"fm_9999.csv", "t_housing_degC reads -9999 degC in 10 rows"},
+                                    std::pair{"indicator_n2.csv", "nose_z_um reads -9999 um in 2 rows"}}) {
+    const fs::path out = fresh_folder("plausibility_broken") / "out";
+    const CommandOutcome outcome = run_program(
+        fmt::format("diagnose scenarios/first_machine.yaml --measured {} -o {}", (cases / file).string(), out.string()));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(read_text((out / "diagnosis.json").string()),
+                AllOf(HasSubstr("\"verdict\": \"consistent\""), HasSubstr(words)))
+        << file;
+  }
+}
+
 TEST(Plausibility, ShippedScenariosHoldNothingUnusual) {
   for (const char* folder : {"scenarios", "scenarios/measured"}) {
     for (const auto& entry : fs::directory_iterator(folder)) {
