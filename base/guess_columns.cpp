@@ -20,35 +20,47 @@
 namespace driftwright {
 namespace {
 
+constexpr std::size_t kRowsInOrder = 4;  // for each row out of order, of a column that still is one of times
+constexpr double kSpeedFrom_rpm =
+    100.0;  // what a column without unit reaches that may be a speed: a thermometer's numbers stay below
 constexpr double kOverload = 1e30;  // a reading that an instrument writes for none
 
-/// True where all stamps fit the format and never go back.
-bool fits(const std::string& format, const std::string& zone, const std::vector<std::string>& stamps, bool may_go_back) {
+/// How often stamps go back by a format; none where one does not fit it.
+std::optional<std::size_t> steps_back(const std::string& format, const std::string& zone,
+                                      const std::vector<std::string>& stamps) {
+  if (stamps.empty()) return std::nullopt;
   try {
     TimeStamps reader(format, zone);
     std::optional<std::chrono::nanoseconds> before;
+    std::size_t n_back = 0;
     for (const std::string& stamp : stamps) {
       const std::chrono::nanoseconds time = reader.read(stamp);
-      if (before && time < *before && !may_go_back) return false;
+      if (before && time < *before) ++n_back;
       before = time;
     }
-    return !stamps.empty();
+    return n_back;
   } catch (const RangeError&) {
-    return false;
+    return std::nullopt;
   }
 }
 
-/// The formats that fit, of those that loggers write.
+/// The formats that fit, of those that loggers write. Of several those by which the stamps go back least often: a row out of order is told
+/// when the rows are read, with its line.
 std::vector<std::string> formats_of(const std::vector<std::string>& stamps, const std::string& zone, bool may_go_back) {
   const bool with_offset =
       !stamps.empty() && stamps.front().find(':') != std::string::npos && offset_at_end(stamps.front()).has_value();
   std::vector<std::string> found;
+  std::size_t fewest_back = stamps.size();
   for (const char* format :
        {"", "%d.%m.%y %H:%M:%S", "%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S",
-        "%m/%d/%Y %I:%M:%S %p", "%d-%m-%Y %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%Y%m%d %H:%M:%S", "%d.%m.%Y %H:%M",
-        "%d/%m/%Y %H:%M", "%m/%d/%Y %H:%M", "%Y-%m-%d %H:%M", "%Y/%m/%d %H:%M", "%H:%M:%S"}) {
+        "%m/%d/%Y %I:%M:%S %p", "%m/%d/%y %I:%M:%S %p", "%d-%m-%Y %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%Y%m%d %H:%M:%S",
+        "%d.%m.%Y %H:%M", "%d/%m/%Y %H:%M", "%m/%d/%Y %H:%M", "%Y-%m-%d %H:%M", "%Y/%m/%d %H:%M", "%H:%M:%S"}) {
     const std::string whole = *format != '\0' && with_offset ? fmt::format("{}%z", format) : format;
-    if (fits(whole, zone, stamps, may_go_back)) found.push_back(whole);
+    const std::optional<std::size_t> n_back = steps_back(whole, zone, stamps);
+    if (!n_back || (!may_go_back && *n_back > fewest_back)) continue;
+    if (!may_go_back && *n_back < fewest_back) found.clear();
+    fewest_back = std::min(fewest_back, *n_back);
+    found.push_back(whole);
   }
   return found;
 }
@@ -111,19 +123,22 @@ std::string stamp_like_cell(const LoggerSheet& sheet) {
   return "";
 }
 
-bool guess_numbers(const LoggerSheet& sheet, GuessedColumns& guessed, std::set<std::size_t>& used) {
+/// @param may_go_back  some rows may be out of order, which is told when they are read
+bool guess_numbers(const LoggerSheet& sheet, bool may_go_back, GuessedColumns& guessed, std::set<std::size_t>& used) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const HeaderWords words = words_of_header(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "");
     const bool is_of_time = words.unit == "s" || words.unit == "ms" || words.unit == "min" || words.unit == "h";
     if (!is_time_name(words.name) || (!words.unit.empty() && !is_of_time)) continue;  // T (°C) is no time
     std::optional<double> before;
-    bool increases = true;
+    bool are_numbers = true;
+    std::size_t n_on = 0, n_back = 0;
     for (const std::string& cell : sheet.column(c)) {
       const auto number = number_of(cell, sheet.decimal);
-      increases = increases && number && (!before || *number > *before);
+      are_numbers = are_numbers && number;
+      if (before && number) ++(*number > *before ? n_on : n_back);
       before = number;
     }
-    if (!increases || !before) continue;
+    if (!are_numbers || !before || n_back > (may_go_back ? n_on / kRowsInOrder : 0)) continue;
     used.insert(c);
     guessed.map.time.columns = {place(sheet, c)};
     guessed.map.time.unit = is_of_time ? words.unit : *before > 1e12 ? "ms" : "s";
@@ -170,13 +185,48 @@ bool are_absolute_K(const std::vector<std::string>& cells, char decimal) {
   return any;
 }
 
+/// A column of numbers as its header says it.
+struct NumberColumn {
+  std::string header, unit_line;
+  ColumnPlace place;
+  std::vector<std::string> cells;
+};
+
+/// The column that tells the spindle speed, of the header's words: in rpm first, then by a name of speeds, then the bare name of the spindle over numbers that no thermometer
+/// has. Of columns that say as much, the first.
+std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns, char decimal) {
+  std::optional<std::size_t> best;
+  int most = 0;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const HeaderWords words = words_of_header(columns[c].header, columns[c].unit_line);
+    const bool is_named = is_speed_name(words.name);
+    int rank = 0;
+    if (turns_beside_spindle(words.name)) continue;
+    if (words.unit == "rpm") {
+      rank = is_named || is_spindle_name(words.name) ? 4 : 3;
+    } else if (words.unit.empty() && is_named) {
+      rank = 2;
+    } else if (words.unit.empty() && is_spindle_name(words.name)) {
+      const bool is_fast = std::any_of(columns[c].cells.begin(), columns[c].cells.end(), [&](const std::string& cell) {
+        const auto number = number_of(cell, decimal);
+        return number && std::abs(*number) >= kSpeedFrom_rpm && std::abs(*number) < kOverload;
+      });
+      rank = is_fast ? 1 : 0;
+    }
+    if (rank > most) most = rank, best = c;
+  }
+  return best;
+}
+
 /// A channel by what its header says. @return false where records have no room for its unit
-bool add_channel(const std::string& header, const std::string& unit_line, ColumnPlace place,
-                 const std::vector<std::string>& cells, GuessedColumns& guessed) {
-  const HeaderWords words = words_of_header(header, unit_line);
+bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& guessed) {
+  const std::string& header = column.header;
+  const std::vector<std::string>& cells = column.cells;
+  const HeaderWords words = words_of_header(header, column.unit_line);
   MappedChannel channel;
-  channel.column = std::move(place);
-  channel.written_unit = words.unit.empty() ? likely_unit(words.name) : words.unit;
+  channel.column = column.place;
+  const std::string likely = is_speed ? "rpm" : likely_unit(words.name);
+  channel.written_unit = words.unit.empty() ? likely : words.unit;
   try {
     channel.unit = record_unit(channel.written_unit);
   } catch (const RangeError&) {
@@ -200,7 +250,7 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
                        [&](const auto& c) { return c.name == name; });
   };
   channel.name = channel_name(words.name, guessed.map.channels.size() + 1);
-  if (channel.unit == "rpm" && is_speed_name(words.name) && !is_taken("speed")) {
+  if (is_speed) {
     channel.name = "speed";
     channel.magnitude = true;
     guessed.guesses.push_back(fmt::format("'{}' is taken to be the spindle speed, without its sign", header));
@@ -214,6 +264,35 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
   return true;
 }
 
+void add_channels(const std::vector<NumberColumn>& columns, char decimal, GuessedColumns& guessed,
+                  std::set<std::string>& missing) {
+  const std::optional<std::size_t> speed = speed_column(columns, decimal);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (add_channel(columns[c], speed == c, guessed)) guess_missing(columns[c].cells, decimal, missing);
+  }
+  if (!speed)
+    guessed.guesses.push_back(
+        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm (docs/record.md)");
+}
+
+/// @throws InputError  for a second column of times in numbers that tells others than the first: which channels go by which?
+void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::string& path) {
+  const auto unit_of = [&](std::size_t c) {
+    return words_of_header(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "");
+  };
+  for (std::size_t c = first + 1; c < sheet.names.size(); ++c) {
+    if (sheet.names[c] != sheet.names[first] || unit_of(c).unit != unit_of(first).unit) continue;
+    for (const LoggerSheet::Row& row : sheet.rows) {
+      if (row[c].empty() || row[c] == row[first]) continue;
+      throw InputError(
+          fmt::format("{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
+                      "channels behind it go by it. Split the "
+                      "file into one for each time, or name in `columns` what goes by one of them (docs/record.md)",
+                      path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
+    }
+  }
+}
+
 void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at, const GuessHints& hints,
                 GuessedColumns& guessed, std::set<std::string>& missing) {
   guessed.map.tags = TagColumns{place(sheet, at.first), place(sheet, at.second),
@@ -224,12 +303,13 @@ void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at
     if (!values.contains(row[at.first])) order.push_back(row[at.first]);
     values[row[at.first]].push_back(row[at.second]);
   }
+  std::vector<NumberColumn> columns;
   for (const std::string& tag : order) {
     if (tag.empty() || tag.starts_with('$') || share_of_numbers(values[tag], sheet.decimal) < 0.5)
       continue;  // "$RT_OFF$": events
-    if (add_channel(tag, "", {.name = tag, .position = 0, .where = {}}, values[tag], guessed))
-      guess_missing(values[tag], sheet.decimal, missing);
+    columns.push_back({tag, "", {.name = tag, .position = 0, .where = {}}, values[tag]});
   }
+  add_channels(columns, sheet.decimal, guessed, missing);
 }
 
 }  // namespace
@@ -250,7 +330,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
   std::set<std::size_t> used;
   if (!hints.interval.empty()) {
     guessed.map.time.interval_s = parse_quantity(hints.interval, "s");
-  } else if (!guess_stamps(sheet, hints, tags.has_value(), guessed, used) && !guess_numbers(sheet, guessed, used)) {
+  } else if (!guess_stamps(sheet, hints, tags.has_value(), guessed, used) && !guess_numbers(sheet, false, guessed, used) &&
+             !guess_numbers(sheet, true, guessed, used)) {
     const std::string stamp = stamp_like_cell(sheet);
     throw InputError(fmt::format(
         "{}: no column tells the time in a way that is known; there are '{}' in line {}{}. --interval '10 s' counts rows, "
@@ -261,13 +342,15 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
   if (tags) {
     guess_tags(sheet, *tags, hints, guessed, missing);
   } else {
+    if (used.size() == 1 && !guessed.map.time.has_stamps()) refuse_second_time(sheet, *used.begin(), path);
+    std::vector<NumberColumn> columns;
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       const std::vector<std::string> cells = sheet.column(c);
       const bool is_counter = is_counter_name(sheet.names[c]);
       if (used.contains(c) || is_counter || share_of_numbers(cells, sheet.decimal) < 0.5) continue;
-      if (add_channel(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), cells, guessed))
-        guess_missing(cells, sheet.decimal, missing);
+      columns.push_back({sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), cells});
     }
+    add_channels(columns, sheet.decimal, guessed, missing);
   }
   guessed.map.missing.assign(missing.begin(), missing.end());
   if (!missing.empty())

@@ -45,17 +45,19 @@ std::string unit_of_words(const std::string& text) {
   if (unit.size() > 2 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')')))
     unit = trimmed(unit.substr(1, unit.size() - 2));
   static const std::map<std::string, std::string> known = {
-      {"°c", "degC"},      {"c", "degC"},    {"degc", "degC"},     {"deg c", "degC"},  {"℃", "degC"},    {"grad c", "degC"},
-      {"celsius", "degC"}, {"°f", "degF"},   {"f", "degF"},        {"degf", "degF"},   {"k", "K"},       {"µm", "um"},
-      {"um", "um"},        {"micron", "um"}, {"mm", "mm"},         {"nm", "nm"},       {"m", "m"},       {"inch", "inch"},
-      {"in", "inch"},      {"1/min", "rpm"}, {"u/min", "rpm"},     {"rpm", "rpm"},     {"min-1", "rpm"}, {"min^-1", "rpm"},
-      {"upm", "rpm"},      {"r/min", "rpm"}, {"rev/min", "rpm"},   {"1/s", "1/s"},     {"w", "W"},       {"kw", "kW"},
-      {"v", "V"},          {"vdc", "V"},     {"vac", "V"},         {"volt", "V"},      {"mv", "mV"},     {"%", "%"},
-      {"percent", "%"},    {"%rh", "%"},     {"mm/min", "mm/min"}, {"m/min", "m/min"}, {"mm/s", "mm/s"}, {"s", "s"},
-      {"sec", "s"},        {"seconds", "s"}, {"sek", "s"},         {"ms", "ms"},       {"msec", "ms"},   {"min", "min"},
-      {"h", "h"},          {"a", "A"},       {"ma", "mA"},         {"nm/a", "N m/A"},  {"bar", "bar"},   {"w/m2", "W/m2"},
-      {"w/m^2", "W/m2"},   {"w/m²", "W/m2"}, {"l/min", "l/min"},   {"µrad", "urad"},   {"urad", "urad"}, {"mm/m", "mm/m"},
-      {"µm/m", "um/m"},    {"hz", "Hz"}};
+      {"°c", "degC"},     {"c", "degC"},       {"degc", "degC"},   {"deg c", "degC"}, {"℃", "degC"},
+      {"grad c", "degC"}, {"celsius", "degC"}, {"°f", "degF"},     {"f", "degF"},     {"degf", "degF"},
+      {"k", "K"},         {"µm", "um"},        {"um", "um"},       {"micron", "um"},  {"mm", "mm"},
+      {"nm", "nm"},       {"m", "m"},          {"inch", "inch"},   {"in", "inch"},    {"1/min", "rpm"},
+      {"u/min", "rpm"},   {"rpm", "rpm"},      {"min-1", "rpm"},   {"min^-1", "rpm"}, {"upm", "rpm"},
+      {"r/min", "rpm"},   {"rev/min", "rpm"},  {"1/s", "1/s"},     {"w", "W"},        {"kw", "kW"},
+      {"v", "V"},         {"vdc", "V"},        {"vac", "V"},       {"volt", "V"},     {"volts", "V"},
+      {"mv", "mV"},       {"%", "%"},          {"percent", "%"},   {"%rh", "%"},      {"mm/min", "mm/min"},
+      {"m/min", "m/min"}, {"mm/s", "mm/s"},    {"s", "s"},         {"sec", "s"},      {"seconds", "s"},
+      {"sek", "s"},       {"ms", "ms"},        {"msec", "ms"},     {"min", "min"},    {"h", "h"},
+      {"a", "A"},         {"ma", "mA"},        {"nm/a", "N m/A"},  {"bar", "bar"},    {"w/m2", "W/m2"},
+      {"w/m^2", "W/m2"},  {"w/m²", "W/m2"},    {"l/min", "l/min"}, {"µrad", "urad"},  {"urad", "urad"},
+      {"mm/m", "mm/m"},   {"µm/m", "um/m"},    {"hz", "Hz"}};
   const auto hit = known.find(lower(unit));
   return hit == known.end() ? "" : hit->second;
 }
@@ -70,6 +72,8 @@ HeaderWords words_of_header(const std::string& header, const std::string& unit_l
   if (text.size() <= kLongest && std::regex_match(text, parts, in_brackets)) {
     const std::string unit = unit_of_words(parts[2].str()), name = trimmed(parts[1].str() + parts[3].str());
     if (!unit.empty()) return {name, unit};
+    if (!name.empty() && trimmed(parts[3].str()).empty())
+      rest = trimmed(parts[1].str());  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
   }
   for (const std::string end : {"/", ",", " in ", " ", "_"}) {  // "T3/°C", "T3, °C", "T3 in °C", "T3 °C", "T3_degC"
     const std::size_t at = rest.rfind(end);
@@ -98,7 +102,13 @@ bool is_value_name(const std::string& name) {
   return has_word(name, {"value", "wert"}) || is_word(name, {"val"});
 }
 bool is_speed_name(const std::string& name) {
-  return has_word(name, {"speed", "drehzahl", "spindle", "spindel", "rpm"});
+  return has_word(name, {"speed", "drehzahl", "rpm"}) && !turns_beside_spindle(name);
+}
+bool turns_beside_spindle(const std::string& name) {
+  return has_word(name, {"feed", "wind", "fan", "lüfter", "pump", "axis"});
+}
+bool is_spindle_name(const std::string& name) {
+  return is_word(name, {"spindle", "spindel", "s", "s1", "n"});
 }
 bool is_ambient_name(const std::string& name) {
   return has_word(name, {"ambient", "hall", "room", "raum", "umgebung", "luft", "air"});

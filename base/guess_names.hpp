@@ -22,7 +22,12 @@ struct HeaderWords {
 [[nodiscard]] bool is_time_name(const std::string& name);
 [[nodiscard]] bool is_tag_name(const std::string& name);
 [[nodiscard]] bool is_value_name(const std::string& name);
+/// Of the spindle's speed: "Drehzahl", "spindle speed"; a feed's, a fan's or the wind's is none.
 [[nodiscard]] bool is_speed_name(const std::string& name);
+/// Of a feed, a fan, a pump or the wind.
+[[nodiscard]] bool turns_beside_spindle(const std::string& name);
+/// The spindle alone, "Spindel" or "S1", which may be its speed, or its temperature or load.
+[[nodiscard]] bool is_spindle_name(const std::string& name);
 [[nodiscard]] bool is_ambient_name(const std::string& name);
 /// Row numbers, alarms and the like, which are no readings.
 [[nodiscard]] bool is_counter_name(const std::string& name);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <regex>
 
@@ -15,7 +16,7 @@ namespace {
 
 using Row = LoggerSheet::Row;
 
-constexpr std::size_t kLongestNumber = 64;  // a number or a stamp has fewer letters
+constexpr std::size_t kLongestNumber = 64;          // a number or a stamp has fewer letters
 constexpr std::size_t kMostLooked = 5000;           // rows that are looked at
 constexpr double kMostRows = 0.8, kSomeRows = 0.4;  // share of lines that a form must fit
 
@@ -85,6 +86,14 @@ bool are_units(const Row& row) {
   return n >= 1 && 2 * n >= filled;
 }
 
+/// A line of one word several times, which names nothing.
+bool repeats(const Row& row) {
+  Row filled;
+  std::copy_if(row.begin(), row.end(), std::back_inserter(filled), [](const std::string& cell) { return !cell.empty(); });
+  std::sort(filled.begin(), filled.end());
+  return std::adjacent_find(filled.begin(), filled.end()) != filled.end();
+}
+
 }  // namespace
 
 std::optional<double> number_of(const std::string& cell, char decimal) {
@@ -106,7 +115,8 @@ double share_of_numbers(const std::vector<std::string>& cells, char decimal) {
 
 bool is_stamp_like(const std::string& cell) {
   static const std::regex stamp(".*[0-9]{1,2}:[0-9]{2}.*|[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}.*");
-  return cell.size() <= kLongestNumber && std::regex_match(cell, stamp);  // a regular expression of the library goes as deep as its text is long
+  return cell.size() <= kLongestNumber &&
+         std::regex_match(cell, stamp);  // a regular expression of the library goes as deep as its text is long
 }
 
 std::vector<std::string> LoggerSheet::column(std::size_t index) const {
@@ -148,6 +158,11 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
       !are_units(cells_of(lines[above[1]], sheet.separator))) {
     sheet.units = cells_of(lines[header], sheet.separator);
     header = above[1];
+  } else if (above.size() > 2 && repeats(cells_of(lines[header], sheet.separator)) &&
+             are_units(cells_of(lines[above[1]], sheet.separator)) &&
+             !are_units(cells_of(lines[above[2]], sheet.separator))) {
+    sheet.units = cells_of(lines[above[1]], sheet.separator);  // names, units, kinds such as Avg and Value
+    header = above[2];
   }
   sheet.header_line = header;
   sheet.names = cells_of(lines[header], sheet.separator);

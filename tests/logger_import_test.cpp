@@ -162,6 +162,79 @@ TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
   EXPECT_THAT(yaml_text(import.map), HasSubstr("unit: \"degC\", offset: -273.15 K"));
 }
 
+TEST(LoggerImport, NamesARowOutOfTimeOrderAsSuch) {
+  const auto import = [](const std::string& text) {
+    return [=] { (void)studies::import_logger(write_file("log.csv", text), "", {}); };
+  };
+  EXPECT_THAT(import("Zeit;T1 (°C)\n02.11.2026 07:30:00;20,1\n02.11.2026 07:30:20;20,2\n02.11.2026 "
+                     "07:30:10;20,3\n02.11.2026 07:30:30;20,4\n"),
+              ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("log.csv:4:"), HasSubstr("the time goes back by 10 s from line 3"))));
+  EXPECT_THAT(import("time [s];T1 (°C)\n0;20,1\n10;20,2\n20;20,2\n15;20,3\n30;20,4\n40;20,5\n"),
+              ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("log.csv:5:"), HasSubstr("the time goes back by 5 s from line 4"))));
+}
+
+TEST(LoggerImport, TakesTheSpindlesSpeedByItsUnitThenByItsName) {
+  const auto speed = [](const std::string& header, const std::string& row) {
+    const auto import = studies::import_logger(
+        write_file("log.csv", "time [s];" + header + "\n0;" + row + "\n10;" + row + "\n20;" + row + "\n30;" + row + "\n"),
+        "", {});
+    const Channel* found = import.read.record.find("speed");
+    return found ? found->values.front() : -1.0;
+  };
+  EXPECT_EQ(speed("n [U/min];T1 (°C)", "1500;20.1"), 1500.0);
+  EXPECT_EQ(speed("S1 rpm;T1 (°C)", "1500;20.1"), 1500.0);
+  EXPECT_EQ(speed("T1 (°C);Drehzahl", "20.1;1500"), 1500.0);
+  EXPECT_EQ(speed("T1 (°C);spindle speed", "20.1;1500"), 1500.0);
+  EXPECT_EQ(speed("Spindle;Ambient;Speed", "20.1;21.5;1500"), 1500.0) << "the spindle is a thermometer there";
+  EXPECT_EQ(speed("Spindle;Ambient", "20.1;21.5"), -1.0) << "alone, too";
+  EXPECT_EQ(speed("Spindle;Ambient", "1500;21.5"), 1500.0);
+  EXPECT_EQ(speed("Fan [rpm];T1 (°C);n [U/min]", "900;20.1;1500"), 1500.0);
+  EXPECT_EQ(speed("Feed speed;T1 (°C)", "900;20.1"), -1.0);
+}
+
+TEST(LoggerImport, SaysThatNoColumnIsTheSpeed) {
+  const auto guesses = [](const std::string& header) {
+    return studies::import_logger(
+               write_file("log.csv", "time [s];" + header + "\n0;1500;2\n10;1500;3\n20;1500;3\n30;1500;4\n"), "", {})
+        .guesses;
+  };
+  EXPECT_THAT(guesses("p (bar);T1 (°C)"), Contains(HasSubstr("no column was taken for the spindle speed")));
+  EXPECT_THAT(guesses("n [U/min];T1 (°C)"), testing::Not(Contains(HasSubstr("no column was taken"))));
+}
+
+TEST(LoggerImport, TakesAmericanTwelveHourClocks) {
+  const Record record =
+      studies::import_logger(
+          write_file("log.csv",
+                     "Date Time;T1 (°C)\n03/04/24 11:59:00 AM;20.1\n03/04/24 12:00:00 PM;20.2\n03/04/24 01:00:00 PM;20.3\n"),
+          "", {})
+          .read.record;
+  EXPECT_THAT(record.time_s, Pointwise(DoubleNear(1e-9), std::vector<double>{0, 60, 3660}));
+}
+
+TEST(LoggerImport, ReadsNamesUnitsAndKindsInThreeLines) {
+  const Record record =
+      studies::import_logger(
+          write_file("log.csv",
+                     "Name;Bearing;Drive;Speed\nUnit;°C;°C;1/min\nDate/Time;Value;Value;Value\n04.03.2024 "
+                     "11:45:00,000;20,00;21,50;0\n"
+                     "04.03.2024 11:46:00,000;20,10;21,55;2000\n04.03.2024 11:47:00,000;20,20;21,60;2000\n"),
+          "", {})
+          .read.record;
+  expect_values(record, "bearing_degC", {20.0, 20.1, 20.2});
+  expect_values(record, "drive_degC", {21.5, 21.55, 21.6});
+  expect_values(record, "speed_rpm", {0, 2000, 2000});
+}
+
+TEST(LoggerImport, RefusesASecondTimeThatTellsOthers) {
+  const std::string rows = "0;20.0;0;21.5\n60;20.1;120;21.6\n120;20.2;240;21.7\n180;20.3;;\n";
+  EXPECT_THAT(
+      [&] { (void)studies::import_logger(write_file("log.csv", "Time (s);Head (C);Time (s);Amb (C)\n" + rows), "", {}); },
+      ThrowsMessage<InputError>(HasSubstr("column 3 'Time (s)' is a time too, and another than that of column 1")));
+}
+
 TEST(LoggerImport, SaysReadingsThatAreNone) {
   std::string text = "time [s];T1 (°C);n [U/min]\n";
   for (int i = 0; i < 30; ++i)
@@ -213,6 +286,8 @@ TEST(GuessNames, TakesUnitsOutOfHeaders) {
   expect("M00: °C", "M00:", "degC");
   expect("Celsius(°C)", "Celsius", "degC");
   expect("weg_um", "weg", "um");
+  expect("Temp, °F (LGR S/N: 10432, LBL: headstock)", "Temp", "degF");
+  expect("T_head_Avg(1)", "T_head_Avg(1)", "");
   expect("Achse C", "Achse C", "");  // an axis, not a temperature
   EXPECT_EQ(channel_name("Lager vörn (Ø)", 3), "lager_voern");
   EXPECT_EQ(channel_name("°", 3), "channel_3");
