@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "base/designs.hpp"
@@ -300,6 +301,60 @@ schema::Map variation_schema() {
           .about = "What varies."};
 }
 
+/// Values that stand for all of a variation: those listed, of many as many as are tried, ends among them; both ends of a range; the mean of a normal
+/// distribution, whose tails may be refused member by member.
+std::vector<SweepValue> tried_values(const Variation& v) {
+  constexpr std::size_t kMostTried = 50;
+  if (v.spread) {
+    std::vector<SweepValue> ends = {v.value_of(v.spread->first)};
+    if (v.spread->kind != Spread::Kind::kNormal) ends.push_back(v.value_of(v.spread->second));
+    return ends;
+  }
+  if (v.values.size() <= kMostTried) return v.values;
+  std::vector<SweepValue> some;
+  for (std::size_t i = 0; i < kMostTried; ++i) some.push_back(v.values[i * (v.values.size() - 1) / (kMostTried - 1)]);
+  return some;
+}
+
+/// Why the reader refuses a scenario; nothing where it takes it.
+std::optional<InputError> refusal_of(const ConfigNodePtr& tree) {
+  try {
+    (void)read_scenario(ConfigMap::of_tree(tree));
+    return std::nullopt;
+  } catch (const InputError& e) {
+    return e;
+  }
+}
+
+/// Whether a member that has the value is refused, too: values of a list may go together and fit none alone.
+bool is_refused_in_member(const SweepPlan& plan, std::size_t variation, const SweepValue& value) {
+  for (std::size_t m = 0; m < plan.n_members; ++m) {
+    if (plan.value(m, variation).node != value.node) continue;
+    try {
+      (void)read_scenario(plan.scenario_of(m));
+      return false;
+    } catch (const InputError&) {
+      return true;
+    }
+  }
+  return true;  // an end of a range, which no member hits
+}
+
+/// Tries each value in the scenario as it is otherwise. @throws InputError  with the study's line, for a wrong unit, a number out of range and whatever else
+/// the reader refuses
+void require_values_that_fit(const SweepPlan& plan) {
+  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+    for (const SweepValue& value : tried_values(plan.variations[i])) {
+      ConfigNodePtr tree = plan.scenario;
+      for (const ConfigSteps& place : plan.variations[i].places) tree = replaced(tree, place, value.node);
+      const std::optional<InputError> refusal = refusal_of(tree);
+      if (refusal && is_refused_in_member(plan, i, value))
+        throw InputError(fmt::format("{}\nno member was simulated: this value of '{}' fits none", refusal->what(),
+                                     plan.variations[i].name));
+    }
+  }
+}
+
 }  // namespace
 
 const std::vector<schema::Map>& sweep_schemas() {
@@ -337,8 +392,9 @@ SweepPlan read_sweep_plan(const std::string& path) {
   plan.study = read_config_tree(path);
   const ConfigMap whole = ConfigMap::of_tree(plan.study);
   if (whole.has("machine") && !whole.has("vary"))
-    whole.fail("machine", "this file is a scenario: `driftwright run` runs it; a study names it under `scenario` and says under `vary` "
-                          "what differs");
+    whole.fail("machine",
+               "this file is a scenario: `driftwright run` runs it; a study names it under `scenario` and says under `vary` "
+               "what differs");
   const ConfigMap in = whole.described_by(sweep_schemas());
   plan.name = in.name("name");
   const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
@@ -358,6 +414,7 @@ SweepPlan read_sweep_plan(const std::string& path) {
   plan.collect = read_collect(in, scenario, read_cyclograms(in, scenario));
   reject_overlaps(plan, entries);
   in.reject_unknown_keys();
+  require_values_that_fit(plan);
   return plan;
 }
 
