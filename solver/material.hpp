@@ -34,11 +34,11 @@ struct Material {
 /// The library, by name.
 [[nodiscard]] const std::map<std::string, Material>& material_library();
 
-/// What a material given by its values may hold.
-[[nodiscard]] schema::Map material_schema();
+/// What a material given by its values may hold. @param are_compulsory  false: of one of the library with other values
+[[nodiscard]] schema::Map material_schema(bool are_compulsory = true);
 /// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion (one
 /// number, or a list of three for x, y and z), and optionally source. Conductivity and heat_capacity may be rows of
-/// [temperature, value]. @throws InputError
-[[nodiscard]] Material read_material(const ConfigMap& in);
+/// [temperature, value]. @param m  has the values that are left out. @throws InputError
+[[nodiscard]] Material read_material(const ConfigMap& in, Material m = {});
 
 }  // namespace driftwright::solver

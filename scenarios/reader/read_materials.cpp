@@ -14,9 +14,13 @@ schema::Map materials_schema() {
   std::vector<std::string> names;
   for (const auto& [name, material] : solver::material_library()) names.push_back(name);
   const Key known_to = effects::known_to_key(kKnownRoughly);
-  const schema::Map like = {.name = "materials, like one of the library",
-                            .keys = {compulsory("like", choice(names), "of the library (docs/materials.md)"), known_to},
-                            .when_key = "like"};
+  schema::Map like = solver::material_schema(false);
+  like.name = "materials, like one of the library";
+  like.keys.insert(like.keys.begin(),
+                   compulsory("like", choice(names),
+                              "of the library (docs/materials.md); what stands beside it takes the place of its value"));
+  like.keys.push_back(known_to);
+  like.when_key = "like";
   schema::Map values = solver::material_schema();
   values.name = "materials, by values";
   values.keys.push_back(known_to);
@@ -38,8 +42,7 @@ std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
     const ConfigMap values = in.map(region);
     entry.known_to = effects::read_known_to(values, kKnownRoughly);
     if (values.description().when_key == "like") {
-      entry.material = solver::material_library().at(values.choice("like"));
-      values.reject_unknown_keys();
+      entry.material = solver::read_material(values, solver::material_library().at(values.choice("like")));
     } else {
       entry.material = solver::read_material(values);
     }
