@@ -8,6 +8,29 @@
 namespace driftwright::app {
 namespace {
 
+bool is_scenario(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".yaml" || ending == ".yml";
+}
+
+/// Scenarios have no results yet: says the commands that make them.
+[[noreturn]] void say_what_to_run(const CompareOptions& options) {
+  std::string commands, names;
+  for (const std::string& path : {options.first, options.second}) {
+    std::string of_results = path;
+    if (is_scenario(path)) {
+      const scenarios::Scenario scenario = scenarios::read_scenario(path);
+      of_results = fmt::format("results/{}", std::filesystem::path(path).stem().string());
+      commands += fmt::format("\n  driftwright simulate {} --cyclogram {} -o {}", path,
+                              scenario.cyclograms.empty() ? "NAME" : scenario.cyclograms.front().name, of_results);
+    }
+    names += " " + of_results;
+  }
+  throw InputError(
+      fmt::format("`compare` sets results beside each other, and {} is a scenario. Run{}\n  driftwright compare{}",
+                  is_scenario(options.first) ? options.first : options.second, commands, names));
+}
+
 /// A record CSV, or the record of a folder of results.
 Record read(const std::string& path) {
   const std::filesystem::path folder = path;
@@ -23,6 +46,7 @@ Record read(const std::string& path) {
 }  // namespace
 
 void compare(const CompareOptions& options) {
+  if (is_scenario(options.first) || is_scenario(options.second)) say_what_to_run(options);
   const studies::RecordComparison comparison = studies::compare_records(read(options.first), read(options.second));
   CommonOptions common = options;
   common.scenario = options.first;

@@ -208,7 +208,12 @@ const ConfigNodePtr& ConfigMap::value(const std::string& key) const {
 }
 
 const ConfigNode& ConfigMap::child(const std::string& key) const {
-  return *value(key);
+  const ConfigNode& node = *value(key);
+  if (node.kind != ConfigNode::Kind::kNull) return node;
+  const schema::Key* described = description_ ? description_->find(key) : nullptr;
+  fail(key, fmt::format("the value is empty{}. {}",
+                        described && !described->meaning.empty() ? fmt::format(": {}", described->meaning) : "",
+                        described && !described->is_compulsory ? "Give one, or leave the key out" : "Give one"));
 }
 
 std::string ConfigMap::scalar(const ConfigNode& node, const std::string& key) const {
@@ -220,7 +225,6 @@ std::string ConfigMap::text(const std::string& key) const {
   const schema::Key* described = ask(key);
   if (described && described->word && !holds(key)) return *described->word;
   const ConfigNode& node = child(key);
-  if (node.kind == ConfigNode::Kind::kNull) fail(key, "the value is empty");
   std::string value = scalar(node, key);
   if (value.empty()) fail(key, "the value is empty");
   if (has_control_character(value)) fail(key, fmt::format("{:?} holds a line break or another control character", value));
@@ -285,7 +289,8 @@ std::vector<std::string> ConfigMap::texts(const std::string& key) const {
   for (const ConfigNodePtr& item : node.items) {
     values.push_back(scalar(*item, key));
     if (has_control_character(values.back()))
-      throw InputError(item->where(path_of(key)), fmt::format("{:?} holds a line break or another control character", values.back()));
+      throw InputError(item->where(path_of(key)),
+                       fmt::format("{:?} holds a line break or another control character", values.back()));
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), values.back()) == allowed.end())
       throw InputError(item->where(path_of(key)), not_known(values.back(), allowed));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -89,12 +90,30 @@ Quantity split(const std::string& text, const std::string& wanted) {
   return {number, unit};
 }
 
+/// The unit that a bare number of a machine was most likely meant in: feeds are written in m/min and mm/min, lengths in mm.
+const char* likely_unit_of(double number, const std::string& unit) {
+  struct UpTo {
+    const char* wanted;
+    double most;  ///< number that is likely in it
+    const char* likely;
+  };
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  constexpr UpTo kUnits[] = {
+      {"m/s", 4.0, "m/s"}, {"m/s", 240.0, "m/min"}, {"m/s", kAny, "mm/min"},  // 240 m/min: linear motors
+      {"m", 10.0, "m"},    {"m", kAny, "mm"},       {"N/m", 5000.0, "N/um"}};
+  for (const UpTo& u : kUnits) {
+    if (unit == u.wanted && std::abs(number) <= u.most) return u.likely;
+  }
+  return unit.c_str();
+}
+
 }  // namespace
 
 double parse_quantity(const std::string& text, const std::string& unit) {
   const auto [number, given] = split(text, unit);
   if (given.empty() && unit != "1") {
-    throw RangeError(fmt::format("'{}' has no unit: a quantity in {} is wanted, such as '{} {}'", text, unit, text, unit));
+    throw RangeError(fmt::format("'{}' has no unit: a quantity in {} is wanted, such as '{} {}'", text, unit, text,
+                                 likely_unit_of(number, unit)));
   }
   const cv_converter* c = converter(given.empty() ? "1" : given, unit);
   if (unit == "K" && has_offset(given)) {

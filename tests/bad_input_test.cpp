@@ -52,6 +52,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "film: 10 W/K",
                 {"wrong unit 'W/K'", "W/(m^2 K) is wanted", "effects[8].film"}},
         Mistake{"no_unit", "power: 85 W", "power: 85", {"has no unit", "'85 W'"}},
+        Mistake{"no_unit_of_a_rapid", "rapid: 2 m/min", "rapid: 15000", {"has no unit", "such as '15000 mm/min'"}},
+        Mistake{"no_unit_of_a_slow_rapid", "rapid: 2 m/min", "rapid: 15", {"has no unit", "such as '15 m/min'"}},
+        Mistake{"empty_supports",
+                "  - {surface: foot, fixed: [x, y, z]}\n",
+                "",
+                {"the value is empty: what holds surfaces to the ground", "Give one, or leave the key out"}},
         Mistake{"difference_for_temperature",
                 "absolute_tolerance: 5e-3 K",
                 "absolute_tolerance: 5 degC",
@@ -342,6 +348,16 @@ TEST(BadCommand, ARecordWithoutTheTargetIsRefused) {
   const CommandOutcome outcome = run_program("select scenarios/spindle_22.yaml --train " + file);
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.output, HasSubstr("no channel 'error_um'"));
+}
+
+TEST(Compare, OfScenariosSaysWhatToRun) {
+  const CommandOutcome outcome = run_program("compare scenarios/first_machine.yaml scenarios/lumped_spindle.yaml");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(
+      outcome.output,
+      ::testing::AllOf(
+          HasSubstr("driftwright simulate scenarios/first_machine.yaml --cyclogram shift -o results/first_machine\n"),
+          HasSubstr("driftwright compare results/first_machine results/lumped_spindle")));
 }
 
 }  // namespace

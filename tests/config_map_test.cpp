@@ -198,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"length: .nan m\n", length, ":1:9: '.nan m' is not a number"},
         Bad{"length: nan m\n", length, "not a finite number"},
         Bad{"length: 2 m\n", length, "outside what is allowed, 0 to 1 m"},
-        Bad{"length: [1 m]\n", length, "a single value is wanted"}, Bad{"length:\n", length, "a single value is wanted"},
+        Bad{"length: [1 m]\n", length, "a single value is wanted"}, Bad{"length:\n", length, "the value is empty. Give one"},
         Bad{"count: 101\n", count, "'101' is no whole number from 0 to 100"}, Bad{"count: 2.5\n", count, "no whole number"},
         Bad{"count: .nan\n", count, "no whole number"}, Bad{"count: 99999999999999\n", count, "no whole number"},
         Bad{"ambient: -300 degC\n", get<kQuantityOf, kAmbient>,

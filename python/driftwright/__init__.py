@@ -11,10 +11,22 @@ Records are pandas tables: the index is the time in seconds (`time_s`), a column
 
 import pathlib
 
-import numpy as np
-import pandas as pd
+try:
+    import numpy as np
+    import pandas as pd
+except ModuleNotFoundError as missing:
+    raise ImportError(f"driftwright takes {missing.name}, which is not installed: apt-get install python3-numpy python3-pandas, "
+                      "or pip install numpy pandas") from missing
 
-from . import core
+try:
+    from . import core
+except ImportError as missing:
+    raise ImportError(
+        f"driftwright is not built for this Python ({missing}). In the project's folder:\n"
+        "  apt-get install $(grep -v '#' packages-python.txt)\n"
+        "  cmake --preset release -DDRIFTWRIGHT_PYTHON=ON\n"
+        "  cmake --build --preset release --target driftwright_python_package\n"
+        "  PYTHONPATH=build/release/python python3") from missing
 from .core import InputError, SolveError, __version__
 
 __all__ = ["Machine", "Run", "InputError", "SolveError", "read_record", "write_record", "judge", "command", "__version__"]
