@@ -10,6 +10,7 @@
 
 #include "base/mapped_record.hpp"
 #include "base/option_quantity.hpp"
+#include "base/quantity.hpp"
 #include "compensation/sensors/interpolate.hpp"
 #include "machine/machine_key.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -222,11 +223,37 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
   return figures;
 }
 
+namespace {
+
+/// Says that a record was made in another ambient than the scenario's, which is the one that is run in.
+void note_other_ambient(const scenarios::MachineModel& machine, const Record& record, const scenarios::RecordedRun& run) {
+  constexpr double kNoticed_K = 0.5;  // thermometers of a hall differ by less
+  if (!run.has_ambient()) return;
+  const std::vector<double>& recorded_C = record.at(run.ambient_channel).values;
+  const auto stated_C = [&](std::size_t i) {
+    return machine.ambient.at(run.time_s[i]) + machine.reference_K - kZeroCelsius_K;
+  };
+  double farthest_K = 0.0;
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < recorded_C.size(); ++i) {
+    const double apart_K = std::abs(recorded_C[i] - stated_C(i));
+    if (apart_K > farthest_K) farthest_K = apart_K, farthest = i;
+  }
+  if (!(farthest_K > kNoticed_K)) return;
+  fmt::print(stderr,
+             "note: {}: {} is {:g} degC at {:g} min; the machine is run in the scenario's ambient, {:g} degC then. "
+             "`ambient: {{csv: FILE}}` in the scenario takes that of a record\n",
+             record.source, run.ambient_channel, recorded_C[farthest], run.time_s[farthest] / 60.0, stated_C(farthest));
+}
+
+}  // namespace
+
 Cyclogram cyclogram_of(const scenarios::Scenario& scenario, const Record& record) {
   scenarios::RecordedRun run = scenarios::run_of(record, nullptr, {}, scenarios::Reading::kStrict);
   for (const scenarios::DataFinding& f : run.findings) {
     if (f.channel == "speed") fmt::print(stderr, "note: {}\n", f.what);  // the ambient is the scenario's
   }
+  if (scenario.machine) note_other_ambient(*scenario.machine, record, run);
   scenarios::check_cyclogram(scenario, run.cyclogram);
   return std::move(run.cyclogram);
 }
