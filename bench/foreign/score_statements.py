@@ -11,7 +11,8 @@ Rules (README.md, "Scoring statements"), written before the sets seventh, ninth,
   spindle). coolant, radiation and recorded_drive are heat or exchange. run_state is heat or exchange of "all", of heat the speed as well. A hidden body with a path to the hall is an exchange with it, too.
 - A statement is right if quantity and place are: of an exchange both ends, of one named by a single body that body (of a film with the ambient); of an expansion the body or the channel; of a swap both.
 - The statements of a case are taken in order of probability. "Said" is a probability of 0.9 or more; "silent" a probability of more than a half that nothing is wrong.
-- A truth that lists `statements` itself (the set `stranger`) accepts these quantities and places, and no others.
+- A truth that lists `statements` itself (the sets `stranger`, `visitor`, `foundry`) accepts these quantities and places, and no others. Its conductivity is an exchange at
+  that body, its expansion a displacement there (both by the grammar's words); an exchange at one body alone is one with the ambient.
 - A run that has no statements counts as wrong, and not silent.
 """
 import argparse
@@ -40,7 +41,14 @@ def places(where):
 def right(statement, effect):
     if "statements" in effect:      # a truth that says itself which statements are right
         told = {p.replace("hall", "ambient") for p in statement["place"]}
-        return any(statement["quantity"] == s["quantity"] and told == {p.replace("hall", "ambient") for p in s["place"]} for s in effect["statements"])
+        words = dict(conductivity="exchange", expansion="displacement")
+        for s in effect["statements"]:
+            place = {p.replace("hall", "ambient") for p in s["place"]}
+            if s["quantity"] == "exchange" and len(place) == 1 and "all" not in place:
+                place.add("ambient")
+            if statement["quantity"] == words.get(s["quantity"], s["quantity"]) and told == place:
+                return True
+        return False
     names = [(effect["key"], effect["where"])] + [(a["effect"], a["where"]) for a in effect.get("also", [])]
     if effect["key"] == "hidden_body" and any(p["name"] == "to_hall" and p["value"] > 0 for p in effect["parameters"]):
         names.append(("link", effect["where"] + ",hall"))
