@@ -82,7 +82,8 @@ bool is_none(const Channel& channel, const Kind& kind, const std::vector<Stretch
   if (kind.is_temperature ? !is_outside(value, kind) : !is_mark(value)) return false;
   const double leap = kind.is_temperature ? kLeap_K : kTimesSpan * span_without(channel.values, value);
   const bool is_first = s == 0, is_last = s + 1 == stretches.size();
-  if (is_first && is_last) return stretches[s].n >= kFewestAtEnd;
+  // of a channel of one value nothing else tells; one that is usual in kelvin is that, which is refused by name where it is read
+  if (is_first && is_last) return stretches[s].n >= kFewestAtEnd && is_outside(value - kZeroCelsius_K, kind);
   if ((is_first || is_last) && stretches[s].n < kFewestAtEnd) return false;
   return (is_first || std::abs(value - stretches[s - 1].value) > leap) &&
          (is_last || std::abs(value - stretches[s + 1].value) > leap);

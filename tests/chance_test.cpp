@@ -116,9 +116,6 @@ void expect_faint_causes(int n_machines, int least_faint) {
   EXPECT_GE(2 * n_rightly, n_faint);  // the others say of the same channel what does nearly the same
 }
 
-TEST(Chance, SeldomOffersWhatAFaintCauseHas) {
-  expect_faint_causes(16, 2);
-}
 TEST(ChanceAtLength, SeldomOffersWhatAFaintCauseHas) {
   expect_faint_causes(32, 4);
 }
