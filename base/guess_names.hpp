@@ -22,7 +22,7 @@ struct HeaderWords {
 [[nodiscard]] bool is_time_name(const std::string& name);
 [[nodiscard]] bool is_tag_name(const std::string& name);
 [[nodiscard]] bool is_value_name(const std::string& name);
-/// Of the spindle's speed: "Drehzahl", "spindle speed"; a feed's, a fan's or the wind's is none.
+/// Of the spindle's speed: "Drehzahl", "spindle speed"; not the speed of a feed, a fan or the wind.
 [[nodiscard]] bool is_speed_name(const std::string& name);
 /// Of a feed, a fan, a pump or the wind.
 [[nodiscard]] bool turns_beside_spindle(const std::string& name);

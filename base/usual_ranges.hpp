@@ -41,9 +41,9 @@ struct UsualRange {
 [[nodiscard]] const std::vector<UsualRange>& usual_ranges();
 [[nodiscard]] const UsualRange& usual_range(Usual of);
 
-/// What is said of a value outside of its range: "150 kW at 6000 rpm; usual is -30 to 30 kW"; nothing for a usual one. NaN is not usual.
+/// What is said of a value outside of its range: "150 kW at 6000 rpm; usual is -30 to 30 kW"; nothing for a usual one. NaN is outside of every range.
 /// @param value  in SI; temperatures in degC
-/// @param when   " at 6000 rpm", which then stands behind the value
+/// @param when   " at 6000 rpm", written after the value
 [[nodiscard]] std::optional<std::string> beyond_usual(Usual of, double value, const std::string& when = "");
 
 }  // namespace driftwright
