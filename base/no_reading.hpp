@@ -13,7 +13,7 @@ namespace driftwright {
 ///  - it is a temperature outside of the usual range (usual_ranges.hpp), or a difference as large, and more than 100 K off the readings before and after.
 ///    At an end of the record, where there is one of these alone, it must be three readings long;
 ///  - it is a displacement or tilt whose digits are a mark (999.9, 9999, 888.8, 3276.7, -3276.8, 32767, 65535 ...), off both by more than three times what all
-///    other readings span.
+///    other readings span;
 ///  - but a whole channel of one value that is usual when read in kelvin stays: it is refused by its unit.
 /// A body that stays hot from row to row, such as a furnace, keeps its readings.
 /// @returns  a sentence a channel: how many readings, which value, when
