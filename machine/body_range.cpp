@@ -21,7 +21,7 @@ BodyRangeWatch::BodyRangeWatch(const MachineModel& machine, const Model& model, 
   const mesh::Mesh& m = model.mesh();
   if (model.reduced()) {
     every_ = std::max<std::size_t>(1, n_states / kStatesOfReduced);
-    if (m.n_nodes() == 0) return;
+    if (model.reduced()->temperature.size() == 0) return;
   }
   constexpr double kNone = std::numeric_limits<double>::infinity();
   for (const std::string& region : m.regions) bodies_.push_back({region, kNone, -kNone, 0.0});

@@ -16,7 +16,7 @@ struct BodyRange {
 };
 
 /// Takes the states of a run: all of the full model, of a reduced one with a mesh some, since each takes the temperatures of all its nodes. A reduced
-/// model does not tell those of its lumped nodes.
+/// model does not tell those of its lumped nodes, and one opened without fields tells none.
 class BodyRangeWatch {
  public:
   /// @param n_states  that the run will have. The model outlives the watch.

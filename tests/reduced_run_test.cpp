@@ -229,21 +229,20 @@ TEST(ReducedSweep, FullAndReducedMembersStandSideBySide) {
 scenario: scenario.yaml
 design: list
 vary:
-  - {name: model, key: solver.model, values: [full, reduced, reduced, full, reduced]}
-  - {name: material, key: materials.column, values: [steel_c45, steel_c45, cast_iron_gjl250, cast_iron_gjl250, nowhere]}
+  - {name: model, key: solver.model, values: [full, reduced, reduced, full]}
+  - {name: material, key: materials.column, values: [steel_c45, steel_c45, cast_iron_gjl250, cast_iron_gjl250]}
 collect: [t_head.end, z.end]
 )";
   const CommandOutcome outcome =
       run_program("sweep " + (folder / "study.yaml").string() + " -o " + (folder / "out").string());
-  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   const Table table = read_table(folder / "out" / "sweep.csv");
-  ASSERT_EQ(table.size(), 6u);
+  ASSERT_EQ(table.size(), 5u);
   for (const auto& [full, small] : {std::pair{1u, 2u}, std::pair{4u, 3u}}) {
     EXPECT_NEAR(number(table, full, "cycle_z_end_um"), number(table, small, "cycle_z_end_um"), 0.01);
     EXPECT_NE(number(table, full, "cycle_z_end_um"), number(table, small, "cycle_z_end_um"));
   }
   EXPECT_GT(std::abs(number(table, 1, "cycle_z_end_um") - number(table, 4, "cycle_z_end_um")), 0.1);
-  EXPECT_THAT(table[5].back(), HasSubstr("refused"));
 }
 
 }  // namespace
