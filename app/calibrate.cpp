@@ -17,7 +17,7 @@ void calibrate(const CalibrateOptions& options) {
   diagnosis::Diagnosis d =
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, progress.listener());
   progress.begin("writing");
-  const std::string warning = findings::calibration_warning(d, d.search.candidates);
+  const std::string warning = findings::calibration_warning(d);
   std::vector<std::string> head = {
       fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(options.scenario))};
   for (const std::string& path : options.measured) head.push_back("  measured: " + clean_name(path));

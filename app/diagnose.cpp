@@ -9,7 +9,7 @@
 #include "app/end_request.hpp"
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
-#include "diagnosis/event_candidates.hpp"
+#include "diagnosis/happening.hpp"
 #include "findings/diagnosis_document.hpp"
 
 namespace driftwright::app {
@@ -70,7 +70,7 @@ void diagnose(const DiagnoseOptions& options) {
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
   if (extended.not_written.empty()) simulate_written(m, extended, d);
-  write_missing_heat(m.mesh, findings::missing_heat(d, d.search.candidates), folder);
+  write_missing_heat(m.mesh, d.statements, folder);
   finish(findings::diagnosis_document({m, d, extended, difference, "extended.yaml"}, folder.made_by()), folder, progress,
          options, "", "diagnosis.json");
   std::fflush(stdout);

@@ -103,17 +103,17 @@ void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedS
   }
 }
 
-bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<findings::MissingHeat>& heat,
-                        output::ResultsFolder& folder) {
+bool write_missing_heat(const mesh::Mesh& mesh, const diagnosis::Posterior& statements, output::ResultsFolder& folder) {
   if (mesh.n_nodes() == 0) return false;
-  std::vector<output::RegionField> fields = {{"missing_heat_evidence", std::vector<double>(mesh.regions.size(), 0.0)},
+  std::vector<output::RegionField> fields = {{"missing_heat_probability", std::vector<double>(mesh.regions.size(), 0.0)},
                                              {"missing_heat_W", std::vector<double>(mesh.regions.size(), 0.0)}};
-  for (const findings::MissingHeat& h : heat) {
-    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), h.body);
+  for (const diagnosis::Stated& s : statements.stated) {
+    if (s.says.quantity != diagnosis::StatedQuantity::kHeat) continue;
+    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), s.says.place.front());
     if (found == mesh.regions.end()) continue;
     const auto r = static_cast<std::size_t>(found - mesh.regions.begin());
-    fields[0].value[r] = h.evidence;
-    fields[1].value[r] = h.power_W;
+    fields[0].value[r] = s.probability;
+    fields[1].value[r] = s.size;
   }
   output::write_region_fields(mesh, fields, folder.path("residual_source.vtu"));
   return true;

@@ -31,9 +31,8 @@ namespace driftwright::app {
 /// @throws InputError  as read_scenario()
 void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended, diagnosis::Diagnosis& d);
 
-/// residual_source.vtu: missing_heat_evidence [nats] and missing_heat_W of each region. Nothing for a machine without mesh.
+/// residual_source.vtu: missing_heat_probability and missing_heat_W of each region, as the statements say them. Nothing for a machine without mesh.
 /// @returns whether it was written
-bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<findings::MissingHeat>& heat,
-                        output::ResultsFolder& folder);
+bool write_missing_heat(const mesh::Mesh& mesh, const diagnosis::Posterior& statements, output::ResultsFolder& folder);
 
 }  // namespace driftwright::app

@@ -190,10 +190,10 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   d.unexplained = unexplained_of(*chosen.fitter, chosen.fitted, d.noise);
   {
     Fitter weighed(fresh, runs);
-    weighed.set_noise(d.weighed_by_model_error ? working : d.noise);
-    d.search = search(weighed, told_of_by(runs, candidates(twin, runs, {})), {.most_effects = 0}, listener);
+    weighed.set_noise(d.noise);
+    d.statements = search(weighed, {}, {.most_effects = 1}, listener).statements;
   }
-  d.n_candidates = static_cast<int>(d.search.candidates.size());
+  d.search = chosen.fitted;
   const bool is_too_few = readings_of(runs) < kFewestReadings;
   d.verdict = is_too_few ? Verdict::kInsufficientData : verdict_of(d);
   d.reason = is_too_few ? what_is_missing(twin, runs, static_cast<int>(readings_of(runs)), static_cast<int>(kFewestReadings))

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
-#include "diagnosis/event_candidates.hpp"
+#include "diagnosis/happening.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::diagnosis {
@@ -118,7 +118,6 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
     v.price_nats = e.price_nats;
     v.happens = true;
-    v.takes_any_course = e.takes_any_course;
     v.seen = true;
     v.in = e.doubt.added.front().in;
     Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
@@ -136,6 +135,8 @@ double law_price(const Candidate& candidate) {
 }
 
 Variant law_of(const effects::Doubt& doubt) {
+  std::string adds;
+  for (const effects::Effect& e : doubt.added) adds += e.kind->key + " ";
   Variant v{.law = doubt.when.empty() ? doubt.law : doubt.law + ", " + doubt.when,
             .knobs = knobs_of(doubt),
             .trial_x = doubt.trial,
@@ -143,7 +144,8 @@ Variant law_of(const effects::Doubt& doubt) {
             .at_speed_rpm = doubt.at_speed_rpm,
             .all_or_nothing = doubt.all_or_nothing,
             .price_nats = doubt.rarity,
-            .in = doubt.added.front().in};
+            .in = doubt.added.front().in,
+            .adds = std::move(adds)};
   if (effects::can_be_of_some_runs(doubt)) v.of_some_runs = std::make_shared<const effects::Doubt>(doubt);
   return v;
 }

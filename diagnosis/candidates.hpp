@@ -22,12 +22,12 @@ struct Variant {
   double price_nats =
       0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
   bool happens = false;            ///< for a while or from a time on, not throughout
-  bool takes_any_course = false;   ///< as of its event
   bool of_chosen_records = false;  ///< its records were read off these very readings, which price_nats pays for
   bool seen = false;    ///< at times that were read off these very readings: simulated ones say nothing of its chances
   std::string in = {};  ///< run in which it is, or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
-      {};  ///< that it was made of, where it can be said of some records alone
+      {};                 ///< that it was made of, where it can be said of some records alone
+  std::string adds = {};  ///< keys of the effects that it adds to the machine
 };
 
 /// A doubt as a law of a candidate.

@@ -18,14 +18,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
-/// And, where it follows time in any shape, of what the best of these explains: better by less, it follows what that one's law leaves.
-constexpr double kBetterOfCause = 0.1;
-constexpr double kWrongAmbient_K = 1.0;  // a recorded ambient is known to a third of it
-constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
-constexpr double kMostWork = 2e7;       // some ten seconds
-constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
-constexpr double kNotLinear = 6.0;      // of what one of a linear machine costs
+const double kSureOdds = std::log(kSure / (1.0 - kSure));  // of a number that has gone too far [nats]
+constexpr double kWrongAmbient_K = 1.0;                    // a recorded ambient is known to a third of it
+constexpr double kMostWork = 2e7;                          // some ten seconds
+constexpr double kSmallMachine = 15.0;                     // unknowns, below which a prediction costs the same
+constexpr double kNotLinear = 6.0;                         // of what one of a linear machine costs
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -107,9 +104,8 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
-    c.chance = d.search.chance.share_above(gain);
     if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
-    c.standing = gain >= d.search.bars.named ? Standing::kNamed : Standing::kSuspected;
+    c.standing = gain >= kSureOdds ? Standing::kNamed : Standing::kSuspected;
     if (c.standing == Standing::kNamed &&
         !d.written.keeps_numbers) {  // what was fitted does harm where it was not fitted to
       c.standing = Standing::kSuspected;
@@ -158,9 +154,9 @@ void doubt_all(Diagnosis& d, const std::string& why) {
 void say_what_is_written(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
   for (std::size_t i = 0; i < d.written.causes.size(); ++i) {
     Cause& c = d.causes.at(d.written.causes[i]);
-    c.parameters = cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain,
-                            listener)
-                       .parameters;
+    c.parameters =
+        cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain, listener)
+            .parameters;
   }
 }
 
@@ -250,7 +246,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   const Fitter& fitter = *own.fitter;
   d.noise = std::move(own.noise);
   d.search = std::move(own.search);
-  d.statements = std::move(own.statements);
+  d.statements = d.search.statements;
   d.unexplained = std::move(own.unexplained);
   d.wander = std::move(own.wander);
   d.weighed_by_model_error = own.weighed_by_model_error;
@@ -259,33 +255,12 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.scatter = fitter.scatter();  // with the priors of faults where numbers have gone too far
   const std::vector<Candidate>& list = d.search.candidates;
-  d.n_candidates = static_cast<int>(list.size());
-  listener.begin("one cause without a name");
-  const bool is_faint = !d.search.findings.empty() && d.search.findings.front().faint_chance.has_value();
-  auto unnamed = listener.wants_end() || is_faint
-                     ? std::nullopt
-                     : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
-  double explained = 0.0;
-  for (const Finding& f : d.search.findings) explained = std::max(explained, f.log_evidence_gain);
-  const bool has_any_shape = unnamed && unnamed->follows == "time";
-  if (unnamed && unnamed->log_evidence_gain > std::max(kUnnamed, has_any_shape ? kBetterOfCause * explained : 0.0)) {
-    if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
-    d.unexplained->one_cause = std::move(unnamed);
+  d.n_candidates = static_cast<int>(standing.size());
+  if (const auto nameless = without_name(fitter, d.search, d.statements, d.noise)) {
+    if (!d.unexplained) d.unexplained = nameless;
+    d.unexplained->statement = nameless->statement;
   }
   d.scatter_alone = d.search.without.prediction;
-  listener.begin("waveforms of what is missing");
-  if (!d.scatter_alone.empty() && !listener.wants_end()) {
-    // where a loud cause bent the numbers beyond belief, heats would be told of another machine
-    const Eigen::VectorXd& x = d.search.without.x;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < known_to.size(); ++i) squares += std::pow(x[static_cast<Eigen::Index>(i)] / known_to[i], 2);
-    const bool is_bent = squares > kBeyondBelief * static_cast<double>(known_to.size());
-    (void)has_solution([&] {
-      d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written, listener)
-                            : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone, listener);
-    });
-  }
-
   listener.begin("intervals");
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     listener.share(static_cast<double>(c) / static_cast<double>(d.search.findings.size()));
@@ -295,12 +270,12 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       Hypothesis other = d.search.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
-      cause.alternatives.push_back(
-          cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
+      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
       leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
-      cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
+      cause.alternatives.back().probability = a.probability;
       cause.alternatives.back().share = a.share;
     }
+    cause.probability = f.probability;
     cause.share = f.share;
     cause.odds = f.odds;
     d.causes.push_back(std::move(cause));

@@ -8,8 +8,6 @@
 #include "diagnosis/heat_wander.hpp"
 #include "diagnosis/posterior.hpp"
 #include "diagnosis/search.hpp"
-#include "diagnosis/unnamed.hpp"
-#include "diagnosis/waveform.hpp"
 
 namespace driftwright::diagnosis {
 
@@ -21,7 +19,7 @@ enum class Verdict { kConsistent, kSuspected, kNamed, kAmbiguous, kUnexplained, 
 
 /// How surely a cause is one.
 enum class Standing {
-  kSuspected,  ///< more than chance has to offer, and too little to be sure of; or it does not predict kept-out rows better; or more is left than it explains
+  kSuspected,  ///< its statement is less sure than kSure; or it does not predict kept-out rows better; or more is left than it explains
   kAmbiguous,  ///< sure, but others would do as well
   kNamed,
 };
@@ -44,8 +42,8 @@ struct Cause {
   double log_evidence_gain = 0.0;
   std::vector<Cause> alternatives;
   Standing standing = Standing::kSuspected;
-  std::string doubt = {};  ///< why it is only suspected, a clause; "" where it is not
-  double chance = 1.0;     ///< share of machines without fault at which the best candidate has as much evidence
+  std::string doubt = {};    ///< why it is only suspected, a clause; "" where it is not
+  double probability = 0.0;  ///< of the statement that it is a name of
   double kept_out_nats =
       0.0;  ///< how much likelier kept-out rows are with it than without it; of numbers that have gone too far 0
   bool is_written = true;            ///< whether extended.yaml has it
@@ -100,15 +98,11 @@ struct Unexplained {
     double rms = 0.0;          ///< of the smooth part of the residual
     double times_noise = 0.0;  ///< its squares over what noise would have, in standard deviations of that
   };
-  std::vector<Channel> channels;  ///< worst first; those that stand out
-  double nats = 0.0;              ///< what a cause of the right shape would bring at most
-  std::string correlates_with;    ///< what its waveform looks like, or ""
-  double correlation = 0.0;
-  std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
-  std::vector<double> time_s, heat_W;  ///< that latent heat in the first run, per row
-  std::optional<Unnamed> one_cause;    ///< that explains it better than the named ones
-  bool fails_held_out = false;         ///< the causes predict kept-out data worse than scatter alone
-  double ambient_off_K = 0.0;          ///< where the causes stand beside an ambient so far off its record; 0: they do not
+  std::vector<Channel> channels;         ///< worst first; those that stand out
+  double nats = 0.0;                     ///< what a cause of the right shape would bring at most
+  std::optional<std::size_t> statement;  ///< of Diagnosis::statements, that it is: the catalogue has no name for it
+  bool fails_held_out = false;           ///< the causes predict kept-out data worse than scatter alone
+  double ambient_off_K = 0.0;            ///< where the causes stand beside an ambient so far off its record; 0: they do not
 };
 
 struct Diagnosis {
@@ -126,8 +120,6 @@ struct Diagnosis {
   std::string holdout;   ///< how the gain was held out
   std::vector<ChannelGain> gain;
   KeptOutMisses misses;
-  /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
-  std::vector<Waveform> waveforms;
   std::vector<DataFinding> data;
   int n_candidates = 0;
   SearchResult search;  ///< its claims are the first causes, in their order; behind them numbers that have gone too far

@@ -102,6 +102,7 @@ Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vect
   nuisance_ = Eigen::VectorXd::Zero(n_nuisance());
   const Eigen::VectorXd x = nuisance_;
   take_slopes({}, x, {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
+  written_differences_ = differences_;
 }
 
 Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
@@ -110,7 +111,8 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       scatter_(other.scatter_),
       linear_(other.linear_),
       nuisance_(other.nuisance_),
-      differences_(other.differences_) {
+      differences_(other.differences_),
+      written_differences_(other.written_differences_) {
   if (other.comparison_) set_noise(other.noise_, other.shared_);
 }
 
@@ -265,13 +267,17 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
   differences_ = std::move(differences);
 }
 
-void Fitter::whiten_slopes() {
-  slopes_.resize(comparison_->n(), n_nuisance());
+Eigen::MatrixXd Fitter::whitened_slopes(const std::vector<Prediction>& differences) const {
+  Eigen::MatrixXd slopes(comparison_->n(), n_nuisance());
   for (std::size_t i = 0; i < scatter_.size(); ++i)
-    slopes_.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences_[i]);
-  for (std::size_t l = 0; l < linear_.size(); ++l) {
-    slopes_.col(static_cast<Eigen::Index>(scatter_.size() + l)) = comparison_->whitened(linear_[l]);
-  }
+    slopes.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences[i]);
+  for (std::size_t l = 0; l < linear_.size(); ++l)
+    slopes.col(static_cast<Eigen::Index>(scatter_.size() + l)) = comparison_->whitened(linear_[l]);
+  return slopes;
+}
+
+void Fitter::whiten_slopes() {
+  slopes_ = whitened_slopes(differences_);
   squares_.noalias() = slopes_.transpose() * slopes_;
 }
 
@@ -287,6 +293,8 @@ void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise, std::shar
   shared_ = std::move(shared);
   comparison_.emplace(runs_, noise, shared_ ? *shared_ : SharedNoise{});
   whiten_slopes();
+  written_slopes_ = whitened_slopes(written_differences_);
+  written_squares_.noalias() = written_slopes_.transpose() * written_slopes_;
 }
 
 void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
@@ -382,6 +390,12 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     ++n_retakes;
     return true;
   };
+
+  if (n_n > 0 && f.x.head(n_n).isZero(0.0)) {
+    nuisance_slopes = &written_slopes_;
+    nuisance_squares = &written_squares_;
+    taken_at = f.x.head(n_n);
+  }
 
   Eigen::MatrixXd square(n, n);
   f.slopes.resize(f.residual.size(), n_k);

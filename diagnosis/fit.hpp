@@ -134,6 +134,7 @@ class Fitter {
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener = {});
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
   [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at) const;
+  [[nodiscard]] Eigen::MatrixXd whitened_slopes(const std::vector<Prediction>& differences) const;
   void whiten_slopes();
 
   const Twin& twin_;
@@ -146,6 +147,9 @@ class Fitter {
   Eigen::VectorXd nuisance_;             ///< where it was settled
   std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened
   Eigen::MatrixXd slopes_, squares_;     ///< whitened; slopes' slopes
+  /// The same at the scenario's own numbers, for fits that begin there.
+  std::vector<Prediction> written_differences_;
+  Eigen::MatrixXd written_slopes_, written_squares_;
 };
 
 }  // namespace driftwright::diagnosis

@@ -65,7 +65,7 @@ Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::strin
 /// The evidence of a claim beside what it has to pay for being one of many [nats].
 double price_of(const SearchResult& result, std::size_t claim) {
   const Candidate& candidate = result.candidates[result.hypothesis[claim].candidate];
-  return std::log(static_cast<double>(result.candidates.size())) + law_price(candidate);
+  return std::log(static_cast<double>(result.n_catalogue)) + law_price(candidate);
 }
 
 }  // namespace
@@ -118,8 +118,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     const Subset one = 1U << c, with = kept | one;
     const double nats = judge.judged(with).log_predictive - judge.judged(with & ~one).log_predictive;
     held.claim_nats.push_back(nats);
-    const bool stands_in_each_part =
-        judge.least_evidence(with, with & ~one) - price_of(result, c) >= result.bars.suspected.front();
+    const bool stands_in_each_part = judge.least_evidence(with, with & ~one) - price_of(result, c) > 0.0;
     const bool is_out = (kept & one) == 0;
     const bool speaks_against = is_out && (nats < -kAlike || judge.is_much_worse(with, with & ~one));
     held.doubt.emplace_back(speaks_against ? "rows that were kept out are predicted worse with it"
@@ -132,10 +131,6 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
             ? "rows that were kept out are predicted no better with it, if not by so much worse that it speaks against it"
             : held.doubt.back());
     if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
-  }
-  for (std::size_t c = 0; c < n_claims; ++c) {
-    if (result.findings[c].faint_chance && held.doubt[c].empty())
-      held.doubt[c] = held.why_not_written[c] = "its evidence is too little for more than a suspicion";
   }
   kept = 0;
   for (std::size_t c = 0; c < n_claims; ++c) kept |= held.why_not_written[c].empty() ? 1U << c : 0U;

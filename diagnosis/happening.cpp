@@ -231,7 +231,6 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   }
   if (n_windows == 0) return std::nullopt;
   const bool is_fitted = h.every_s == 0.0 && n_windows <= kWindowsFittedAlone && n_windows == h.wide_s.size();
-  event.takes_any_course = h.is_course;
   d.numbers = {size};
   if (h.every_s > 0.0) {
     for (effects::DoubtedNumber& n : times_of_turns(h, longest_row_s / 60.0)) d.numbers.push_back(std::move(n));

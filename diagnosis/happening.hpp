@@ -1,9 +1,27 @@
 #pragma once
 // Windows of one size, wherever they are, and the doubt that they make: heat in a body, an exchange with another one, or another speed of the spindle.
 
-#include "diagnosis/event_candidates.hpp"
+#include <optional>
+
+#include "diagnosis/twin.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::diagnosis {
+
+/// Windows as one cause of the catalogue.
+struct Event {
+  effects::Doubt
+      doubt;  ///< windows of heat, of an exchange or of another speed; its numbers: the size, and how much longer, or when they come again
+  double price_nats = 0.0;  ///< of their times, which were read off the data
+  struct Window {
+    std::string in;  ///< run
+    double begin_s = 0.0, end_s = 0.0;
+  };
+  std::optional<Window> once = {};  ///< where there is one window in all
+};
+
+/// Keys of effects that events may have.
+inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "speed_override", "hidden_body"};
 
 using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends [s]
 
@@ -16,9 +34,8 @@ struct Happening {
       {};  ///< each run that has some; no run: all of them, one window in each turn
   /// How much of the record would do as well as each beginning and end [s], in the order of all windows; empty: not known.
   Times wide_s = {};
-  double every_s = 0.0;    ///< of windows that repeat
-  bool is_course = false;  ///< a course of any shape would do as well as so many windows
-  double size = 0.0;       ///< W, W/K or 1
+  double every_s = 0.0;  ///< of windows that repeat
+  double size = 0.0;     ///< W, W/K or 1
   double price_nats = 0.0;
 };
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/linear_operator.hpp"
 #include "diagnosis/scene.hpp"
-#include "diagnosis/window_evidence.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -47,15 +47,6 @@ struct Run {
   Eigen::MatrixXd columns;  ///< n_rows x (n_bodies kKnots), body after body
   Eigen::VectorXd residual;
 };
-
-/// What 1 W about a knot does to a run's channels, n_channels x n_times.
-Eigen::MatrixXd readings_of(const SeenRun& seen, Eigen::Index body, std::size_t n_bodies, const Eigen::VectorXd& hat) {
-  Eigen::Index from = 0;
-  while (from + 1 < hat.size() && hat[from] == 0.0) ++from;
-  Eigen::MatrixXd heat_W = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_bodies), hat.size());
-  heat_W.row(body) = hat.transpose();
-  return response(seen.linear, modal_gain(seen.linear, heat_W), from, hat.size());
-}
 
 struct FittedCourse {
   double log_likelihood = -1e300;
@@ -119,10 +110,12 @@ FittedCourse fitted(const std::vector<Run>& runs, const std::vector<Eigen::Matri
 std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& state, const Prediction& prediction,
                                       Twin::Workspace& workspace) {
   const Comparison& comparison = fitter.comparison();
-  const std::vector<effects::Body> bodies = bodies_of(scene_of(fitter.twin(), fitter.runs()));
+  std::vector<effects::Body> bodies = scene_of(fitter.twin(), fitter.runs()).bodies;
+  std::erase(bodies, effects::ambient_node());
   const auto n_bodies = static_cast<Eigen::Index>(bodies.size());
   if (n_bodies == 0) return std::nullopt;
-  std::vector<SeenRun> seen;
+  std::vector<LinearOperator> machine;
+  std::vector<std::vector<LinearOperator::Load>> heat_in;  // of each run and body
   std::vector<Run> runs;
   std::vector<Eigen::MatrixXd> gram;
   std::vector<Eigen::VectorXd> along;
@@ -130,15 +123,17 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
   double shortest_s = 1e300, longest_s = 0.0;
   for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
     const std::vector<double>& time_s = fitter.runs()[r].time_s;
-    seen.push_back(seen_run(fitter, state, r, bodies, workspace));
+    machine.emplace_back(fitter.twin(), fitter.runs()[r], state, workspace);
+    heat_in.emplace_back();
+    for (const effects::Body& body : bodies) heat_in.back().push_back(machine.back().heat(body));
     const Eigen::MatrixXd hat = hats(time_s);
     Run run{.spacing_s = (time_s.back() - time_s.front()) / static_cast<double>(kKnots - 1),
-            .columns = Eigen::MatrixXd(seen[r].n_rows, n_bodies * kKnots),
+            .columns = Eigen::MatrixXd(comparison.condensed_rows(r).second, n_bodies * kKnots),
             .residual = comparison.condensed(r, residual.segment(comparison.first_of(r), comparison.n_of(r)))};
     Eigen::VectorXd whitened(comparison.n_of(r));
     for (Eigen::Index b = 0; b < n_bodies; ++b) {
       for (Eigen::Index k = 0; k < kKnots; ++k) {
-        comparison.whiten(r, readings_of(seen[r], b, bodies.size(), hat.col(k)), whitened);
+        comparison.whiten(r, machine[r].response(heat_in[r][static_cast<std::size_t>(b)], hat.col(k).transpose()), whitened);
         run.columns.col(b * kKnots + k) = comparison.condensed(r, whitened);
       }
     }
@@ -185,7 +180,8 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
       const double sd_W = wander.bodies[i].sd_W;
       Eigen::MatrixXd of_knot(shared.rows(), kKnots);
       for (Eigen::Index k = 0; k < kKnots; ++k) {
-        const Eigen::MatrixXd readings = readings_of(seen[r], kept[i], bodies.size(), hat.col(k));
+        const Eigen::MatrixXd readings =
+            machine[r].response(heat_in[r][static_cast<std::size_t>(kept[i])], hat.col(k).transpose());
         for (Eigen::Index c = 0; c < n_channels; ++c)
           of_knot.col(k).segment(c * n_times, n_times) = readings.row(c).transpose();
       }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "diagnosis/ambient_doubt.hpp"
-#include "diagnosis/event_candidates.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/signatures.hpp"
 #include "diagnosis/unexplained.hpp"
@@ -17,7 +16,6 @@ namespace {
 constexpr double kSharper = 0.9;   // noise without what the causes explain, over that with it: it is estimated anew
 constexpr double kLessSlow = 0.5;  // and its slow part: causes that come and go had been taken for noise that follows itself
 constexpr double kSeenSlow = 0.2;  // of the white part: a slow part below changes nothing
-constexpr double kLikelier = 3.0;  // nats by which causes beside white noise must be likelier than slow noise alone
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
 
 /// What the search leaves; the mesh's error is that of the machine with what was found.
@@ -36,61 +34,10 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   return unexplained_of(again, same, of.noise);
 }
 
-/// Logarithm of how likely the readings are by a search's end, its noise counted and what claims pay for being some of many, up to a constant that all noises share.
-double log_likelihood(const Inquiry& of) {
-  const Comparison& comparison = of.fitter->comparison();
-  double value = of.search.fit.log_evidence;
-  for (std::size_t b = 0; b < comparison.blocks().size(); ++b) value -= 0.5 * comparison.whitener(b).log_determinant();
-  for (const Claim& c : of.search.hypothesis) {
-    const std::vector<Candidate>& candidates = of.search.candidates;
-    value -= std::log(static_cast<double>(candidates.size())) + law_price(candidates[c.candidate]);
-  }
-  return value;
-}
-
-/// What happens for minutes, a stop or a window, looks like noise that follows itself, by which it is then weighed and not found. So where nothing sure was found beside
-/// such noise, and readings weighed by white noise ask for a window of time, causes are looked for with that noise, which is estimated anew beside them; they are
-/// found where they and it are likelier than the noise that follows itself is alone.
-void look_behind_slow_noise(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const SearchOptions& how,
-                            Inquiry& of, const Listener& listener) {
-  Inquiry other;
-  other.noise = of.noise;
-  bool is_other = false;
-  for (auto& [name, noise] : other.noise) {
-    if (!(noise.correlated > kSeenSlow * noise.white)) continue;
-    noise = {.white = noise.total()};
-    is_other = true;
-  }
-  if (!is_other) return;
-  listener.begin("looking for what slow noise may hide");
-  {
-    Fitter white(ground.fresh, runs);
-    white.set_noise(other.noise);
-    bool happens = false;
-    (void)has_solution([&] {
-      Twin::Workspace workspace(ground.twin);
-      const Fit fit = white.fit({}, Eigen::VectorXd(0), workspace);
-      white.settle({}, fit);
-      happens = !events_beside(white, {}, fit, projection_of(white, {}, fit)).empty();
-    });
-    if (!happens) return;
-  }
-  for (int pass = 0; pass < 2 && !listener.wants_end(); ++pass) {
-    other.fitter = std::make_unique<Fitter>(ground.fresh, runs);
-    other.fitter->set_noise(other.noise);
-    other.search = search(*other.fitter, told_of_by(runs, ground.candidates), how, listener);
-    if (other.search.hypothesis.empty()) return;
-    if (pass == 0) other.noise = estimate_noise(runs, other.search.fit.prediction, ground.options.floor);
-  }
-  if (listener.wants_end() || !(log_likelihood(other) > log_likelihood(of) + kLikelier)) return;
-  of.noise = std::move(other.noise);
-  of.fitter = std::move(other.fitter);
-  of.search = std::move(other.search);
-}
-
 /// Searches again by what the model misses: as heat that comes and goes in its bodies, or as slow noise of its channels.
-void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const SearchOptions& how,
-                          Inquiry& of, Twin::Workspace& workspace, const Listener& listener) {
+void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
+                          const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
+                          Twin::Workspace& workspace, const Listener& listener) {
   listener.begin("weighing again by what the model misses");
   std::map<std::string, NoiseModel> rough = of.noise;
   std::shared_ptr<const SharedNoise> shared;
@@ -103,7 +50,7 @@ void weigh_by_model_error(const InquiryGround& ground, const std::vector<Measure
   if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->set_noise(rough, shared);
-  of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener);
+  of.search = search(*of.fitter, names, how, listener);
   of.weighed_by_model_error = true;
 }
 
@@ -156,16 +103,21 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
 Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {
   const DiagnosisOptions& options = ground.options;
   Inquiry of;
+  const std::vector<Candidate> names = told_of_by(runs, ground.candidates);
   const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
-  if (of_all && options.most_effects > 0 && !listener.wants_end()) {
-    listener.begin("weighing statements");
-    (void)has_solution([&] { of.statements = statements_of(ground.fresh, ground.as_written, options.floor); });
-  }
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
+  of.fitter->set_noise(of.noise);
+  (void)has_solution([&] {  // what the scenario's own numbers explain is no noise
+    Twin::Workspace workspace(ground.twin);
+    const Fit fit = of.fitter->fit({}, Eigen::VectorXd(0), workspace);
+    for (const auto& [name, noise] : estimate_noise(runs, fit.prediction, options.floor)) {
+      if (noise.total() < of.noise.at(name).total()) of.noise[name] = noise;
+    }
+  });
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener, &of.search);
+    of.search = search(*of.fitter, names, how, listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       const NoiseModel& before = of.noise.at(s.first);
@@ -178,9 +130,6 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
       if (noise.total() < of.noise.at(name).total()) of.noise[name] = noise;
     }
   }
-  const bool is_sure =
-      std::any_of(of.search.findings.begin(), of.search.findings.end(), [](const Finding& f) { return f.is_named; });
-  if (!is_sure && !listener.wants_end()) look_behind_slow_noise(ground, runs, how, of, listener);
   Twin::Workspace workspace(ground.twin);
   const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
   if (of_all || is_rough) {
@@ -188,8 +137,11 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
     of.unexplained = what_is_left(ground, runs, of, workspace);
   }
   if (of.unexplained && is_rough) {
-    weigh_by_model_error(ground, runs, how, of, workspace, listener);
+    weigh_by_model_error(ground, runs, names, how, of, workspace, listener);
     if (auto left = unexplained_of(*of.fitter, of.search, of.noise)) of.unexplained = std::move(left);
+  }
+  if (of_all && !listener.wants_end()) {
+    weigh_findings(*of.fitter, how, of.search, listener);
   }
   widen_moved(of, workspace);
   return of;

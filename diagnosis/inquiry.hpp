@@ -20,7 +20,6 @@ struct InquiryGround {
 };
 
 struct Inquiry {
-  Posterior statements;  ///< what is missing, in words of the grammar
   std::map<std::string, NoiseModel> noise;
   bool weighed_by_model_error = false;
   std::optional<HeatWander> wander;

@@ -136,10 +136,6 @@ Judge::Refound Judge::refound(const SearchAgain& search_again, Subset kept, cons
     if (!has_solution([&] { again = search_again(folds_[f].fitted); })) continue;
     ++found.n_searched;
     found.calibrated[f] = filed({}, again.without.x, f);
-    if (!again.findings.empty() && again.findings.front().faint_chance) {  // never written
-      found.extended[f] = filed({}, again.without.x, f);
-      continue;
-    }
     found.extended[f] = filed(again.hypothesis, again.fit.x, f);
     for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
       found.n_again[c] += std::any_of(again.hypothesis.begin(), again.hypothesis.end(),

@@ -5,15 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <set>
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNoShare = 12.0;      // nats below the best set that nothing counts beyond
-constexpr double kLeastStated = 0.01;  // probability
-constexpr int kTurnsToSettle = 6;
-constexpr double kStatedStandsStill = 0.05;  // of Φ [nats]
+constexpr double kNoShare = 12.0;        // nats below the best set that nothing counts beyond
+constexpr double kLeastStated = 0.01;    // probability
+constexpr std::size_t kMostUnsure = 16;  // places that are stated, however little each of many is sure
 
 struct Set {
   std::vector<Scored> scored;
@@ -21,11 +22,6 @@ struct Set {
   double log_prior = 0.0, log_evidence = 0.0;
   [[nodiscard]] double value() const { return log_prior + log_evidence; }
 };
-
-/// Power that evidence counts with where the best set explains so much [nats].
-double temper(double explained, double law_error) {
-  return 1.0 / (1.0 + 2.0 * law_error * law_error * std::max(0.0, explained));
-}
 
 /// What tells two sets apart, whatever their order.
 std::string key_of(const std::vector<Statement>& says) {
@@ -55,7 +51,8 @@ std::vector<Set> sets_of(const StatementEvidence& evidence, const StatementOptio
     };
     std::vector<Added> all;
     const double one_more =
-        depth == 0 ? (1.0 - options.nothing) / options.nothing * (1.0 - options.one_more) : options.one_more;
+        depth == 0 ? (1.0 - options.nothing) / options.nothing * (options.most > 1 ? 1.0 - options.one_more : 1.0)
+                   : options.one_more;
     for (std::size_t b = 0; b < beam.size(); ++b) {
       for (Scored& s : evidence.scored(items_of(evidence, beam[b]))) {
         Added a{.to = b,
@@ -77,7 +74,7 @@ std::vector<Set> sets_of(const StatementEvidence& evidence, const StatementOptio
     std::set<std::string> seen;
     for (const Added& a : all) {
       const bool is_full = next.size() >= static_cast<std::size_t>(options.beam);
-      if (is_full && temper(explained, options.law_error) * (most - a.value) > kNoShare) break;
+      if (is_full && temper(options.explained + explained, options.law_error) * (most - a.value) > kNoShare) break;
       Set set = beam[a.to];
       set.scored.push_back(a.scored);
       set.says.push_back(evidence.said(a.scored));
@@ -123,7 +120,64 @@ std::vector<Stated> sized(const StatementEvidence& evidence, const Set& set, dou
   return list;
 }
 
+/// A course of any shape for a statement's quantity at its place.
+std::vector<StatedCourse> course_of(const StatementSpace& space, const StatementEvidence& evidence, const Statement& says) {
+  const std::optional<Scored> any = evidence.any_course(says);
+  if (!any) return {};
+  const Item item = evidence.item(*any);
+  Chosen course = item.chosen;
+  evidence.scale(course, *any, evidence.sizes({item}).size);
+  std::vector<StatedCourse> list;
+  for (std::size_t r = 0; r < course.amount.size(); ++r) {
+    const Eigen::VectorXd value = item.says.unit_size * course.amount[r];
+    if (value.size() > 0)
+      list.push_back({space.record[r], space.cells[course.index].runs[r].edge_s, {value.begin(), value.end()}});
+  }
+  return list;
+}
+
+/// Power that evidence counts with between statements.
+double power_of(const StatementEvidence& evidence, const Set& best, const StatementOptions& options) {
+  const double explained = options.explained + best.log_evidence;
+  if (!options.observed) return temper(explained, options.law_error);
+  const double left = std::min(options.left, evidence.left(items_of(evidence, best)));
+  return 1.0 / (1.0 + law_squares(explained, options.law_error, left, static_cast<double>(evidence.n_rows())));
+}
+
+/// Probabilities of sets, the first one of nothing. @param power  of evidence over nothing. @param power_between  that it counts with among the others
+std::vector<double> weights_of(const std::vector<Set>& sets, double power, double power_between) {
+  std::vector<double> over_nothing, between;
+  for (const Set& s : sets) {
+    over_nothing.push_back(s.log_prior + power * s.log_evidence);
+    between.push_back(s.log_prior + power_between * s.log_evidence);
+  }
+  if (sets.size() == 1) return {1.0};
+  const auto sum = [](const std::vector<double>& terms) {  // of all but the first, as a logarithm
+    const double most = *std::max_element(terms.begin() + 1, terms.end());
+    return most + std::log(std::accumulate(terms.begin() + 1, terms.end(), 0.0,
+                                           [&](double all, double t) { return all + std::exp(t - most); }));
+  };
+  const double something = 1.0 / (1.0 + std::exp(over_nothing.front() - sum(over_nothing))), all = sum(between);
+  std::vector<double> weights = {1.0 - something};
+  for (std::size_t i = 1; i < sets.size(); ++i) weights.push_back(something * std::exp(between[i] - all));
+  return weights;
+}
+
 }  // namespace
+
+double temper(double explained, double law_error) {
+  return 1.0 / (1.0 + 2.0 * law_error * law_error * std::max(0.0, explained));
+}
+
+double law_squares(double explained, double law_error, double left, double n) {
+  const double expected = 2.0 * law_error * law_error * explained;
+  if (!(expected > 0.0)) return 0.0;
+  const double sd = std::sqrt(2.0 * n);
+  const double z = (left - n) / sd - sd / expected;
+  constexpr double kFar = -8.0;  // standard deviations, where the tail is that of its slope
+  if (z < kFar) return -sd / z;
+  return sd * (z + std::exp(-0.5 * z * z) / (std::sqrt(0.5 * std::numbers::pi) * std::erfc(-z / std::numbers::sqrt2)));
+}
 
 Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual, const Eigen::MatrixXd& nuisance,
                     const StatementOptions& options) {
@@ -131,19 +185,15 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
   const std::vector<Set> sets = sets_of(evidence, options);
   const auto best =
       std::max_element(sets.begin(), sets.end(), [](const Set& a, const Set& b) { return a.value() < b.value(); });
-  const double power = temper(best->log_evidence, options.law_error);
-  std::vector<double> weights;
-  double most = -1e300, total = 0.0;
-  for (const Set& s : sets) weights.push_back(s.log_prior + power * s.log_evidence);
-  for (double w : weights) most = std::max(most, w);
-  for (double& w : weights) total += w = std::exp(w - most);
-  for (double& w : weights) w /= total;
+  const double power = power_of(evidence, *best, options);
+  const std::vector<double> weights =
+      weights_of(sets, temper(options.explained + best->log_evidence, options.law_error), power);
 
-  Posterior p{.nothing = weights.front(), .stated = {}};
+  Posterior p{.nothing = weights.front(), .power = power, .stated = {}};
   struct Sum {
     double probability = 0.0;
     struct Follows {
-      double probability = 0.0, best = 0.0;
+      double probability = 0.0, best = -1e300;
       std::size_t set = 0, which = 0;  ///< the likeliest set that says it
     };
     std::map<std::string, Follows> follows;
@@ -162,11 +212,16 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
       sum.probability += weights[i];
       Sum::Follows& f = sum.follows[s.follows];
       f.probability += weights[i];
-      if (weights[i] > f.best) f = {f.probability, weights[i], i, k};
+      if (sets[i].value() > f.best) f = {f.probability, sets[i].value(), i, k};
     }
   }
+  std::vector<double> of_places;
+  for (const auto& [where, sum] : sums) of_places.push_back(sum.probability);
+  std::sort(of_places.rbegin(), of_places.rend());
+  const double least =
+      of_places.empty() ? 0.0 : std::min(kLeastStated, of_places[std::min(kMostUnsure, of_places.size()) - 1]);
   for (const auto& [where, sum] : sums) {
-    if (sum.probability < kLeastStated) continue;
+    if (sum.probability < least) continue;
     const auto& f = std::max_element(sum.follows.begin(), sum.follows.end(), [](const auto& a, const auto& b) {
                       return a.second.probability < b.second.probability;
                     })->second;
@@ -175,6 +230,11 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
     s.p_quantity = of_quantity.at(where.first);
     s.p_place = sum.probability / s.p_quantity;
     s.p_follows = f.probability / sum.probability;
+    s.course = course_of(space, evidence, s.says);
+    if (const auto w = sum.follows.find("window"); w != sum.follows.end()) {
+      const Stated windows = sized(evidence, sets[w->second.set], power)[w->second.which];
+      s.windows = {windows.says, windows.size};
+    }
     p.stated.push_back(std::move(s));
   }
   std::stable_sort(p.stated.begin(), p.stated.end(),
@@ -182,30 +242,41 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
   return p;
 }
 
-Posterior statements_of(const Fitter& fresh, const Prediction& as_written, const NoiseFloor& least,
-                        const StatementOptions& options) {
-  const std::vector<MeasuredRun>& runs = fresh.runs();
-  Fitter fitter(fresh, runs);
-  std::map<std::string, NoiseModel> noise = estimate_noise(runs, as_written, least);
-  fitter.set_noise(noise);
-  Twin::Workspace workspace(fitter.twin());
-  Fit fit = fitter.fit({}, Eigen::VectorXd(0), workspace);
-  for (const auto& [name, beside] : estimate_noise(runs, fit.prediction, least)) {
-    if (beside.total() < noise.at(name).total()) noise[name] = beside;
+StatedBeside::StatedBeside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit)
+    : space_(fitter, fitter.state(hypothesis, fit.x)), comparison_(fitter.comparison()) {
+  const Eigen::Index n = fitter.n_nuisance(), n_claimed = fit.slopes.cols();
+  Eigen::MatrixXd free(fit.residual.size(), n + n_claimed);  // what is known roughly, and what claims are about their fit
+  free.leftCols(n) = fitter.nuisance_slopes() * fitter.nuisance_sd().asDiagonal();
+  free.rightCols(n_claimed) = fit.slopes * fitter.prior_sd(hypothesis).tail(n_claimed).asDiagonal();
+  residual_ = space_.condense(comparison_, fit.residual + fitter.nuisance_slopes() * fit.x.head(n));
+  nuisance_ = space_.condense(comparison_, free);
+}
+
+Posterior StatedBeside::posterior(const StatementOptions& options) const {
+  return diagnosis::posterior(space_, residual_, nuisance_, options);
+}
+
+double StatedBeside::left(const Fit& fit) const {
+  return fit.residual.size() == 0 ? std::numeric_limits<double>::infinity()
+                                  : space_.condense(comparison_, fit.residual).squaredNorm();
+}
+
+Posterior joined(const std::vector<Posterior>& posteriors) {
+  Posterior all = posteriors.front();
+  for (const Posterior& p : posteriors) {
+    for (const Stated& s : p.stated) {
+      const auto same = std::find_if(all.stated.begin(), all.stated.end(), [&](const Stated& known) {
+        return known.says.quantity == s.says.quantity && known.says.place == s.says.place;
+      });
+      if (same == all.stated.end())
+        all.stated.push_back(s);
+      else if (s.probability > same->probability)
+        *same = s;
+    }
   }
-  fitter.set_noise(noise);
-  for (int turn = 0; turn < kTurnsToSettle;
-       ++turn) {  // columns are about the numbers as fitted: these may be far from what is written
-    fitter.settle({}, fit);
-    const double before = fit.misfit;
-    fit = fitter.fit({}, Eigen::VectorXd(0), workspace);
-    if (turn > 0 && !(before - fit.misfit > kStatedStandsStill)) break;
-  }
-  fitter.settle({}, fit);
-  const StatementSpace space(fitter, fitter.state({}, fit.x));
-  const Comparison& comparison = fitter.comparison();
-  return posterior(space, space.condense(comparison, fit.residual + fitter.nuisance_slopes() * fit.x),
-                   space.condense(comparison, fitter.nuisance_slopes() * fitter.nuisance_sd().asDiagonal()), options);
+  std::stable_sort(all.stated.begin(), all.stated.end(),
+                   [](const Stated& a, const Stated& b) { return a.probability > b.probability; });
+  return all;
 }
 
 }  // namespace driftwright::diagnosis

@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <sstream>
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "diagnosis/chance.hpp"
-#include "diagnosis/event_candidates.hpp"
-#include "diagnosis/faint_cause.hpp"
+#include "diagnosis/naming.hpp"
 #include "diagnosis/no_solution.hpp"
-#include "diagnosis/pairs.hpp"
 #include "diagnosis/rivals.hpp"
-#include "diagnosis/some_records.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -27,18 +24,15 @@ constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
 constexpr double kNearBest = 12.0;         // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
-constexpr double kBent =
-    1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
+constexpr double kSame = 6.0;              // squares of whitened readings: what noise makes of two numbers more, at 95 %
 
-constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes of two numbers more, at 95 %
-
-// What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full.
+// What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where something explains what is stated.
 constexpr double kHopeless = 0.5, kHope = 8.0;
+constexpr int kLeastLaws = 2;         // of a candidate that are fitted in a claim's place
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
-constexpr std::size_t kMostPairs = 6;  // fitted in full
-
-constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
+constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
+constexpr double kEvenOdds = 0.5;     // that nothing is wrong
 
 /// Fits some hypotheses side by side. @param of_interest  as Fitter::fit()
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
@@ -54,9 +48,65 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
   return fits;
 }
 
-bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) {
-  return std::any_of(hypothesis.begin(), hypothesis.end(), [&](const Claim& c) { return c.candidate == candidate; });
-}
+/// What a search has to look at, which grows while it goes on.
+struct Ground {
+  const Fitter& fitter;
+  std::vector<Candidate> candidates;
+  std::vector<StatedPlace> names;      ///< of each candidate, what its statement is about
+  std::map<StatedPlace, Stated> said;  ///< that statement, when it was first named
+  /// What the last statements say of each place.
+  struct OfPlace {
+    double probability = 0.0;
+    double evidence = 0.0;  ///< [nats]
+  };
+  std::map<StatedPlace, OfPlace> of_place = {};
+  double power = 1.0;  ///< that evidence counts with between them
+  std::vector<Signature> columns;
+  /// Whether a claim names the same statement: what is missing at one place is claimed once.
+  [[nodiscard]] bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) const {
+    return std::any_of(hypothesis.begin(), hypothesis.end(),
+                       [&](const Claim& c) { return names[c.candidate] == names[candidate]; });
+  }
+  [[nodiscard]] bool is_claimed(const Hypothesis& hypothesis, const Statement& s) const {
+    return std::any_of(hypothesis.begin(), hypothesis.end(), [&](const Claim& c) {
+      return names[c.candidate] == StatedPlace{s.quantity, s.place};
+    });
+  }
+  /// What is not claimed is about what is stated now, whatever it was first a name of.
+  void name_anew(const Posterior& now, const Hypothesis& claimed) {
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (std::any_of(claimed.begin(), claimed.end(), [&](const Claim& claim) { return claim.candidate == c; })) continue;
+      const Stated* s = stated_as(now, candidates[c].effect, candidates[c].where);
+      if (!s) continue;
+      names[c] = {s->says.quantity, s->says.place};
+      said.try_emplace(names[c], *s);
+    }
+  }
+  /// Adds names, and laws of those that are there. @returns  the laws added
+  std::vector<Law> add(const Posterior& stated, const std::vector<Candidate>& list) {
+    std::vector<Law> added;
+    for (const Candidate& c : list) {
+      auto known = std::find_if(candidates.begin(), candidates.end(),
+                                [&](const Candidate& k) { return k.effect == c.effect && k.where == c.where; });
+      if (known == candidates.end()) {
+        const Stated& s = *stated_as(stated, c.effect, c.where);
+        candidates.push_back({c.effect, c.where, {}});
+        names.emplace_back(s.says.quantity, s.says.place);
+        said.try_emplace(names.back(), s);
+        known = candidates.end() - 1;
+      }
+      for (const Variant& law : c.variants) {
+        const bool is_known = std::any_of(known->variants.begin(), known->variants.end(), [&](const Variant& v) {
+          return v.law == law.law && v.in == law.in && v.grid == law.grid && v.trial_x == law.trial_x;
+        });
+        if (is_known) continue;
+        known->variants.push_back(law);
+        added.push_back({static_cast<std::size_t>(known - candidates.begin()), known->variants.size() - 1});
+      }
+    }
+    return added;
+  }
+};
 
 /// The bodies that a place names.
 std::set<std::string> bodies_in(const std::string& where) {
@@ -128,86 +178,219 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
   return labels.size();
 }
 
-/// A fit of a label from where the scenario stands, kept where it is better: with labels right its numbers are, and from what was fitted to the wrong body no fit may lead there.
-/// @param claims  x of all of them. @param of_interest  as Fitter::fit()
-void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims, double of_interest,
-                       Fit& fit) {
-  Twin::Workspace workspace(fitter.twin());
-  Fit other;
-  const Eigen::VectorXd start = joined(Eigen::VectorXd::Zero(fitter.n_nuisance()), claims);
-  if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest); }) &&
-      other.log_evidence > fit.log_evidence)
-    fit = std::move(other);
+/// Whether a fit's numbers have left what is known of them by more than a sigma.
+bool have_moved(const Fitter& fitter, const Fit& fit) {
+  const Eigen::Index n = fitter.n_nuisance();
+  return n > 0 && (fit.x.head(n).array() / fitter.nuisance_sd().array()).abs().maxCoeff() > 1.0;
 }
 
-/// The best candidates on top of a hypothesis, fitted in full, best first.
-/// @param known      null: all are fitted anew, from where scatter was settled last
-/// @param each_kind  the best of each effect is among them, though the first n be of others: which kind it is must not hang on linear theory
-std::vector<FittedClaim> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                        const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
-                                        int n, KnownFits* known, const Listener& listener, bool each_kind = false) {
-  if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
-  std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
-  std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
-  std::vector<Score> chosen;
-  for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
-    if (candidates[s.candidate].variants[s.variant].all_or_nothing) continue;  // of labels only the best, below
-    const auto n_same =
-        std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
-    const bool is_full = static_cast<int>(chosen.size()) >= n;
-    if (is_full && !each_kind) break;
-    const bool is_new_kind = std::none_of(chosen.begin(), chosen.end(), [&](const Score& c) {
-      return candidates[c.candidate].effect == candidates[s.candidate].effect;
-    });
-    if (is_full ? is_new_kind : n_same < 2) chosen.push_back(s);
+/// Fits from where the scenario stands, kept where they are better: numbers that were fitted without a cause have taken up what it does, and from there no slope may lead to where they are
+/// right beside it, as with the label of a thermometer on another body.
+/// @param claims  x of all claims of each hypothesis. @param of_interest  as Fitter::fit()
+void fit_from_scenario(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
+                       const std::vector<std::size_t>& which, double of_interest, std::vector<Fit>& fits) {
+  for_each_index(
+      which.size(), [&] { return Twin::Workspace(fitter.twin()); },
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        const auto& [hypothesis, claims] = hypotheses[which[i]];
+        Fit& fit = fits[which[i]];
+        Fit other;
+        const Eigen::VectorXd start = joined(Eigen::VectorXd::Zero(fitter.n_nuisance()), claims);
+        if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest); }) &&
+            other.log_evidence > fit.log_evidence)
+          fit = std::move(other);
+      });
+}
+
+/// Full fits of laws on top of a hypothesis.
+struct Trials {
+  const Ground& ground;
+  const Hypothesis& base;
+  const Fit& base_fit;
+  KnownFits* known;  ///< null: all are fitted anew, from where scatter was settled last
+  bool of_statements =
+      false;  ///< what does not bring what its statement does is fitted from where the scenario stands, too; labels are in any case
+  std::vector<FittedClaim> fitted = {};
+  [[nodiscard]] double gain(const FittedClaim& f) const { return f.fit.log_evidence - base_fit.log_evidence; }
+  /// Laws that may stand beside the hypothesis, by what linear theory says that they bring.
+  [[nodiscard]] std::vector<Score> list() const {
+    std::vector<Score> all = scores(ground.fitter, ground.candidates, ground.columns, base, base_fit);
+    std::erase_if(all, [&](const Score& s) { return !(s.gain > -1e200) || ground.overlaps(base, s.candidate); });
+    return all;
   }
-  const std::size_t n_labels = put_labels_first(candidates, list, chosen);
-  const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
-  std::vector<FittedClaim> fitted;
-  double best_gain = 0.0;  // of those fitted
-  const auto is_hopeless = [&](std::size_t i) { return i >= n_labels && !(chosen[i].gain > kHopeless * best_gain - kHope); };
-  for (std::size_t from = 0; from < chosen.size() && !is_hopeless(from);) {
-    if (listener.wants_end()) break;
-    listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
+  /// What a law must bring to be what is stated [nats].
+  [[nodiscard]] double must_bring(std::size_t candidate) const {
+    const auto stated = ground.of_place.find(ground.names[candidate]);
+    return stated == ground.of_place.end() ? 0.0 : stated->second.evidence - kBetter / ground.power;
+  }
+  void fit(std::span<const Score> laws) {
+    const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - ground.fitter.n_nuisance());
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
-    std::vector<FittedClaim> batch;
-    const std::size_t end =
-        from < n_labels
-            ? n_labels
-            : chosen.size();  // labels by themselves: whether there is hope for the others is asked as without them
-    for (; from < end && jobs.size() < kTogether; ++from) {
-      const Score& s = chosen[from];
-      Hypothesis tried = with(base, claim_of(candidates, s));
+    for (const Score& s : laws) {
+      Hypothesis tried = with(base, claim_of(ground.candidates, s));
       if (const Fit* fit = known ? known->find(tried) : nullptr) {
-        batch.push_back({tried.back(), *fit});
+        fitted.push_back({tried.back(), *fit});
       } else {
         jobs.emplace_back(std::move(tried), joined(base_x, s.start));
       }
     }
-    std::vector<Fit> fits = fit_all(fitter, jobs, base_fit.misfit);
+    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit);
+    const bool moved = of_statements && have_moved(ground.fitter, base_fit);
+    std::vector<std::size_t> again;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      if (jobs[i].first.back().all_or_nothing)
-        fit_from_scenario(fitter, jobs[i].first, jobs[i].second, base_fit.misfit, fits[i]);
+      const Claim& claim = jobs[i].first.back();
+      const double gained = fits[i].log_evidence - base_fit.log_evidence;
+      if (claim.all_or_nothing || (moved && !(gained > must_bring(claim.candidate)))) again.push_back(i);
+    }
+    fit_from_scenario(ground.fitter, jobs, again, base_fit.misfit, fits);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (known && !fits[i].prediction.empty()) known->keep(jobs[i].first, fits[i]);
-      batch.push_back({jobs[i].first.back(), std::move(fits[i])});
-    }
-    for (FittedClaim& f : batch) {
-      best_gain = std::max(best_gain, f.fit.log_evidence - base_fit.log_evidence);
-      f.fit.log_evidence -= law_price(candidates[f.claim.candidate]);
-      fitted.push_back(std::move(f));
+      fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
     }
   }
-  std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
-  std::sort(fitted.begin(), fitted.end(),
-            [](const FittedClaim& a, const FittedClaim& b) { return a.fit.log_evidence > b.fit.log_evidence; });
-  // one law a candidate
-  std::vector<FittedClaim> unique;
-  for (FittedClaim& f : fitted) {
-    const bool seen = std::any_of(unique.begin(), unique.end(),
-                                  [&](const FittedClaim& u) { return u.claim.candidate == f.claim.candidate; });
-    if (!seen) unique.push_back(std::move(f));
+  /// Best first, one law a candidate.
+  [[nodiscard]] std::vector<FittedClaim> best_first() && {
+    std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
+    const auto value = [&](const FittedClaim& f) {
+      return f.fit.log_evidence - law_price(ground.candidates[f.claim.candidate]);
+    };
+    std::sort(fitted.begin(), fitted.end(), [&](const FittedClaim& a, const FittedClaim& b) { return value(a) > value(b); });
+    std::vector<FittedClaim> unique;
+    for (FittedClaim& f : fitted) {
+      const bool seen = std::any_of(unique.begin(), unique.end(),
+                                    [&](const FittedClaim& u) { return u.claim.candidate == f.claim.candidate; });
+      if (!seen) unique.push_back(std::move(f));
+    }
+    return unique;
   }
-  return unique;
+};
+
+/// The names of one place that are still to be fitted.
+class NamesOfPlace {
+ public:
+  NamesOfPlace(const Ground::OfPlace& stated, const std::vector<Candidate>& candidates)
+      : stated_(stated), candidates_(candidates) {}
+  void add(const Score& law) { left_.push_back(law); }  ///< best first
+  [[nodiscard]] bool is_open() const { return next() != left_.end(); }
+  [[nodiscard]] double quotient() const { return stated_.probability / static_cast<double>(n_taken_ + 1); }
+  Score take() {
+    const auto law = next();
+    Score taken = *law;
+    left_.erase(law);
+    ++n_taken_;
+    ++let_down_[family_of(taken.candidate, taken.variant)];  // until it is fitted
+    return taken;
+  }
+  /// @param hoped  what linear theory said that the law would bring. @param gain  that it brought. @param must_bring  from which on it is what is stated
+  void learn(const Score& hoped, double gain, double must_bring) {
+    best_ = std::max(best_, gain);
+    answered_ = answered_ || gain > must_bring;
+    if (gain > kHopeless * hoped.gain) --let_down_[family_of(hoped.candidate, hoped.variant)];
+  }
+
+ private:
+  /// Laws of a candidate that add the same to the machine, whenever and in whichever records.
+  using Family = std::pair<std::size_t, std::string>;
+  [[nodiscard]] Family family_of(std::size_t candidate, std::size_t variant) const {
+    return {candidate, candidates_[candidate].variants[variant].adds};
+  }
+  /// The likeliest by linear theory, of those of which that was wrong least often.
+  [[nodiscard]] std::vector<Score>::const_iterator next() const {
+    const auto n_let_down = [&](const Score& law) {
+      const auto n = let_down_.find(family_of(law.candidate, law.variant));
+      return n == let_down_.end() ? 0 : n->second;
+    };
+    auto first = left_.end();
+    int least = 0;
+    for (auto law = left_.begin(); law != left_.end(); ++law) {
+      if (answered_ && !(law->gain > kHopeless * best_ - kHope)) continue;
+      const int n = n_let_down(*law);
+      if (first == left_.end() || n < least) first = law, least = n;
+    }
+    return first;
+  }
+  Ground::OfPlace stated_;
+  const std::vector<Candidate>& candidates_;
+  std::vector<Score> left_;
+  std::map<Family, int> let_down_;
+  std::size_t n_taken_ = 0;
+  double best_ = 0.0;
+  bool answered_ = false;
+};
+
+/// Names of statements on top of a hypothesis, fitted in full, best first. Fits are shared out over the places of statements in proportion to their probabilities (D'Hondt), until one
+/// brings what the statement does, and as long as others may bring as much.
+std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
+                                   KnownFits* known, const Listener& listener) {
+  Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known, .of_statements = true};
+  if (base_fit.prediction.empty()) return {};
+  const std::vector<Score> list = trials.list();
+  std::vector<Score> first;
+  put_labels_first(ground.candidates, list, first);
+  trials.fit(first);
+  std::map<StatedPlace, NamesOfPlace> places;
+  for (const Score& s : list) {
+    if (ground.candidates[s.candidate].variants[s.variant].all_or_nothing) continue;
+    const StatedPlace& name = ground.names[s.candidate];
+    const auto stated = ground.of_place.find(name);
+    if (stated != ground.of_place.end()) places.try_emplace(name, stated->second, ground.candidates).first->second.add(s);
+  }
+  for (int n_tried = 0; n_tried < n && !listener.wants_end();) {
+    listener.share(static_cast<double>(n_tried) / n);
+    std::vector<Score> next;
+    while (next.size() < kTogether && n_tried < n) {
+      const auto quotient = [](const auto& place) { return place.second.is_open() ? place.second.quotient() : 0.0; };
+      const auto likeliest = std::max_element(places.begin(), places.end(),
+                                              [&](const auto& a, const auto& b) { return quotient(a) < quotient(b); });
+      if (likeliest == places.end() || !likeliest->second.is_open()) break;
+      next.push_back(likeliest->second.take());
+      ++n_tried;
+    }
+    if (next.empty()) break;
+    const std::size_t before = trials.fitted.size();
+    trials.fit(next);
+    for (const Score& law : next) {
+      const auto f = std::find_if(trials.fitted.begin() + static_cast<std::ptrdiff_t>(before), trials.fitted.end(),
+                                  [&](const FittedClaim& done) {
+                                    return done.claim.candidate == law.candidate && done.claim.variant == law.variant;
+                                  });
+      places.at(ground.names[law.candidate]).learn(law, trials.gain(*f), trials.must_bring(law.candidate));
+    }
+  }
+  return std::move(trials).best_first();
+}
+
+/// What may stand in a claim's place, fitted in full, best first: the best laws by linear theory, and the best of each effect, though the first n be of others: which kind it is must not hang
+/// on linear theory.
+std::vector<FittedClaim> fit_instead(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
+                                     KnownFits* known, const Listener& listener) {
+  if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
+  const std::vector<Candidate>& candidates = ground.candidates;
+  Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known};
+  const std::vector<Score> list = trials.list();
+  std::vector<Score> chosen;
+  for (const Score& s : list) {  // other laws of a good candidate count as well, but only some
+    if (candidates[s.candidate].variants[s.variant].all_or_nothing) continue;  // of labels only the best, below
+    const auto n_same =
+        std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
+    const bool is_full = static_cast<int>(chosen.size()) >= n;
+    const bool is_new_kind = std::none_of(chosen.begin(), chosen.end(), [&](const Score& c) {
+      return candidates[c.candidate].effect == candidates[s.candidate].effect;
+    });
+    if (is_full ? is_new_kind : n_same < kLeastLaws) chosen.push_back(s);
+  }
+  const std::size_t n_labels = put_labels_first(candidates, list, chosen);
+  trials.fit({chosen.data(), n_labels});
+  double best_gain = 0.0;
+  for (std::size_t from = n_labels; from < chosen.size() && !listener.wants_end();) {
+    for (const FittedClaim& f : trials.fitted) best_gain = std::max(best_gain, trials.gain(f));
+    if (!(chosen[from].gain > kHopeless * best_gain - kHope)) break;
+    listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
+    const std::size_t n_next = std::min(kTogether, chosen.size() - from);
+    trials.fit({chosen.data() + from, n_next});
+    from += n_next;
+  }
+  return std::move(trials).best_first();
 }
 
 /// A hypothesis without one of its claims, and the x of the others.
@@ -216,18 +399,6 @@ std::pair<Hypothesis, Eigen::VectorXd> without_claim(const Hypothesis& hypothesi
   Remainder left = without_claims(hypothesis, {claim}, n_nuisance);
   const Eigen::VectorXd x = fit.x(left.x);
   return {std::move(left.hypothesis), x.tail(x.size() - n_nuisance)};
-}
-
-/// The scenario as it stands, nothing fitted.
-Fit fit_at_zero(const Fitter& fitter) {
-  Fit fit;
-  fit.x = Eigen::VectorXd::Zero(fitter.n_nuisance());
-  Twin::Workspace workspace(fitter.twin());
-  fit.prediction = fitter.predict({}, fit.x, workspace);
-  fit.residual = fitter.comparison().measured() - fitter.comparison().whitened(fit.prediction);
-  fit.misfit = 0.5 * fit.residual.squaredNorm();
-  fit.slopes.resize(fit.residual.size(), 0);
-  return fit;
 }
 
 /// Takes scatter's slopes where a fit stands and fits again, until nothing is gained by it: what a fit has left to gain, the next claim would be thanked for.
@@ -255,97 +426,114 @@ void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   }
 }
 
-double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
-  double price = 0.0;
-  for (const Claim& c : hypothesis) price += law_price(candidates[c.candidate]);
-  return price;
+/// What hypotheses are worth, their prices paid.
+struct Worth {
+  const SearchOptions& options;
+  const Fit& without;           ///< the scenario's own numbers alone
+  std::size_t n_catalogue = 1;  ///< what each claim was chosen from
+  [[nodiscard]] double evidence(const std::vector<Candidate>& candidates, const Fit& fit, const Hypothesis& h) const {
+    double laws = 0.0;
+    for (const Claim& c : h) laws += law_price(candidates[c.candidate]);
+    return fit.log_evidence - std::log(static_cast<double>(n_catalogue)) * static_cast<double>(h.size()) - laws;
+  }
+  [[nodiscard]] double explained(const Fit& fit) const { return without.misfit - fit.misfit; }
+  /// Whether a claim more is: evidence counts as that of statements does, and a further claim has the odds of a further statement.
+  [[nodiscard]] bool is_worth_it(double gain, const Fit& with, std::size_t n_beside) const {
+    const double odds = n_beside == 0 ? 1.0 : options.prior.one_more / (1.0 - options.prior.one_more);
+    return temper(explained(with), options.prior.law_error) * gain + std::log(odds) > 0.0;
+  }
+};
+
+/// That something is wrong at one of some places, of statements that exclude each other.
+double probability_of(const Posterior& stated, const std::set<StatedPlace>& places) {
+  double sum = 0.0;
+  for (const Stated& s : stated.stated) sum += places.contains({s.says.quantity, s.says.place}) ? s.probability : 0.0;
+  return std::min(1.0, sum);
 }
 
-/// A hypothesis by the candidates of another list, to which the laws that it does not have are added.
-Hypothesis carried_over(const SearchResult& from, std::vector<Candidate>& to) {
-  Hypothesis hypothesis;
-  for (Claim claim : from.hypothesis) {
-    const Candidate& known = from.candidates[claim.candidate];
-    const Variant& law = known.variants[claim.variant];
-    auto same = std::find_if(to.begin(), to.end(),
-                             [&](const Candidate& c) { return c.effect == known.effect && c.where == known.where; });
-    if (same == to.end()) same = to.insert(to.end(), {.effect = known.effect, .where = known.where, .variants = {}});
-    auto variant = std::find_if(same->variants.begin(), same->variants.end(), [&](const Variant& v) {
-      return v.law == law.law && v.in == law.in && !v.seen && !law.seen;  // times that were seen are of their own law
-    });
-    if (variant == same->variants.end()) variant = same->variants.insert(same->variants.end(), law);
-    claim.candidate = static_cast<std::size_t>(same - to.begin());
-    claim.variant = static_cast<std::size_t>(variant - same->variants.begin());
-    hypothesis.push_back(std::move(claim));
+using EvidenceOfPlace = std::map<StatedPlace, double>;  ///< over nothing in its place [nats]
+using EvidenceOfName = std::map<std::size_t, double>;   ///< the same, by candidate
+
+/// Statements whose names were fitted in full are as likely as these fits make them: linear theory says less of them where a law is not linear in its size. The best of them counts
+/// with what it has over linear theory, in its own place or, where that is not listed, over the best that is; the others by what their fits are behind it.
+/// @param power  that evidence counts with between statements
+void take_fits(const EvidenceOfPlace& full, const std::map<StatedPlace, Stated>& said, double power, Posterior& stated) {
+  if (full.empty() || stated.stated.empty()) return;
+  const auto best =
+      std::max_element(full.begin(), full.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto listed = [&](const StatedPlace& place) {
+    return std::find_if(stated.stated.begin(), stated.stated.end(),
+                        [&](const Stated& s) { return s.says.quantity == place.first && s.says.place == place.second; });
+  };
+  const auto own = listed(best->first);
+  const Stated& held_against = own != stated.stated.end() ? *own : stated.stated.front();
+  const double of_best =
+      std::log(held_against.probability) + power * std::max(0.0, best->second - held_against.log_evidence);
+  std::vector<double> logarithm;  // of what each weighs
+  for (const Stated& s : stated.stated) logarithm.push_back(std::log(s.probability));
+  for (const auto& [place, evidence] : full) {
+    const double weighs = of_best - power * (best->second - evidence);
+    const auto s = listed(place);
+    if (s != stated.stated.end()) {
+      double& of = logarithm[static_cast<std::size_t>(s - stated.stated.begin())];
+      of = std::max(of, weighs);
+      continue;
+    }
+    stated.stated.push_back(said.at(place));
+    stated.stated.back().probability = 0.0;
+    stated.stated.back().log_evidence = evidence;
+    logarithm.push_back(weighs);
   }
-  return hypothesis;
+  const double largest = std::max(0.0, *std::max_element(logarithm.begin(), logarithm.end()));
+  double listed_before = stated.nothing, sum = 0.0;
+  for (std::size_t i = 0; i < stated.stated.size(); ++i) {
+    listed_before += stated.stated[i].probability;
+    sum += stated.stated[i].probability = std::exp(logarithm[i] - largest);
+  }
+  const double rest = std::exp(-largest);
+  sum += rest * (stated.nothing + std::max(0.0, 1.0 - listed_before));
+  for (Stated& s : stated.stated) s.probability /= sum;
+  stated.nothing *= rest / sum;
+  std::stable_sort(stated.stated.begin(), stated.stated.end(),
+                   [](const Stated& a, const Stated& b) { return a.probability > b.probability; });
+}
+
+/// The odds of one statement beside some claims.
+StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_claims, double explained) {
+  StatementOptions one = prior;
+  one.most = 1;
+  one.nothing = n_claims == 0 ? prior.nothing : 1.0 - prior.one_more;
+  one.explained = explained;
+  one.observed = true;
+  return one;
 }
 
 }  // namespace
 
-Bars bars_of(const Chance& chance, const SearchOptions& options) {
-  const double suspected = chance.gain_at(options.wrongly_suspected), named = chance.gain_at(options.wrongly_named);
-  Bars bars{.suspected = {},
-            .named = std::max(named, options.least_named),
-            .named_beside = std::max(named, options.least_named_beside),
-            .named_timed = std::max(named, options.least_named_timed)};
-  for (double least : options.least_gain) bars.suspected.push_back(std::max(suspected, least));
-  return bars;
-}
-
-SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
-                    const Listener& listener, const SearchResult* before) {
+SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, const SearchOptions& options,
+                    const Listener& listener) {
   SearchResult result;
-  double price = 0.0;
-  const auto add = [&](const std::vector<Event>& events) {
-    std::vector<Law> laws;
-    for (const auto& [candidate, variant] : add_events(candidates, events, options.without))
-      laws.push_back({candidate, variant});
-    price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
-    return laws;
-  };
-  const auto evidence = [&](const Fit& f, const Hypothesis& h) {
-    return f.log_evidence - price * static_cast<double>(h.size());
-  };
-
+  result.n_catalogue = std::max<std::size_t>(1, catalogue.size());
   Hypothesis best;
   listener.begin("fitting the scenario's own numbers");
   Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
   if (best_fit.prediction.empty())
     throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
-  // A loud effect bends scatter out of shape: candidates are then weighed where the scenario stands, not where scatter was bent to.
-  const bool is_bent =
-      best_fit.x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBent * static_cast<double>(fitter.n_nuisance());
-  Fit weighed_at = best_fit;
-  if (is_bent) {
-    weighed_at = fit_at_zero(fitter);
-    weighed_at.log_evidence = best_fit.log_evidence;
-  } else {
-    settle_well(fitter, {}, best_fit);
-    weighed_at = best_fit;
-  }
+  settle_well(fitter, {}, best_fit);
   result.without = best_fit;
-  listener.begin("looking for windows of time");
-  add(events_seen(fitter.twin(), fitter.runs(), listener));
-  add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at), listener));
-  const Hypothesis begun = is_bent && before ? carried_over(*before, candidates) : Hypothesis{};
-  listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
-  std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
-  double best_value = best_fit.log_evidence;
-  const auto add_of_some_records = [&](const Hypothesis& beside, const Fit& at) {
-    if (at.prediction.empty()) return;
-    const std::vector<Law> laws = add_of_chosen_records(fitter, candidates, columns, projection_of(fitter, beside, at));
-    for (Signature& s : signatures(fitter, candidates, laws, beside, at)) columns.push_back(std::move(s));
-  };
-  add_of_some_records({}, weighed_at);
-  result.scores = scores(fitter, candidates, columns, {}, weighed_at);
-  Chances chances = chances_of(fitter, candidates, columns, weighed_at);
-  result.chance = chances.best;
-  result.rarest = chances.rarest;
-  result.bars = bars_of(result.chance, options);
-  const auto must_gain = [&](std::size_t claim) { return result.bars.suspected.at(claim); };  // counted from 0
+  const Worth worth{.options = options, .without = result.without, .n_catalogue = result.n_catalogue};
+  Ground ground{.fitter = fitter, .candidates = {}, .names = {}, .said = {}, .columns = {}};
   KnownFits known;
-
+  double best_value = best_fit.log_evidence;
+  const auto settle = [&] {  // what comes next starts from here
+    if (have_moved(fitter, best_fit)) {
+      std::vector<Fit> fits = {best_fit};
+      fit_from_scenario(fitter, {{best, best_fit.claim_x(fitter.n_nuisance())}}, {0}, Fitter::kAny, fits);
+      best_fit = std::move(fits.front());
+    }
+    settle_well(fitter, best, best_fit);
+    best_value = worth.evidence(ground.candidates, best_fit, best);
+  };
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
     bool any = false;
     for (int turn = 0; turn < 3 && !listener.wants_end(); ++turn) {
@@ -353,12 +541,10 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
-        add_of_some_records(others, fit);
-        const std::vector<FittedClaim> replacements =
-            best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true);
+        const std::vector<FittedClaim> replacements = fit_instead(ground, others, fit, options.refits, &known, listener);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
-        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
+        const double v = worth.evidence(ground.candidates, replacements.front().fit, exchanged);
         if (!(v > best_value + kBetter)) continue;
         best = exchanged;
         best_fit = replacements.front().fit;
@@ -370,160 +556,190 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     }
     return any;
   };
-  std::vector<ScoredPair> pairs;
-  for (int round = 0; static_cast<int>(best.size()) < options.most_effects && !listener.wants_end(); ++round) {
-    listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
-                               best.empty() ? "" : fmt::format(" beside {}", best.size())));
-    if (round > 0) add_of_some_records(best, best_fit);
-    std::vector<FittedClaim> additions = best_additions(
-        fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known, listener);
-    if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
-      fitter.settle({}, best_fit);
-      const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
-      for (FittedClaim& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr, listener))
-        additions.push_back(std::move(f));
-      std::stable_sort(additions.begin(), additions.end(),
-                       [](const FittedClaim& a, const FittedClaim& b) { return a.fit.log_evidence > b.fit.log_evidence; });
-    }
-    if (round == 0) pairs = best_pairs(candidates, columns, projection_of(fitter, {}, weighed_at), kMostPairs);
-    Hypothesis tried;
-    Fit tried_fit;
-    double value = -1e300;
-    if (!additions.empty()) {
-      tried = with(best, additions.front().claim);
-      tried_fit = std::move(additions.front().fit);
-      value = evidence(tried_fit, tried) - laws_price(candidates, best);
-    }
-    if (round == 0 && !begun.empty()) {
-      Fit fit = fit_all(fitter, {{begun, before->fit.claim_x(fitter.n_nuisance())}}).front();
-      const double begun_value = evidence(fit, begun) - laws_price(candidates, begun);
-      if (!fit.prediction.empty() && begun_value > value) {
-        tried = begun;
-        tried_fit = std::move(fit);
-        value = begun_value;
-      }
-    }
-    if (!(value > best_value + must_gain(best.size()))) break;
+  while (static_cast<int>(best.size()) < options.most_effects && !listener.wants_end()) {
+    listener.begin(best.empty() ? "weighing statements" : fmt::format("weighing statements beside {}", best.size()));
+    const StatedBeside beside(fitter, best, best_fit);
+    Posterior stated = beside.posterior(of_one_beside(options.prior, best.size(), worth.explained(best_fit)));
+    if (best.empty() && !(stated.nothing < kEvenOdds))
+      stated = beside.posterior(options.prior);  // several may hide one another
+    double missing = 1.0 - stated.nothing;
+    for (const Stated& s : stated.stated) missing -= ground.is_claimed(best, s.says) ? s.probability : 0.0;
+    if (best.empty()) result.statements = stated;
+    if (!(missing >= kEvenOdds)) break;
+    ground.power = stated.power;
+    ground.of_place.clear();
+    for (const Stated& s : stated.stated) ground.of_place[{s.says.quantity, s.says.place}] = {s.probability, s.log_evidence};
+    ground.name_anew(stated, best);
+    const std::vector<Law> laws =
+        ground.add(stated, named_by(stated, catalogue, fitter.twin(), fitter.runs(), options.without));
+    listener.begin(fmt::format("fitting names of statements: {} candidates", ground.candidates.size()));
+    for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, listener))
+      ground.columns.push_back(std::move(s));
+    std::vector<FittedClaim> additions = fit_names(ground, best, best_fit, options.refits, &known, listener);
+    if (additions.empty()) break;
+    Hypothesis tried = with(best, additions.front().claim);
+    const double value = worth.evidence(ground.candidates, additions.front().fit, tried);
+    if (!worth.is_worth_it(value - best_value, additions.front().fit, best.size())) break;
     best = std::move(tried);
-    best_fit = std::move(tried_fit);
-    best_value = value;
-    settle_well(fitter, best, best_fit);  // what comes next starts from here
-    best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    if (is_bent) {
-      columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit, listener);
-    } else if (round == 0) {  // windows that the first cause hid
-      const std::vector<Law> more =
-          add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
-      for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
-      best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    }
-    exchange();
-  }
-  if (!best.empty() && options.most_effects > 1 && !listener.wants_end()) {
-    listener.begin("weighing pairs of causes");
-    std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
-    for (const ScoredPair& p : pairs) {
-      jobs.emplace_back(with(with({}, claim_of(candidates, p.first)), claim_of(candidates, p.second)),
-                        joined(p.first.start, p.second.start));
-    }
-    std::vector<Fit> fits = fit_all(fitter, jobs);
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      if (fits[i].prediction.empty()) continue;
-      const double value = evidence(fits[i], jobs[i].first) - laws_price(candidates, jobs[i].first);
-      // where one cause alone was found, the second one must bring what a second one must
-      if (!(value > best_value + (best.size() < 2 ? must_gain(1) : kBetter)) || has_idle_factor(jobs[i].first, fits[i]))
-        continue;
-      best = std::move(jobs[i].first);
-      best_fit = std::move(fits[i]);
-      best_value = value;
-    }
+    best_fit = std::move(additions.front().fit);
+    settle();
+    if (exchange()) settle();
   }
   for (int turn = 0; turn < 2 && !best.empty() && !listener.wants_end(); ++turn) {
     listener.begin("settling the numbers");
-    settle_well(fitter, best, best_fit);
-    best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit, listener);
+    settle();
+    ground.columns = signatures(fitter, ground.candidates, laws_of(ground.candidates), best, best_fit, listener);
+    known = {};
     if (!exchange()) break;
   }
-
-  // Prune, and look for others in each one's place.
-  listener.begin(best.empty() ? "nothing to add" : "looking for other explanations");
-  bool is_pruned = false;
-  for (std::size_t i = 0; i < best.size();) {
+  for (std::size_t i = 0; i < best.size();) {  // prune
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     Fit fit = fit_all(fitter, {{others, x}}).front();
     // a fit that starts where the cause was may stay far from its best
     if (others.empty() && result.without.log_evidence > fit.log_evidence) fit = result.without;
-    const double without_value = evidence(fit, others) - laws_price(candidates, others);
-    if (!(best_value > without_value + must_gain(best.size() - 1))) {
-      best = others;
-      best_fit = fit;
-      best_value = without_value;
-      is_pruned = true;
-      i = 0;
-      result.findings.clear();
+    const double gain = best_value - worth.evidence(ground.candidates, fit, others);
+    if (worth.is_worth_it(gain, best_fit, best.size() - 1)) {
+      result.findings.push_back({.claim = best[i], .log_evidence_gain = gain});
+      ++i;
       continue;
     }
-    Finding finding{.claim = best[i], .log_evidence_gain = best_value - without_value};
-    const auto rival = [&](const Claim& c, double value) {
-      return Rival{candidates[c.candidate].effect, candidates[c.candidate].where, value};
-    };
-    std::vector<Rival> rivals = {rival(best[i], best_value)};
-    std::vector<Finding::Alternative> others_fitted = {{}};  // beside `rivals`; the first is the claim
-    for (FittedClaim& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true)) {
-      if (f.claim.candidate == best[i].candidate) continue;
-      const Hypothesis instead = with(others, f.claim);
-      double value = evidence(f.fit, instead) - laws_price(candidates, others);
-      if (value > best_value - kNearBest) {
-        const double law_nats = law_price(candidates[f.claim.candidate]);
-        f.fit.log_evidence += law_nats;  // which best_additions() has taken off
-        fit_on(fitter, instead, f.fit);
-        f.fit.log_evidence -= law_nats;
-        value = evidence(f.fit, instead) - laws_price(candidates, others);
-      }
-      if (f.fit.prediction.empty()) continue;  // no solution near it
-      rivals.push_back(rival(f.claim, value));
-      rivals.back().says_the_same =
-          says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit);
-      others_fitted.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
-    }
-    finding.odds = odds_of(rivals);
-    const std::vector<double> shares = shares_of(rivals);
-    finding.share = shares.front();
-    for (std::size_t r : open_rivals(rivals)) {
-      others_fitted[r].share = shares[r];
-      finding.alternatives.push_back(std::move(others_fitted[r]));
-    }
-    result.findings.push_back(std::move(finding));
-    ++i;
+    best_value -= gain;
+    best = others;
+    best_fit = fit;
+    i = 0;
+    result.findings.clear();
   }
-  if (best.empty() && options.most_effects > 0 && !listener.wants_end()) {
-    if (is_bent || is_pruned) {
-      settle_well(fitter, {}, best_fit);
-      columns = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
-      result.scores = scores(fitter, candidates, columns, {}, best_fit);
-      chances = chances_of(fitter, candidates, columns, best_fit);
-      result.rarest = chances.rarest;
-      result.without = best_fit;
-    }
-    const NothingFound nothing{fitter, candidates, result.scores, chances, best_fit};
-    if (std::optional<FaintCause> faint = faint_cause(nothing, options.wrongly_suspected_faint)) {
-      best = {faint->finding.claim};
-      best_fit = std::move(faint->fit);
-      result.findings = {std::move(faint->finding)};
-    }
-  }
-  for (Finding& f : result.findings) {
-    const bool wants_more = best.size() > 1 || f.claim.price_nats > kRareOrChosen;
-    const bool is_timed =
-        std::any_of(f.claim.knobs.begin(), f.claim.knobs.end(), [](const Knob& k) { return k.is_time && !k.is_jump(); });
-    const double bar = is_timed ? result.bars.named_timed : wants_more ? result.bars.named_beside : result.bars.named;
-    f.is_named = !f.faint_chance && f.log_evidence_gain >= bar;
-  }
-  result.candidates = std::move(candidates);
+  result.names = std::move(ground.names);
+  result.said = std::move(ground.said);
+  result.candidates = std::move(ground.candidates);
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);
   return result;
+}
+
+namespace {
+
+/// What was fitted in a claim's place; the claim itself first.
+struct InItsPlace {
+  std::vector<Rival> rivals;
+  std::vector<Finding::Alternative> fitted;
+  EvidenceOfName full;  ///< what each of these brings
+};
+
+/// Looks for others in a claim's place, each as well fitted as the claim itself.
+InItsPlace find_rivals(const Ground& ground, const Worth& worth, const SearchResult& result, std::size_t i,
+                       const Hypothesis& others, const Fit& fit, const Listener& listener) {
+  const std::vector<Candidate>& candidates = ground.candidates;
+  const Claim& claim = result.hypothesis[i];
+  const double best_value = worth.evidence(candidates, result.fit, result.hypothesis),
+               without_value = best_value - result.findings[i].log_evidence_gain;
+  const auto rival = [&](const Claim& c, double value) {
+    return Rival{candidates[c.candidate].effect, candidates[c.candidate].where, value};
+  };
+  InItsPlace in{.rivals = {rival(claim, best_value)},
+                .fitted = {{.claim = claim, .fit = {}, .log_evidence_gain = result.findings[i].log_evidence_gain}},
+                .full = {{claim.candidate, result.fit.log_evidence - fit.log_evidence}}};
+  for (FittedClaim& f : fit_instead(ground, others, fit, worth.options.refits, nullptr, listener)) {
+    if (f.claim.candidate == claim.candidate) continue;
+    const Hypothesis instead = with(others, f.claim);
+    if (worth.evidence(candidates, f.fit, instead) > best_value - kNearBest) fit_on(ground.fitter, instead, f.fit);
+    if (f.fit.prediction.empty()) continue;  // no solution near it
+    in.full[f.claim.candidate] = f.fit.log_evidence - fit.log_evidence;
+    const double value = worth.evidence(candidates, f.fit, instead);
+    in.rivals.push_back(rival(f.claim, value));
+    in.rivals.back().says_the_same =
+        says_the_same(ground.fitter, candidates[claim.candidate], result.fit, candidates[f.claim.candidate], f.fit);
+    in.fitted.push_back({.claim = std::move(f.claim), .fit = std::move(f.fit), .log_evidence_gain = value - without_value});
+  }
+  return in;
+}
+
+}  // namespace
+
+void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& result, const Listener& listener) {
+  const auto stated_beside = [&](const Hypothesis& hypothesis, const Fit& fit, StatementOptions prior) {
+    fitter.settle(hypothesis, fit);
+    const StatedBeside beside(fitter, hypothesis, fit);
+    prior.observed = true;
+    prior.left = beside.left(result.fit);
+    return beside.posterior(prior);
+  };
+  if (result.findings.empty()) {
+    if (result.statements.nothing < kEvenOdds) result.statements = stated_beside({}, result.without, options.prior);
+    return;
+  }
+  const Worth worth{.options = options, .without = result.without, .n_catalogue = result.n_catalogue};
+  listener.begin("looking for other explanations");
+  Ground ground{
+      .fitter = fitter, .candidates = result.candidates, .names = result.names, .said = result.said, .columns = {}};
+  ground.columns =
+      signatures(fitter, ground.candidates, laws_of(ground.candidates), result.hypothesis, result.fit, listener);
+  std::vector<std::pair<Hypothesis, Fit>> without_one;
+  std::vector<InItsPlace> in_place;
+  for (std::size_t i = 0; i < result.findings.size(); ++i) {
+    const auto [others, x] = without_claim(result.hypothesis, result.fit, i, fitter.n_nuisance());
+    without_one.emplace_back(others, others.empty() ? result.without : fit_all(fitter, {{others, x}}).front());
+    in_place.push_back(find_rivals(ground, worth, result, i, others, without_one.back().second, listener));
+  }
+  listener.begin("weighing the causes as statements");
+  std::vector<Posterior> slots = {{.nothing = result.statements.nothing, .stated = {}}};
+  for (std::size_t i = 0; i < result.findings.size(); ++i) {
+    const auto& [others, fit] = without_one[i];
+    if (fit.prediction.empty()) continue;
+    slots.push_back(stated_beside(others, fit, of_one_beside(options.prior, others.size(), worth.explained(fit))));
+    const auto place_of = [&](std::size_t candidate) {  // as it is stated here, where it is
+      const Candidate& c = result.candidates[candidate];
+      const Stated* s = stated_as(slots.back(), c.effect, c.where);
+      return s ? StatedPlace{s->says.quantity, s->says.place} : result.names[candidate];
+    };
+    EvidenceOfPlace of_places;
+    std::map<std::size_t, StatedPlace> place;
+    for (const auto& [candidate, evidence] : in_place[i].full) {
+      double& of = of_places.try_emplace(place[candidate] = place_of(candidate), evidence).first->second;
+      of = std::max(of, evidence);
+    }
+    take_fits(of_places, result.said, slots.back().power, slots.back());
+    const Posterior& stated = slots.back();
+    const std::vector<Rival>& rivals = in_place[i].rivals;
+    const std::vector<double> shares = shares_of(rivals);
+    const auto place_of_rival = [&](std::size_t r) { return place.at(in_place[i].fitted[r].claim.candidate); };
+    Finding& finding = result.findings[i];
+    finding.share = shares.front();
+    finding.probability = probability_of(stated, {place_of_rival(0)});
+    std::set<StatedPlace> said, of_kind;
+    for (std::size_t r = 0; r < rivals.size(); ++r) {
+      if (r == 0 || rivals[r].says_the_same) said.insert(place_of_rival(r));
+      if (rivals[r].says_the_same || rivals[r].effect == rivals.front().effect) of_kind.insert(place_of_rival(r));
+    }
+    finding.odds = odds_of(rivals);
+    finding.odds.kind =
+        std::min(finding.odds.kind, probability_of(stated, of_kind));  // no kind is surer than its statements
+    std::vector<std::size_t> open = open_rivals(rivals);
+    for (std::size_t r : open) said.insert(place_of_rival(r));
+    while (probability_of(stated, said) < kSure) {  // the statement's own rivals
+      std::size_t next = 0;
+      double most = kLeastRival;
+      for (std::size_t r = 1; r < rivals.size(); ++r) {
+        if (said.contains(place_of_rival(r))) continue;
+        if (const double p = probability_of(stated, {place_of_rival(r)}); p > most) most = p, next = r;
+      }
+      if (next == 0) break;
+      open.push_back(next);
+      said.insert(place_of_rival(next));
+    }
+    for (std::size_t r : open) {
+      Finding::Alternative& a = in_place[i].fitted[r];
+      a.share = shares[r];
+      a.probability = probability_of(stated, {place_of_rival(r)});
+      finding.alternatives.push_back(std::move(a));
+    }
+    finding.is_named = probability_of(stated, said) >= kSure;
+  }
+  Posterior more = stated_beside(result.hypothesis, result.fit,
+                                 of_one_beside(options.prior, result.hypothesis.size(), worth.explained(result.fit)));
+  std::erase_if(more.stated, [&](const Stated& s) { return ground.is_claimed(result.hypothesis, s.says); });
+  slots.push_back(std::move(more));
+  result.statements = joined(slots);
 }
 
 }  // namespace driftwright::diagnosis

@@ -16,7 +16,8 @@ constexpr double kNothingLeft = 1e-9;  // of a column's squares: the numbers kno
 constexpr double kSeen = 1e-6;         // squares of a direction of the nuisance that noise does not hide
 constexpr Eigen::Index kPieces = 12;   // steps of an unknown course in a record
 constexpr int kMostWindows = 12;
-constexpr std::size_t kFewRecords = 5;  // of more, choices of no order are left out
+constexpr Eigen::Index kEdgesTried = 16;  // rows that an edge may lie at, in the two cells about it
+constexpr std::size_t kFewRecords = 5;    // of more, choices of no order are left out
 
 double log_mean(const std::vector<double>& terms) {
   const double most = *std::max_element(terms.begin(), terms.end());
@@ -117,6 +118,13 @@ StatementEvidence::Sizes StatementEvidence::sizes(const std::vector<Item>& set) 
   return s;
 }
 
+double StatementEvidence::left(const std::vector<Item>& set) const {
+  const double whole = products(residual_, residual_)(0, 0);
+  if (set.empty()) return whole;
+  const Sizes s = sizes(set);
+  return whole - products(s.columns, residual_).col(0).dot(s.size);
+}
+
 double StatementEvidence::mixed(double squares, double along, double& best_width) const {
   double best = -1e300, sum = 0.0;
   for (double w : options_.widths) {
@@ -152,7 +160,8 @@ std::vector<Scored> StatementEvidence::scored(const std::vector<Item>& set) cons
           g.noalias() -= common.transpose() * (on.covariance * common);
           along.noalias() -= common.transpose() * on.size;
         }
-        score_windows(k, g, along, of_cells[k]);
+        score_windows(k, on, g, along, of_cells[k]);
+        if (space_.cells[k].lasts) return;
         score_several(k, g, along, of_cells[k]);
         score_unknown(k, g, along, of_cells[k]);
       });
@@ -208,6 +217,8 @@ Item StatementEvidence::item(const Scored& s) const {
     const auto& [first, n] = space_.rows[r];
     if (!i.chosen.is_cells) {
       i.columns.x.col(0).segment(first, n) = of_run_[r].x.col(static_cast<Eigen::Index>(s.of));
+    } else if (i.chosen.rows && i.chosen.rows->run == r) {
+      i.columns.x.col(0).segment(first, n) = space_.condensed(r, space_.readings({i.chosen})[r]);
     } else if (n_pieces == 1) {
       i.columns.x.col(0).segment(first, n) = space_.cells[i.chosen.index].runs[r].of_cell * amount;
     } else {
@@ -219,6 +230,17 @@ Item StatementEvidence::item(const Scored& s) const {
   i.columns.nuisance = q_.transpose() * i.columns.x;
   i.width = Eigen::VectorXd::Constant(n_pieces, s.width);
   return i;
+}
+
+std::optional<Scored> StatementEvidence::any_course(const Statement& says) const {
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    const Statement& s = space_.cells[k].says;
+    if (s.quantity != says.quantity || s.place != says.place || s.unit != says.unit || space_.cells[k].lasts) continue;
+    std::vector<Scored> list;
+    score_unknown(k, cells_[k].squares, cells_[k].along, list);
+    return list.back();
+  }
+  return std::nullopt;
 }
 
 Chosen StatementEvidence::chosen(const Scored& s) const {
@@ -243,6 +265,7 @@ Chosen StatementEvidence::chosen(const Scored& s) const {
       c.amount[r].segment(s.first, s.end - s.first).setOnes();
     }
   }
+  c.rows = s.rows;
   return c;
 }
 
@@ -260,6 +283,27 @@ void StatementEvidence::scale(Chosen& c, const Scored& s, const Eigen::VectorXd&
   }
 }
 
+std::vector<StatedWindow> StatementEvidence::windows_of(const Chosen& chosen) const {
+  std::vector<StatedWindow> windows;
+  const auto& runs = space_.cells[chosen.index].runs;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Eigen::VectorXd& amount = chosen.amount[r];
+    const std::vector<double>& edge_s = runs[r].edge_s;
+    for (Eigen::Index from = 0, end = 0; from < amount.size(); from = end + 1) {
+      for (end = from; end < amount.size() && amount[end] != 0.0;) ++end;
+      if (end == from) continue;
+      const auto first = static_cast<std::size_t>(from), last = static_cast<std::size_t>(end);
+      windows.push_back({r, edge_s[first], edge_s[last], edge_s[first + 1] - edge_s[first]});
+      if (chosen.rows && chosen.rows->run == r) {
+        const std::vector<double>& time_s = space_.time_s(r);
+        windows.back().begin_s = time_s[static_cast<std::size_t>(chosen.rows->first)];
+        windows.back().end_s = time_s[std::min(time_s.size() - 1, static_cast<std::size_t>(chosen.rows->end))];
+      }
+    }
+  }
+  return windows;
+}
+
 Statement StatementEvidence::said(const Scored& s) const {
   const Chosen c = chosen(s);
   Statement says = c.is_cells ? space_.cells[c.index].says : space_.columns[c.index].says;
@@ -268,21 +312,22 @@ Statement StatementEvidence::said(const Scored& s) const {
   says.record = space_.record;
   if (!c.is_cells) return says;
   const std::string of = says.law.empty() ? "" : says.law + ", ";
-  const auto& edge = space_.cells[c.index].runs[s.run].edge_s;
-  const auto at_min = [&](Eigen::Index i) { return edge[static_cast<std::size_t>(i)] / 60.0; };
   says.follows = "window";
+  says.windows = windows_of(c);
   switch (s.when) {
     case When::kWindow:
-      says.law = of + fmt::format("{:.4g} to {:.4g} min", at_min(s.first), at_min(s.end));
+      says.law =
+          of + fmt::format("{:.4g} to {:.4g} min", says.windows.front().begin_s / 60.0, says.windows.front().end_s / 60.0);
       break;
     case When::kLasting:
     case When::kLastingOn:
-      says.law = of + fmt::format("from {:.4g} min on", at_min(s.first));
+      says.law = of + fmt::format("from {:.4g} min on", says.windows.front().begin_s / 60.0);
       break;
     case When::kWindows:
       says.law = of + fmt::format("{} windows", s.n_windows);
       break;
     default:
+      says.windows.clear();
       says.follows = "unknown";
       says.law = of + "any course";
   }
@@ -298,10 +343,66 @@ Eigen::Index StatementEvidence::n_pieces_of(const Scored& s) const {
   return n;
 }
 
-void StatementEvidence::score_windows(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
+double StatementEvidence::of_rows(std::size_t k, const Sizes& on, Scored& scored) const {
+  const auto& run = space_.cells[k].runs[scored.run];
+  const Eigen::Index n_rows = run.edge.back() + 1, n_cells = static_cast<Eigen::Index>(run.edge.size()) - 1;
+  const bool lasts = scored.end == n_cells;
+  const auto rows_about = [&](Eigen::Index edge) {  // of the two cells that meet there
+    const Eigen::Index from = run.edge[static_cast<std::size_t>(edge - 1)],
+                       to = run.edge[static_cast<std::size_t>(std::min(edge + 1, n_cells))];
+    const Eigen::Index step = std::max<Eigen::Index>(1, (to - from) / kEdgesTried);
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = from + 1; row < to; row += step) rows.push_back(row);
+    return rows;
+  };
+  std::vector<Eigen::Index> edges = rows_about(scored.first);
+  const std::size_t n_first = edges.size();
+  if (!lasts) {
+    for (Eigen::Index row : rows_about(scored.end)) edges.push_back(row);
+  }
+  const auto n = static_cast<Eigen::Index>(edges.size());
+  TakenColumns steps{.x = Eigen::MatrixXd::Zero(residual_.x.rows(), n), .nuisance = {}};  // each from its row on
+  Scored tried = scored;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    tried.rows = StatedRows{scored.run, edges[static_cast<std::size_t>(i)], n_rows};
+    steps.x.col(i) = item(tried).columns.x.col(0);
+  }
+  steps.nuisance = q_.transpose() * steps.x;
+  Eigen::MatrixXd g = products(steps, steps);
+  Eigen::VectorXd along = products(steps, residual_);
+  if (on.size.size() > 0) {
+    const Eigen::MatrixXd common = products(on.columns, steps);
+    g.noalias() -= common.transpose() * (on.covariance * common);
+    along.noalias() -= common.transpose() * on.size;
+  }
+  std::vector<double> terms;
+  double best = -1e300;
+  const auto take = [&](double squares, double in, Eigen::Index first, Eigen::Index end) {
+    if (!(squares > kNothingLeft)) return;
+    double width = 1.0;
+    terms.push_back(mixed(squares, in, width));
+    if (terms.back() <= best) return;
+    best = terms.back();
+    scored.width = width;
+    scored.rows = StatedRows{scored.run, first, end};
+  };
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(n_first); ++i) {
+    const Eigen::Index first = edges[static_cast<std::size_t>(i)];
+    if (lasts) take(g(i, i), along[i], first, n_rows);
+    for (auto j = static_cast<Eigen::Index>(n_first); j < n; ++j) {
+      const Eigen::Index end = edges[static_cast<std::size_t>(j)];
+      if (end > first) take(g(i, i) + g(j, j) - 2.0 * g(i, j), along[i] - along[j], first, end);
+    }
+  }
+  return terms.empty() ? -1e300 : log_mean(terms);
+}
+
+void StatementEvidence::score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
                                       std::vector<Scored>& list) const {
   const Cells& cells = cells_[k];
   const std::size_t n_runs = cells.first.size() - 1, of = space_.columns.size() + k;
+  const auto& acts = space_.cells[k].acts;
+  const bool is_sharp = std::none_of(acts.begin(), acts.end(), [](const Acting& a) { return a.loads; });
   for (std::size_t r = 0; r < n_runs; ++r) {
     const Eigen::Index at = cells.first[r], n = cells.first[r + 1] - at;
     const Eigen::Index after = cells.first[r + 1], n_after = g.cols() - after;
@@ -310,7 +411,7 @@ void StatementEvidence::score_windows(std::size_t k, const Eigen::MatrixXd& g, c
     const double d_after = n_after > 0 ? g.bottomRightCorner(n_after, n_after).sum() : 0.0,
                  along_after = n_after > 0 ? along.tail(n_after).sum() : 0.0;
     Scored window{.of = of, .when = When::kWindow, .run = r}, lasting{.of = of, .when = When::kLasting, .run = r},
-        on{.of = of, .when = When::kLastingOn, .run = r};
+        later{.of = of, .when = When::kLastingOn, .run = r};
     std::vector<double> of_windows, of_lasting, of_on;
     double best_window = -1e300, best_lasting = -1e300, best_on = -1e300;
     for (Eigen::Index end = n; end > 1; --end) {
@@ -336,21 +437,25 @@ void StatementEvidence::score_windows(std::size_t k, const Eigen::MatrixXd& g, c
           of_on.push_back(mixed(d + 2.0 * with_after.segment(first, n - first).sum() + d_after, b + along_after, w));
           if (of_on.back() > best_on) {
             best_on = of_on.back();
-            on.first = first, on.end = end, on.width = w;
+            later.first = first, later.end = end, later.width = w;
           }
         }
       }
     }
     const double runs = std::log(static_cast<double>(n_runs));
-    const auto take = [&](Scored& s, const std::vector<double>& terms, double share) {
+    const auto take = [&](Scored& s, std::vector<double>& terms, double share) {
       if (terms.empty()) return;
+      double& most = *std::max_element(terms.begin(), terms.end());
+      if (is_sharp) most = std::max(most, of_rows(k, on, s));
       s.log_prior = prior_cells_[k].window + std::log(share) - runs;
       s.log_evidence = log_mean(terms);
       list.push_back(s);
     };
-    take(window, of_windows, options_.once);
-    take(lasting, of_lasting, options_.lasting + (n_after > 0 ? 0.0 : options_.lasting_on));
-    take(on, of_on, options_.lasting_on);
+    const bool lasts = space_.cells[k].lasts;
+    const double of_all = lasts ? options_.lasting + options_.lasting_on : 1.0;
+    if (!lasts) take(window, of_windows, options_.once);
+    take(lasting, of_lasting, (options_.lasting + (n_after > 0 ? 0.0 : options_.lasting_on)) / of_all);
+    take(later, of_on, options_.lasting_on / of_all);
   }
 }
 
@@ -489,7 +594,7 @@ void StatementEvidence::set_priors() {
   for (const StatementColumn& c : space_.columns) tree[c.says.quantity][c.says.place][c.says.follows].insert(c.says.law);
   for (const StatementCells& c : space_.cells) {
     tree[c.says.quantity][c.says.place]["window"].insert(c.says.law);
-    tree[c.says.quantity][c.says.place]["unknown"].insert(c.says.law);
+    if (!c.lasts) tree[c.says.quantity][c.says.place]["unknown"].insert(c.says.law);
   }
   const auto price = [&](const Statement& s, const std::string& follows) {
     const auto& places = tree.at(s.quantity);
@@ -498,7 +603,8 @@ void StatementEvidence::set_priors() {
            std::log(static_cast<double>(all.size())) - std::log(static_cast<double>(all.at(follows).size()));
   };
   for (const StatementColumn& c : space_.columns) prior_.push_back(price(c.says, c.says.follows));
-  for (const StatementCells& c : space_.cells) prior_cells_.push_back({price(c.says, "window"), price(c.says, "unknown")});
+  for (const StatementCells& c : space_.cells)
+    prior_cells_.push_back({price(c.says, "window"), c.lasts ? 0.0 : price(c.says, "unknown")});
 }
 
 }  // namespace driftwright::diagnosis

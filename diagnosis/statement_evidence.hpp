@@ -7,7 +7,9 @@
 // prior is a mixture of normal ones over widths that are log-uniform: heavy tails. Of a statement that may hold at many times the evidence is the mean over the times.
 // The prior is a description length: uniform over quantities, places of a quantity, what it follows there, its laws, and which records, so that more places or laws buy nothing.
 
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "diagnosis/statement.hpp"
 
@@ -24,12 +26,16 @@ struct StatementOptions {
   double once = 0.4, lasting = 0.2, lasting_on = 0.2, several = 0.2;
   std::vector<double> widths = {
       0.03, 0.1, 0.3, 1.0,
-      3.0};      ///< of sizes' priors, in the statement's typical size: three decades about what a fault does
-  int most = 3;  ///< statements of a set
-  int beam = 6;  ///< sets that are taken further; 12 name the same
+      3.0};                ///< of sizes' priors, in the statement's typical size: three decades about what a fault does
+  int most = 3;            ///< statements of a set
+  double explained = 0.0;  ///< what claims that they stand beside explain already [nats]
+  int beam = 6;            ///< sets that are taken further; 12 name the same
   /// Share of what it does that a law is off by: what a set explains, E nats, then leaves 2 law_error² E squares that no noise makes, and evidence counts 1 / (1 + 2 law_error² E) of
   /// itself. Of 0, 0.05, 0.07, 0.1 and 0.14 the one whose probabilities came true on simulated machines (docs/diagnosis.md).
   double law_error = 0.05;
+  /// Whether what the best explanation leaves over is asked how far laws are off: then evidence between statements counts as that tells.
+  bool observed = false;
+  double left = std::numeric_limits<double>::infinity();  ///< squares that a full fit leaves, where there is one
 };
 
 /// What time a statement is given: always, or in cells.
@@ -47,10 +53,11 @@ enum class When {
 struct Scored {
   std::size_t of = 0;  ///< index of the column; the first cells follow the last column
   When when = When::kGiven;
-  std::size_t run = 0;              ///< of what is in one
-  std::size_t records = 0;          ///< of columns: which choice of records
-  Eigen::Index first = 0, end = 0;  ///< cells of the run: the likeliest ones
-  std::vector<double> cells = {};   ///< of several windows: 1 where one is
+  std::size_t run = 0;                  ///< of what is in one
+  std::size_t records = 0;              ///< of columns: which choice of records
+  Eigen::Index first = 0, end = 0;      ///< cells of the run: the likeliest ones
+  std::optional<StatedRows> rows = {};  ///< of these cells, where a row more or less counts
+  std::vector<double> cells = {};       ///< of several windows: 1 where one is
   int n_windows = 0;
   double width = 1.0;  ///< the likeliest
   double log_prior = 0.0, log_evidence = 0.0;
@@ -80,6 +87,8 @@ class StatementEvidence {
   /// Every statement on top of a set; log_prior and log_evidence are its own.
   [[nodiscard]] std::vector<Scored> scored(const std::vector<Item>& set) const;
   [[nodiscard]] Item item(const Scored& scored) const;
+  /// A course of any shape in all records, alone, of a statement's quantity at its place; none: the grammar has none.
+  [[nodiscard]] std::optional<Scored> any_course(const Statement& says) const;
   [[nodiscard]] Statement said(const Scored& scored) const;
 
   /// Sizes of a set's columns by their units, and their covariance.
@@ -89,6 +98,9 @@ class StatementEvidence {
     Eigen::MatrixXd covariance;
   };
   [[nodiscard]] Sizes sizes(const std::vector<Item>& set) const;
+  /// Squares that a set leaves of the residual.
+  [[nodiscard]] double left(const std::vector<Item>& set) const;
+  [[nodiscard]] Eigen::Index n_rows() const { return residual_.x.rows(); }
   /// A choice by units times sizes. @param size  of its item's columns
   void scale(Chosen& chosen, const Scored& scored, const Eigen::VectorXd& size) const;
 
@@ -112,11 +124,15 @@ class StatementEvidence {
   [[nodiscard]] Eigen::MatrixXd products(const TakenColumns& a, const TakenColumns& b) const;
   [[nodiscard]] Cells cells_of(const StatementCells& cells) const;
   [[nodiscard]] Chosen chosen(const Scored& scored) const;
+  [[nodiscard]] std::vector<StatedWindow> windows_of(const Chosen& chosen) const;
   [[nodiscard]] Eigen::Index n_pieces_of(const Scored& scored) const;
   [[nodiscard]] double mixed(double squares, double along, double& best_width) const;
   void score_columns(const Sizes& on, std::vector<Scored>& list) const;
-  void score_cells(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
-  void score_windows(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
+  void score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
+                     std::vector<Scored>& list) const;
+  /// Evidence of a window whose edges may lie at any rows of the cells about them: the mean. Of what acts on a channel alone, which has no time constant that hides its edges.
+  /// @param scored  the likeliest cells; takes the likeliest rows
+  [[nodiscard]] double of_rows(std::size_t k, const Sizes& on, Scored& scored) const;
   void score_several(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
   void score_unknown(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
   void set_records();

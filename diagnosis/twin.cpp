@@ -160,6 +160,26 @@ effects::Body Twin::body_of(const std::string& part) const {
   return effects::surface(part);
 }
 
+std::vector<std::string> Twin::bodies_at(const std::string& surface_or_joint) const {
+  const mesh::Mesh& mesh = machine_.mesh;
+  if (const mesh::Joint* joint = mesh.joint(surface_or_joint)) {
+    std::vector<std::string> bodies = bodies_at(joint->side_a);
+    for (std::string& body : bodies_at(joint->side_b)) bodies.push_back(std::move(body));
+    return bodies;
+  }
+  const int surface = mesh.surface(surface_or_joint);
+  const std::vector<int> facets = surface < 0 ? std::vector<int>{} : mesh.facets_on(surface);
+  if (facets.empty()) return {surface_or_joint};
+  const auto facet = mesh.facets.nodes(facets.front());
+  for (int cell = 0; cell < mesh.cells.size(); ++cell) {
+    const auto nodes = mesh.cells.nodes(cell);
+    const bool is_behind = std::all_of(facet.begin(), facet.end(),
+                                       [&](int node) { return std::find(nodes.begin(), nodes.end(), node) != nodes.end(); });
+    if (is_behind) return {mesh.regions[static_cast<std::size_t>(mesh.cells.group[static_cast<std::size_t>(cell)])]};
+  }
+  return {surface_or_joint};
+}
+
 Eigen::MatrixXd Twin::warmer_bodies() const {
   const auto& parts = machine_.system.parts;
   Eigen::MatrixXd heat(machine_.system.size(), static_cast<Eigen::Index>(parts.size()));
@@ -347,8 +367,8 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
   return {workspace.system_, std::move(d.cyclogram), std::move(d.ambient), std::move(weights), std::move(d.start)};
 }
 
-std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, const MeasuredRun& run,
-                                                      Workspace& workspace, bool for_slopes) const {
+std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                                                      bool for_slopes) const {
   const auto shared = [](auto kept) -> std::shared_ptr<const solver::KeptRun> {
     using Kept = typename decltype(kept)::value_type;
     return kept ? std::make_shared<const Kept>(*std::move(kept)) : nullptr;

@@ -91,6 +91,8 @@ class Twin {
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
   /// What a part of the machine is.
   [[nodiscard]] effects::Body body_of(const std::string& part) const;
+  /// Names of the bodies that a surface bounds, or that a joint joins; its own name where the mesh does not tell.
+  [[nodiscard]] std::vector<std::string> bodies_at(const std::string& surface_or_joint) const;
 
  private:
   /// Factors of a state over those as written, on conductivity and heat capacity of each part.

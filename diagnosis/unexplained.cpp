@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/latent_heat.hpp"
 #include "diagnosis/leftover.hpp"
+#include "diagnosis/naming.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -19,6 +19,12 @@ constexpr double kRough = 3.0;                // leftover over noise: a model th
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
+constexpr double kLikelyStated = 0.5;         // probability: likelier than not
+
+Unexplained::Channel channel_of(const Leftover& l) {
+  const char* unit = l.unit == "K" ? "K" : l.unit == "m" ? "um" : "urad";
+  return {.name = l.channel, .unit = unit, .rms = (l.unit == "K" ? 1.0 : 1e6) * l.rms, .times_noise = l.sigmas()};
+}
 
 /// Noise without the benefit of smooth curves: what an AR(1) of some minutes could explain is not called unexplained.
 std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& fit,
@@ -70,71 +76,27 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
     const bool jumps = l.jump_squares >= kJump && l.jump >= worth_naming;
     if (!(stands_out && l.rms >= worth_naming) && !jumps) continue;
     u.nats += 0.5 * std::max(l.squares - l.n_curves, jumps ? l.jump_squares : 0.0);
-    u.channels.push_back({l.channel,
-                          l.unit == "K"   ? "K"
-                          : l.unit == "m" ? "um"
-                                          : "urad",
-                          (l.unit == "K" ? 1.0 : 1e6) * l.rms, l.sigmas()});
+    u.channels.push_back(channel_of(l));
   }
   if (u.channels.empty()) return std::nullopt;
-  const bool only_displacements =
-      std::none_of(u.channels.begin(), u.channels.end(), [](const auto& c) { return c.unit == "K"; });
-  if (!only_displacements) {
-    if (const auto latent = latent_heat(fitter, result.hypothesis, result.fit); latent && latent->explained > 0.3) {
-      u.heat_would_sit_in = latent->body;
-      u.time_s = latent->time_s;
-      u.heat_W = latent->heat_W;
-      u.correlates_with = latent->correlates_with;
-      u.correlation = latent->correlation;
-      return u;
-    }
-  }
-  const MeasuredRun& run = fitter.runs().front();
-  if (const MeasuredChannel* c = run.find(u.channels.front().name)) {
-    Eigen::VectorXd r = c->value - result.fit.prediction[0].row(c->output).transpose();
-    for (Eigen::Index i = 0; i < r.size(); ++i) {
-      if (std::isnan(r[i])) r[i] = 0.0;
-    }
-    std::tie(u.correlates_with, u.correlation) = resembles(run, r);
-  }
   return u;
 }
 
-Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
-                             const std::map<std::string, NoiseModel>& noise) {
-  const Remainder rest = without_claims(result.hypothesis, unnamed.instead_of, fitter.n_nuisance());
-  Twin::Workspace workspace(fitter.twin());
-  const Prediction without = fitter.predict(rest.hypothesis, result.fit.x(rest.x), workspace);
-  std::map<std::string, std::pair<double, double>> squares;  // of what the claims do; rows
-  for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
-    for (const MeasuredChannel& c : fitter.runs()[r].channels) {
-      auto& [sum, rows] = squares[c.name];
-      sum += (result.fit.prediction[r].row(c.output) - without[r].row(c.output)).squaredNorm();
-      rows += static_cast<double>(without[r].cols());
-    }
-  }
+std::optional<Unexplained> without_name(const Fitter& fitter, const SearchResult& result, const Posterior& statements,
+                                        const std::map<std::string, NoiseModel>& noise) {
+  const auto is_named = [&](const Stated& s) {
+    return std::any_of(result.findings.begin(), result.findings.end(), [&](const Finding& f) {
+      const Candidate& c = result.candidates[f.claim.candidate];
+      return says(s.says, c.effect, c.where);
+    });
+  };
+  const auto found = std::find_if(statements.stated.begin(), statements.stated.end(),
+                                  [&](const Stated& s) { return s.probability > kLikelyStated && !is_named(s); });
+  if (found == statements.stated.end()) return std::nullopt;
+  const Leftover worst = leftovers(fitter.runs(), result.without.prediction, noise).front();
   Unexplained u;
-  for (const auto& [name, square] : squares) {
-    const std::string& unit = fitter.runs().front().find(name) ? fitter.runs().front().find(name)->unit : "K";
-    const double rms = std::sqrt(square.first / square.second);
-    u.channels.push_back({name,
-                          unit == "K"   ? "K"
-                          : unit == "m" ? "um"
-                                        : "urad",
-                          (unit == "K" ? 1.0 : 1e6) * rms,
-                          square.first / std::pow(noise.at(name).total(), 2) / std::sqrt(2.0 * square.second)});
-  }
-  std::stable_sort(u.channels.begin(), u.channels.end(),
-                   [](const auto& a, const auto& b) { return a.times_noise > b.times_noise; });
-  u.channels.resize(1);
-  Eigen::VectorXd course =
-      Eigen::Map<const Eigen::VectorXd>(unnamed.value.data(), static_cast<Eigen::Index>(unnamed.value.size()));
-  std::tie(u.correlates_with, u.correlation) = resembles(fitter.runs().front(), course);
-  if (unnamed.quantity == Unnamed::Quantity::kHeat) {
-    u.heat_would_sit_in = unnamed.where;
-    u.time_s = unnamed.time_s;
-    u.heat_W = unnamed.value;
-  }
+  u.channels = {channel_of(worst)};
+  u.statement = static_cast<std::size_t>(found - statements.stated.begin());
   return u;
 }
 

@@ -11,8 +11,9 @@ namespace driftwright::diagnosis {
 /// Noise with what the model misses as a slow part of it, where that is far more than the noise: readings of a model so wrong weigh no more.
 [[nodiscard]] std::optional<std::map<std::string, NoiseModel>> models_own_error(
     const std::vector<MeasuredRun>& runs, const Prediction& prediction, const std::map<std::string, NoiseModel>& noise);
-/// Where the claims act that one cause without a name explains better, and what that cause looks like.
-[[nodiscard]] Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
-                                           const std::map<std::string, NoiseModel>& noise);
+/// The likeliest statement that is likelier than not and that no finding is a name of, unless there is none: where it is seen best.
+[[nodiscard]] std::optional<Unexplained> without_name(const Fitter& fitter, const SearchResult& result,
+                                                      const Posterior& statements,
+                                                      const std::map<std::string, NoiseModel>& noise);
 
 }  // namespace driftwright::diagnosis

@@ -14,8 +14,6 @@ constexpr double kSureCause = 20.0;  // nats: no smaller rest hides it
 constexpr int kSomeSearches = 2;
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
-constexpr const char* kFaint =
-    "its evidence does not pay for all that it might have been, though chance seldom offers as much";
 constexpr double kOpenWidth = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
@@ -42,18 +40,6 @@ std::string words(const Cause& c) {
                      fmt::join(numbers, ", "));
 }
 
-/// One cause without a name, in words.
-std::string words(const Unnamed& u) {
-  const char* what = u.quantity == Unnamed::Quantity::kHeat      ? "heat in"
-                     : u.quantity == Unnamed::Quantity::kAmbient ? "another temperature of the"
-                                                                 : "an error of the reading";
-  const char* course = u.follows == "nothing" ? "constant" : "following";
-  return fmt::format("One cause that the catalogue has no name for explains it better ({:.0f} nats) than {}: {} {}, {}{}",
-                     u.log_evidence_gain,
-                     u.instead_of.size() > 1 ? fmt::format("{} named ones", u.instead_of.size()) : "a named one", what,
-                     u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
-}
-
 /// The scenario's numbers that were fitted furthest from what it says, in sigmas; empty: none has gone far.
 std::string moved_words(const Diagnosis& d) {
   std::vector<const Estimate*> far;
@@ -76,8 +62,16 @@ std::string in_words(const Unexplained::Channel& c) {
   return fmt::format("in the {} {}", quantity_word(c.unit), c.name);
 }
 
+/// A statement that the catalogue has no name for, in words.
+std::string statement_words(const Diagnosis& d) {
+  const Stated& s = d.statements.stated[*d.unexplained->statement];
+  return fmt::format("{} (probability {:.0f} %)", words(s.says), 100.0 * s.probability);
+}
+
 /// What is left beside the causes, in a sentence.
-std::string rest_words(const Unexplained& u) {
+std::string rest_words(const Diagnosis& d) {
+  const Unexplained& u = *d.unexplained;
+  if (u.statement) return fmt::format("Beside it something is missing that has no name: {}", statement_words(d));
   return fmt::format("Beside it {:.2g} {} RMS that is not noise is left {}", u.channels.front().rms, u.channels.front().unit,
                      in_words(u.channels.front()));
 }
@@ -96,11 +90,6 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
          });
 }
 
-/// Machines without fault per one at which chance offers as much.
-std::string odds_words(const Cause& c) {
-  return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
-}
-
 /// Whether a claim that stands beside a stronger one was found in none of several searches without a part of the rows: it is what the stronger one leaves of these rows.
 bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
   if (held.n_searched < kSomeSearches || held.n_again[claim] > 0) return false;
@@ -111,8 +100,7 @@ bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
 bool rest_rules(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0)
-    return true;
+  if (d.causes.empty() || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
@@ -132,7 +120,7 @@ std::string reason_of(const Diagnosis& d) {
     if (is_many && i >= d.search.findings.size()) break;  // numbers that moved are counted
     std::string text = words(c);
     if (c.standing == Standing::kSuspected && !is_many)
-      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(c), text);
+      text = fmt::format("suspected{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
       for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, place_words(a.where)));
@@ -161,6 +149,8 @@ std::string reason_of(const Diagnosis& d) {
           "wanted.{}",
           d.n_candidates, moved_words(d));
     case Verdict::kUnexplained:
+      if (d.causes.empty() && d.unexplained->statement)
+        return fmt::format("What is missing has no name in the catalogue: {}.", statement_words(d));
       if (d.causes.empty()) {
         return fmt::format(
             "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
@@ -176,14 +166,14 @@ std::string reason_of(const Diagnosis& d) {
             "What fits best needs an ambient that is {:.1f} K off its record, and something is left, most of all {}: {}.",
             d.unexplained->ambient_off_K, in_words(d.unexplained->channels.front()), text);
       }
-      if (d.unexplained && d.unexplained->one_cause) {
-        return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
-      }
+      if (d.unexplained->statement)
+        return fmt::format("Something is missing that the catalogue has no name for: {}; beside it: {}.", statement_words(d),
+                           text);
       return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS {}; the best so far: {}.",
                          d.unexplained->channels.front().rms, d.unexplained->channels.front().unit,
                          in_words(d.unexplained->channels.front()), text);
     default:
-      return d.unexplained ? fmt::format("{}. {}.", text, rest_words(*d.unexplained)) : fmt::format("{}.", text);
+      return d.unexplained ? fmt::format("{}. {}.", text, rest_words(d)) : fmt::format("{}.", text);
   }
 }
 
@@ -202,18 +192,15 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
     const Finding& finding = d.search.findings[c];
-    cause.chance = finding.faint_chance.value_or(d.search.chance.share_above(cause.log_evidence_gain));
     cause.n_searched = held.n_searched;
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
-    if (finding.faint_chance) cause.doubt = kFaint;
-    if (!finding.is_named) continue;
+    if (!finding.is_named) {
+      cause.doubt = fmt::format("its statement has a probability of {:.0f} %", 100.0 * finding.probability);
+      continue;
+    }
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
       cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
-    const Claim& claim = d.search.hypothesis[c];
-    if (cause.doubt.empty() && d.unexplained &&
-        d.search.candidates[claim.candidate].variants[claim.variant].takes_any_course)
-      cause.doubt = "so many windows follow whatever comes and goes, and more than noise is left beside them";
     if (cause.doubt.empty() && is_size_open(cause))
       cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;

@@ -27,7 +27,7 @@ void check(const Effect& e, const ConfigMap& in) {
   check_windows(e, in);
 }
 
-/// A surface that more air reaches for a while. Where and when a region or node may have one, its readings say (diagnosis/event_candidates.hpp).
+/// A surface that more air reaches for a while. Where and when a region or node may have one, its readings say (diagnosis/naming.hpp).
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Run& run : s.runs) {

@@ -13,10 +13,10 @@ constexpr std::size_t kEveryChoice = 6;  // of up to so many bodies any two and 
 constexpr std::size_t kMostBodies = 12;  // of up to so many any two
 // Of the resistance of its bodies' own exchange with the ambient at the typical speed: what that of the guard is thought to be.
 constexpr double kSd = 1.0, kTrial = 0.1, kLeast = 1e-4, kMost = 50.0;
-constexpr double kCapacitySd = 1.5;       // of the logarithm
-constexpr double kUsual_min = 10.0;       // in which the air and the sheets follow
-constexpr double kTried[] = {-1.5, 1.0};  // of the logarithm of that time
-constexpr double kRare = 1.0;             // nats, beside which bodies it stands around: rather than a path of one body
+constexpr double kCapacitySd = 1.5;            // of the logarithm
+constexpr double kUsual_min = 10.0;            // in which the air and the sheets follow
+constexpr double kTried[] = {-1.5, 0.0, 1.0};  // of the logarithm of that time
+constexpr double kRare = 1.0;                  // nats, beside which bodies it stands around: rather than a path of one body
 
 bool is_meant(const Exchange& x, const Body& body) {
   return x.body == body && x.surrounding == kAmbientName && !x.medium_K;

@@ -32,7 +32,7 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
     put(item, "found_again.found", c.n_again);
   }
   put(item, "kept_out_nats", c.kept_out_nats);
-  put(item, "chance", c.chance);
+  put(item, "probability", c.probability);
   put(item, "odds.share", c.share);
   put(item, "odds.kind", c.odds.kind);
   put(item, "odds.place", c.odds.place);
@@ -41,43 +41,12 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   return item;
 }
 
-void put_shape(Section& item, const diagnosis::Waveform& w, double scale) {
-  using diagnosis::Shape;
-  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
-  put(item, "shape.class", diagnosis::word(w.shape.shape));
-  put(item, "shape.size", scale * w.shape.size);
-  put(item, "shape.unit", !w.to.empty() ? "W/K" : is_heat ? "W" : w.unit == "rad" ? "urad" : "um");
-  put(item, "shape.standard_deviation", scale * w.shape.size_sd);
-  put(item, "shape.explained", w.shape.explained);
-  if (w.shape.shape == Shape::kStep || w.shape.shape == Shape::kDecay) put(item, "shape.time_min", w.shape.time_s / 60.0);
-  if (w.shape.shape == Shape::kDecay) put(item, "shape.time_constant_min", w.shape.time_constant_s / 60.0);
-  if (w.shape.shape == Shape::kPeriodic) put(item, "shape.period_min", w.shape.period_s / 60.0);
-  if (w.shape.shape == Shape::kProportional) put(item, "shape.follows", w.shape.follows);
-  if (w.shape.shape == Shape::kWindows) {
-    std::vector<std::vector<double>> windows_min;
-    for (const auto& [begin_s, end_s] : w.shape.windows_s) windows_min.push_back({begin_s / 60.0, end_s / 60.0});
-    put(item, "shape.windows_min", windows_min);
-  }
-}
-
-Section waveform_item(const diagnosis::Waveform& w) {
-  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
-  const double scale = is_heat ? 1.0 : 1e6;
-  Section item{.key = "waveforms", .item = output::Item{"record", w.run}};
-  put(item, "of", is_heat ? "heat" : "growth");
-  put(item, "where", effects::where_in_files(w.where));
-  if (!w.to.empty()) put(item, "to", effects::where_in_files(w.to));
-  if (is_heat) {
-    put(item, "log_likelihood_gain", w.log_likelihood_gain);
-    put(item, "explained", w.explained);
-  }
-  put_shape(item, w, scale);
-  std::vector<double> time_min, value;
-  for (std::size_t i = 0; i < w.time_s.size(); ++i) {
-    time_min.push_back(w.time_s[i] / 60.0);
-    value.push_back(w.to.empty() ? scale * w.value[i] : w.conductance_W_K[i]);
-  }
-  put(item, "time_min", time_min);
+Section course_item(const diagnosis::StatedCourse& c, double scale) {
+  Section item{.key = "course", .item = output::Item{"record", c.record}};
+  std::vector<double> edge_min, value;
+  for (double t_s : c.edge_s) edge_min.push_back(t_s / 60.0);
+  for (double v : c.value) value.push_back(scale * v);
+  put(item, "edge_min", edge_min);
   put(item, "value", value);
   return item;
 }
@@ -91,16 +60,6 @@ output::Value no_items(const std::string& key) {
 void add_causes_data(Section& section, const std::vector<diagnosis::Cause>& causes, const std::string& key) {
   if (causes.empty()) add(section, no_items(key));
   for (const diagnosis::Cause& c : causes) section.sections.push_back(cause_item(c, key));
-}
-
-void add_waveforms_data(Section& section, const diagnosis::Diagnosis& d) {
-  std::size_t n = 0;
-  for (const diagnosis::Waveform& w : d.waveforms) {
-    if (w.shape.shape == diagnosis::Shape::kNothing) continue;
-    section.sections.push_back(waveform_item(w));
-    ++n;
-  }
-  if (n == 0) add(section, no_items("waveforms"));
 }
 
 Section compared_data(const std::vector<diagnosis::MeasuredRun>& runs) {
@@ -124,6 +83,7 @@ void add_statements_data(Section& section, const diagnosis::Diagnosis& d) {
     const auto [unit, scale] = shown_unit(s);
     Section item{.key = "statements", .item = output::Item{"quantity", diagnosis::word(s.says.quantity)}};
     put(item, "place", s.says.place);
+    if (!s.says.at.empty()) put(item, "at", s.says.at);
     put(item, "follows", s.says.follows);
     put(item, "law", s.says.law);
     std::vector<std::string> records;
@@ -139,6 +99,8 @@ void add_statements_data(Section& section, const diagnosis::Diagnosis& d) {
     put(item, "p_place", s.p_place);
     put(item, "p_follows", s.p_follows);
     put(item, "log_evidence", s.log_evidence);
+    if (s.course.empty()) add(item, no_items("course"));
+    for (const diagnosis::StatedCourse& c : s.course) item.sections.push_back(course_item(c, scale));
     section.sections.push_back(std::move(item));
   }
 }
@@ -148,21 +110,6 @@ Section search_data(const diagnosis::Diagnosis& d) {
   put(section, "complete", d.ended_at.empty());
   put(section, "weighed_by_model_error", d.weighed_by_model_error);
   put(section, "n_candidates", d.n_candidates);
-  // evidence that the best candidate has where nothing is wrong: at one machine in two, in a hundred, in ten thousand
-  put(section, "chance.median", d.search.chance.gain_at(0.5));
-  put(section, "chance.one_in_100", d.search.chance.gain_at(0.01));
-  put(section, "chance.one_in_10000", d.search.chance.gain_at(1e-4));
-  put(section, "chance.simulations", d.search.chance.n_simulated);
-  // and the bars in force, which chance is no lower than, with the share of faultless machines at which it reaches them
-  const diagnosis::Bars& bars = d.search.bars;
-  if (bars.suspected.empty()) return section;
-  put(section, "bars.set_by", d.search.chance.n_simulated > 0 ? "simulation" : "formula");
-  put(section, "bars.suspected_nats", bars.suspected);
-  put(section, "bars.named_nats", bars.named);
-  put(section, "bars.named_beside_nats", bars.named_beside);
-  put(section, "bars.named_timed_nats", bars.named_timed);
-  put(section, "bars.chance_of_suspected", d.search.chance.share_above(bars.suspected.front()));
-  put(section, "bars.chance_of_named", d.search.chance.share_above(bars.named));
   return section;
 }
 

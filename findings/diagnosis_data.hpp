@@ -9,13 +9,11 @@ namespace driftwright::findings {
 /// Items `causes`, each with its parameters and alternatives; an empty list where there are none.
 void add_causes_data(output::Section& section, const std::vector<diagnosis::Cause>& causes,
                      const std::string& key = "causes");
-/// Items `waveforms`, with their courses.
-void add_waveforms_data(output::Section& section, const diagnosis::Diagnosis& d);
 /// `compared`: how many channels of the records are in the scenario, and which are left out.
 [[nodiscard]] output::Section compared_data(const std::vector<diagnosis::MeasuredRun>& runs);
 /// `probability_nothing_wrong` and the items `statements`.
 void add_statements_data(output::Section& section, const diagnosis::Diagnosis& d);
-/// `complete`, `n_candidates`, `chance` and how causes were weighed.
+/// `complete`, `n_candidates` and how causes were weighed.
 [[nodiscard]] output::Section search_data(const diagnosis::Diagnosis& d);
 /// An empty list, where there would be items.
 [[nodiscard]] output::Value no_items(const std::string& key);

@@ -67,6 +67,31 @@ Table causes_table(const diagnosis::Diagnosis& d) {
   return table;
 }
 
+/// What the records ask for at the places of the likeliest statements over time, whatever it follows.
+Section courses_section(const diagnosis::Diagnosis& d) {
+  constexpr std::size_t kMost = 4;
+  Section section{.title = "What is missing over time, whatever it follows", .detail = true};
+  for (const diagnosis::Stated& s : d.statements.stated) {
+    if (section.blocks.size() == kMost) break;
+    if (s.course.empty()) continue;
+    const auto [unit, scale] = shown_unit(s);
+    Plot plot{.title = fmt::format("{} at {}, if it alone is wrong", diagnosis::word(s.says.quantity),
+                                   fmt::join(s.says.place, " and ")),
+              .x_label = "time [min]",
+              .y_label = fmt::format("{} [{}]", diagnosis::word(s.says.quantity), unit),
+              .series = {}};
+    for (const diagnosis::StatedCourse& c : s.course) {
+      output::Series series{.label = c.record, .x = {}, .y = {}, .style = output::Series::Style::kSteps};
+      for (double t_s : c.edge_s) series.x.push_back(t_s / 60.0);
+      for (double v : c.value) series.y.push_back(scale * v);
+      series.y.push_back(series.y.back());
+      plot.series.push_back(std::move(series));
+    }
+    add(section, std::move(plot));
+  }
+  return section;
+}
+
 /// What is missing in the grammar's words.
 Section statements_section(const diagnosis::Diagnosis& d) {
   constexpr std::size_t kMost = 5;
@@ -81,7 +106,7 @@ Section statements_section(const diagnosis::Diagnosis& d) {
                           {.title = "probability", .digits = output::percent(0)}}};
   for (const diagnosis::Stated& s : d.statements.stated) {
     if (table.rows.size() == kMost) break;
-    table.rows.push_back({statement_text(s.says), size_text(s), records_text(s.says), s.probability});
+    table.rows.push_back({diagnosis::words(s.says), size_text(s), diagnosis::records_text(s.says), s.probability});
   }
   table.rows.push_back({"nothing", "", "", d.statements.nothing});
   add(section, std::move(table));
@@ -91,13 +116,12 @@ Section statements_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// What is found and does not stand in the file, with the reason; and the bars that causes were held to.
+/// What is found and does not stand in the file, with the reason.
 void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
   for (const diagnosis::Cause& c : d.causes) {
     if (!c.is_written)
       add(body, Text{fmt::format("{} at {} is not written into extended.yaml: {}.", c.effect, c.where, c.why_not_written)});
   }
-  if (const std::string bars = bars_text(d); !bars.empty()) add(body, Text{bars});
 }
 
 /// What is said of one cause beside its numbers.
@@ -182,7 +206,8 @@ Section experiment_section(const diagnosis::Experiment& e) {
   return section;
 }
 
-Section unexplained_section(const diagnosis::Unexplained& u) {
+Section unexplained_section(const diagnosis::Diagnosis& d) {
+  const diagnosis::Unexplained& u = *d.unexplained;
   Section section{.key = "unexplained", .title = "What no candidate explains, more than noise"};
   const auto put = [&](const char* key, Datum datum) { add(section, Value{.key = key, .datum = std::move(datum)}); };
   put("rms", u.channels.front().rms);
@@ -196,29 +221,12 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
                           {.key = "sigmas", .title = "beyond noise [sigmas]"}}};
   for (const auto& c : u.channels) table.rows.push_back({c.name, c.rms, c.unit, c.times_noise});
   add(section, std::move(table));
-  add(section, Value{.key = "waveform_correlates_with", .words = "its waveform follows", .datum = u.correlates_with});
-  add(section, Value{.key = "correlation", .words = "correlation", .datum = u.correlation, .digits = output::decimals(2)});
-  if (!u.heat_would_sit_in.empty())
-    add(section, Value{.key = "heat_would_sit_in", .words = "heat would sit in", .datum = u.heat_would_sit_in});
   if (u.fails_held_out) put("fails_held_out", true);
   if (u.ambient_off_K > 0.0) put("ambient_off_K", u.ambient_off_K);
-  if (u.one_cause) {
-    using Quantity = diagnosis::Unnamed::Quantity;
-    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
-                              : u.one_cause->quantity == Quantity::kAmbient ? "hall temperature"
-                                                                            : "reading");
-    put("one_cause.where", effects::where_in_files(u.one_cause->where));
-    put("one_cause.follows", u.one_cause->follows);
-    put("one_cause.instead_of", std::vector<std::int64_t>(u.one_cause->instead_of.begin(), u.one_cause->instead_of.end()));
-    put("one_cause.log_evidence_gain", u.one_cause->log_evidence_gain);
+  if (u.statement) {
+    put("statement", static_cast<std::int64_t>(*u.statement));
+    put("statement_in_words", diagnosis::words(d.statements.stated[*u.statement].says));
   }
-  if (u.heat_would_sit_in.empty() || u.time_s.empty()) return section;
-  Plot plot{.title = fmt::format("Heat in {} that would explain most of it, in the first record", u.heat_would_sit_in),
-            .x_label = "time [min]",
-            .y_label = "heat [W]",
-            .series = {{.label = "heat", .x = {}, .y = u.heat_W, .style = output::Series::Style::kSteps}}};
-  for (double t_s : u.time_s) plot.series[0].x.push_back(t_s / 60.0);
-  add(section, std::move(plot));
   return section;
 }
 
@@ -245,98 +253,6 @@ Section wander_section(const diagnosis::HeatWander& wander) {
                   {.key = "share", .title = "share of what it does to the readings", .digits = output::percent(0)}}};
   for (const auto& b : wander.bodies) table.rows.push_back({b.body.name, b.sd_W, b.share});
   add(section, std::move(table));
-  return section;
-}
-
-/// What a waveform looks like, with its numbers.
-std::string shape_text(const diagnosis::Waveform& w) {
-  using diagnosis::Shape;
-  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
-  const bool is_tilt = !is_heat && w.unit == "rad";
-  const char* unit = !w.to.empty() ? "W/K" : is_heat ? "W" : is_tilt ? "µrad" : "µm";
-  const double scale = is_heat ? 1.0 : 1e6;
-  const auto size = [&] {
-    return fmt::format("{:.3g} ± {:.2g} {}", scale * w.shape.size, 2.0 * scale * w.shape.size_sd, unit);
-  };
-  const std::string what = w.to.empty() ? "" : "conductance to " + w.to + ": ";
-  switch (w.shape.shape) {
-    case Shape::kNothing:
-      return "nothing that stands out";
-    case Shape::kConstant:
-      return what + "constant, " + size();
-    case Shape::kStep:
-      return fmt::format("{}step of {} at {:.1f} min", what, size(), w.shape.time_s / 60.0);
-    case Shape::kDecay:
-      return fmt::format("{}{} at {:.1f} min, decaying with {:.1f} min (a mass added or taken away)", what, size(),
-                         w.shape.time_s / 60.0, w.shape.time_constant_s / 60.0);
-    case Shape::kPeriodic:
-      return fmt::format("{}periodic, {}, period {:.1f} min", what, size(), w.shape.period_s / 60.0);
-    case Shape::kProportional:
-      return fmt::format("{}follows {}", what, w.shape.follows);
-    case Shape::kWindows: {
-      std::vector<std::string> windows;
-      for (const auto& [begin_s, end_s] : w.shape.windows_s)
-        windows.push_back(fmt::format("{:.1f}-{:.1f}", begin_s / 60.0, end_s / 60.0));
-      return fmt::format("{}{} in {} of one size: {} min", what, size(), windows.size() == 1 ? "a window" : "windows",
-                         fmt::join(windows, ", "));
-    }
-    case Shape::kOther:
-      return "none of the simple courses";
-  }
-  return "";
-}
-
-/// The best of each run and kind are drawn.
-Section waveforms_section(const diagnosis::Diagnosis& d) {
-  constexpr std::size_t kMostHeatPlots = 4;
-  Section section{.title = "What is missing over time", .detail = true};
-  Table table{
-      .title = "What the scenario misses, row by row",
-      .caption =
-          "With its own numbers fitted (as written, where no likely ones fit) and no cause: the heat that each body alone "
-          "would want beside what is written, or the conductance that would bring it, and the growth that each "
-          "displacement has beside its prediction. Likelihood: over no such heat. Explained: of the readings' squared "
-          "misses by the heat, of the waveform's by its course.",
-      .columns = {{.title = "record"},
-                  {.title = "where"},
-                  {.title = "what it looks like"},
-                  {.title = "likelihood", .unit = "nats", .digits = output::decimals(0)},
-                  {.title = "heat explains", .digits = output::percent(0)},
-                  {.title = "course explains", .digits = output::percent(0)}}};
-  std::vector<Plot> plots;
-  std::set<std::pair<std::string, bool>> drawn;
-  for (const diagnosis::Waveform& w : d.waveforms) {
-    const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
-    if (w.shape.shape == diagnosis::Shape::kNothing) continue;
-    table.rows.push_back({w.run, w.where, shape_text(w), is_heat ? Datum(w.log_likelihood_gain) : Datum(""),
-                          is_heat ? Datum(w.explained) : Datum(""), w.shape.explained});
-    if (plots.size() == kMostHeatPlots || !drawn.insert({is_heat ? w.run : w.run + " " + w.where, is_heat}).second) continue;
-    const bool is_exchange = !w.to.empty();
-    Plot plot{.title = is_exchange ? fmt::format("Conductance that is missing between {} and {}, {}", w.where, w.to, w.run)
-                       : is_heat   ? fmt::format("Heat that is missing in {}, {}", w.where, w.run)
-                                 : fmt::format("What is missing of the {} {}, {}", diagnosis::quantity_word(w.unit), w.where,
-                                               w.run),
-              .x_label = "time [min]",
-              .y_label = is_exchange       ? "conductance [W/K]"
-                         : is_heat         ? "heat [W]"
-                         : w.unit == "rad" ? "tilt [µrad]"
-                                           : "displacement [µm]",
-              .series = {{.label = is_exchange ? "conductance"
-                                   : is_heat   ? "heat"
-                                               : diagnosis::quantity_word(w.unit),
-                          .x = {},
-                          .y = is_exchange ? w.conductance_W_K : w.value,
-                          .style = output::Series::Style::kSteps}}};
-    for (double t_s : w.time_s) plot.series[0].x.push_back(t_s / 60.0);
-    if (!is_heat) {
-      for (double& y : plot.series[0].y) y *= 1e6;
-    }
-    plots.push_back(std::move(plot));
-  }
-  add(section, std::move(table));
-  for (Plot& plot : plots) add(section, std::move(plot));
-  if (section.blocks.size() == 1 && std::get<Table>(section.blocks.front()).rows.empty()) section = {};
-  add_waveforms_data(section, d);
   return section;
 }
 
@@ -400,46 +316,6 @@ Section data_section(const diagnosis::Diagnosis& d) {
                           {.key = "left_out", .title = "left out"}}};
   for (const auto& f : d.data) table.rows.push_back({f.channel, f.what, f.leaves_out});
   add(section, std::move(table));
-  return section;
-}
-
-Section candidates_section(const diagnosis::Diagnosis& d) {
-  constexpr std::size_t kMost = 15;
-  Section section{.title = "Best single candidates", .detail = true};
-  Bars bars{
-      fmt::format("Evidence [nats] that each would bring alone beside scatter, its signature taken at trial size (linear "
-                  "theory); the best of {} candidates. What stands up is fitted in full and pays for being one of many.",
-                  d.n_candidates),
-      {}};
-  std::set<std::size_t> shown;
-  for (const diagnosis::Score& s : d.search.scores) {
-    if (bars.bars.size() == kMost || !(s.gain > 0.0)) break;
-    if (!shown.insert(s.candidate).second) continue;  // by a better law
-    const diagnosis::Candidate& c = d.search.candidates.at(s.candidate);
-    bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
-                         fmt::format("{:.1f}", s.gain)});
-  }
-  const diagnosis::Chance& chance = d.search.chance;
-  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  add(section,
-      Text{fmt::format("The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
-                       "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
-                       "it is named; found by simulating this machine with these records.",
-                       chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
-  if (bars.bars.empty()) {
-    add(section, Text{"None would bring evidence."});
-    return section;
-  }
-  add(section, std::move(bars));
-  const std::vector<MissingHeat> heat = missing_heat(d, d.search.candidates);
-  if (heat.empty()) return section;
-  Bars by_body{
-      "Where missing heat would explain the residual: evidence [nats] of heat in each body, with its power; negative: the "
-      "scenario has too much.",
-      {}};
-  for (const MissingHeat& h : heat)
-    by_body.bars.push_back({h.body, h.evidence, fmt::format("{:.1f} nats, {:.3g} W ({})", h.evidence, h.power_W, h.law)});
-  add(section, std::move(by_body));
   return section;
 }
 
@@ -511,14 +387,13 @@ void add_evidence(Section& body, const DiagnosisFindings& found, const std::stri
   const diagnosis::Diagnosis& d = found.diagnosis;
   body.sections.push_back(compared_data(found.measured.runs));
   if (d.unexplained)
-    body.sections.push_back(unexplained_section(*d.unexplained));
+    body.sections.push_back(unexplained_section(d));
   else
     add(body, Value{.key = "unexplained"});
   if (d.wander)
     body.sections.push_back(wander_section(*d.wander));
   else
     add(body, Value{.key = "process_noise"});
-  body.sections.push_back(waveforms_section(d));
   body.sections.push_back(data_section(d));
   body.sections.push_back(gain_section(d));
   for (Section& record : residual_sections(found.measured, d, after)) body.sections.push_back(std::move(record));
@@ -544,7 +419,10 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   add(body, verdict_box(d, compared_of(found.measured.runs)));
   add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
-  if (!std::isnan(d.statements.nothing)) body.sections.push_back(statements_section(d));
+  if (!std::isnan(d.statements.nothing)) {
+    body.sections.push_back(statements_section(d));
+    body.sections.push_back(courses_section(d));
+  }
   add_statements_data(body, d);
   add(body, causes_table(d));
   add_beside_causes(body, d);
@@ -554,7 +432,6 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
     body.sections.push_back(experiment_section(*d.experiment));
   else
     add(body, Value{.key = "discriminating_experiment"});
-  body.sections.push_back(candidates_section(d));
   add_evidence(body, found, "extended");
   body.sections.push_back(numbers_section(d, true));
   body.sections.push_back(written_section(found, "extended"));
@@ -565,7 +442,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   const diagnosis::Diagnosis& d = found.diagnosis;
   output::Document document = begin("calibration", found, made_by);
   Section& body = document.body;
-  const std::string warning = calibration_warning(d, d.search.candidates);
+  const std::string warning = calibration_warning(d);
   const bool fits = warning.empty();
   add(body, output::Verdict{.key = "",
                             .kind = fits ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
@@ -579,7 +456,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   add(body, Value{.key = "discriminating_experiment"});
   body.sections.push_back(numbers_section(d, false));
   add_evidence(body, found, "calibrated");
-  if (!fits) body.sections.push_back(candidates_section(d));
+  if (!fits && !d.statements.stated.empty()) body.sections.push_back(statements_section(d));
   body.sections.push_back(written_section(found, "calibrated_scenario"));
   return document;
 }

@@ -39,37 +39,36 @@ void add_causes(std::vector<ResultKey>& keys) {
   using diagnosis::Standing;
   const std::vector<std::string> standings = {diagnosis::word(Standing::kSuspected), diagnosis::word(Standing::kAmbiguous),
                                               diagnosis::word(Standing::kNamed)};
-  keys.insert(keys.end(), {object("causes[]", "what the simulation gets wrong, surest first"),
-                           text("causes[].effect", "key of the catalogue of effects"),
-                           words("causes[].standing", standings, "how surely it is a cause"),
-                           text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
-                           text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
-                           object("causes[].parameters[]", "its numbers"),
-                           text("causes[].parameters[].name", "key in the scenario"),
-                           number("causes[].parameters[].value", "in `unit`"),
-                           text("causes[].parameters[].unit", "\"1\" or empty: none"),
-                           number("causes[].parameters[].ci95[]", "interval of 95 %, from and to"),
-                           sometimes(text("causes[].doubt", "why it is only suspected")),
-                           flag("causes[].written", "whether the extended scenario holds it"),
-                           sometimes(text("causes[].why_not_written", "why it does not")),
-                           sometimes(object("causes[].found_again")),
-                           count("causes[].found_again.searches", "searches that were made without a part of the rows"),
-                           count("causes[].found_again.found", "of these, how many found it again"),
-                           or_null(number("causes[].kept_out_nats",
-                                          "how much likelier rows kept out of the fit are with it than without it [nats]")),
-                           or_null(number("causes[].chance",
-                                          "share of faultless machines of which the best candidate has as much evidence; of "
-                                          "a cause below the bars, some candidate is as rare")),
-                           object("causes[].odds", "how the evidence shares what was fitted in its place"),
-                           number("causes[].odds.share", "its own"),
-                           number("causes[].odds.kind", "of its effect, wherever it sits"),
-                           number("causes[].odds.place", "of its place, within its kind"),
-                           number("causes[].log_evidence_gain",
-                                  "logarithm of how much more probable the data are with it, after its price [nats]"),
-                           ResultKey{.path = "causes[].alternatives",
-                                     .kind = ResultKind::kLike,
-                                     .meaning = "what the data cannot tell from it",
-                                     .like = "causes[]"}});
+  keys.insert(keys.end(),
+              {object("causes[]", "what the simulation gets wrong, surest first"),
+               text("causes[].effect", "key of the catalogue of effects"),
+               words("causes[].standing", standings, "how surely it is a cause"),
+               text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
+               text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
+               object("causes[].parameters[]", "its numbers"),
+               text("causes[].parameters[].name", "key in the scenario"),
+               number("causes[].parameters[].value", "in `unit`"),
+               text("causes[].parameters[].unit", "\"1\" or empty: none"),
+               number("causes[].parameters[].ci95[]", "interval of 95 %, from and to"),
+               sometimes(text("causes[].doubt", "why it is only suspected")),
+               flag("causes[].written", "whether the extended scenario holds it"),
+               sometimes(text("causes[].why_not_written", "why it does not")),
+               sometimes(object("causes[].found_again")),
+               count("causes[].found_again.searches", "searches that were made without a part of the rows"),
+               count("causes[].found_again.found", "of these, how many found it again"),
+               or_null(number("causes[].kept_out_nats",
+                              "how much likelier rows kept out of the fit are with it than without it [nats]")),
+               number("causes[].probability", "of the statement that it is a name of; of a number that has gone too far 0"),
+               object("causes[].odds", "how the evidence shares what was fitted in its place"),
+               number("causes[].odds.share", "its own"),
+               number("causes[].odds.kind", "of its effect, wherever it sits"),
+               number("causes[].odds.place", "of its place, within its kind"),
+               number("causes[].log_evidence_gain",
+                      "logarithm of how much more probable the data are with it, after its price [nats]"),
+               ResultKey{.path = "causes[].alternatives",
+                         .kind = ResultKind::kLike,
+                         .meaning = "what the data cannot tell from it",
+                         .like = "causes[]"}});
 }
 
 void add_statements(std::vector<ResultKey>& keys) {
@@ -83,6 +82,7 @@ void add_statements(std::vector<ResultKey>& keys) {
              {"heat", "exchange", "capacity", "reading", "displacement", "ambient", "speed", "clock"}, "what is wrong"),
        text("statements[].place[]",
             "body, surface, joint, thermometer or displacement; of an exchange both ends; \"all\": of the whole machine"),
+       sometimes(text("statements[].at", "the surface of that body, or the joint of these")),
        text("statements[].follows",
             "constant, running, power of NAME, temperature of NAME, difference to NAME, since start, since stop, window, "
             "unknown ..."),
@@ -95,7 +95,12 @@ void add_statements(std::vector<ResultKey>& keys) {
        number("statements[].p_quantity", "that this quantity is wrong, wherever"),
        number("statements[].p_place", "that the place is this one, if the quantity is wrong"),
        number("statements[].p_follows", "that it follows this, if quantity and place are right"),
-       number("statements[].log_evidence", "of the best set that it is in, over nothing [nats]")});
+       number("statements[].log_evidence", "of the best set that it is in, over nothing [nats]"),
+       object("statements[].course[]",
+              "what the records ask for there over time, whatever it follows, if it alone is wrong"),
+       text("statements[].course[].record", "file of the record"),
+       number("statements[].course[].edge_min[]", "beginnings of the steps, and the end of the last one [min]"),
+       number("statements[].course[].value[]", "of each step, in `unit`")});
 }
 
 void add_experiment(std::vector<ResultKey>& keys) {
@@ -133,19 +138,12 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        number("unexplained.channels[].rms", "in `unit`"),
        text("unexplained.channels[].unit", "K, um or urad"),
        number("unexplained.channels[].sigmas", "beyond what noise would have, in standard deviations of that"),
-       text("unexplained.waveform_correlates_with", "the drive that it looks like; empty: none"),
-       number("unexplained.correlation", "with that"),
-       sometimes(text("unexplained.heat_would_sit_in", "region of which missing heat would explain most of it")),
        sometimes(
            flag("unexplained.fails_held_out", "true where the causes predict kept-out rows clearly worse than none does")),
        sometimes(number("unexplained.ambient_off_K",
                         "how far off its record an ambient is fitted beside the causes, where that is more than 1 K")),
-       sometimes(object("unexplained.one_cause", "one unknown quantity that explains more than the causes named")),
-       words("unexplained.one_cause.quantity", {"heat", "hall temperature", "reading"}, ""),
-       text("unexplained.one_cause.where", ""),
-       text("unexplained.one_cause.follows", "what it follows; empty: nothing that is recorded"),
-       count("unexplained.one_cause.instead_of[]", "indices of the causes that it would replace"),
-       number("unexplained.one_cause.log_evidence_gain", "over these [nats]"),
+       sometimes(count("unexplained.statement", "of `statements`, counted from 0: that the catalogue has no name for")),
+       sometimes(text("unexplained.statement_in_words", "the same")),
        or_null(object("process_noise", "where the model errs more than three times the noise")),
        number("process_noise.stays_alike_min", "time for which the heat stays alike [min]"),
        sometimes(flag("process_noise.at_most", "true where that time is the shortest of those tried")),
@@ -154,30 +152,6 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        text("process_noise.bodies[].where", "body"),
        number("process_noise.bodies[].standard_deviation_W", "of heat that comes and goes [W]"),
        number("process_noise.bodies[].share", "of what all of it does to the readings")});
-}
-
-void add_waveforms(std::vector<ResultKey>& keys) {
-  keys.insert(keys.end(),
-              {object("waveforms[]", "heat or growth that is missing, over time"),
-               text("waveforms[].record", "file of the record"),
-               words("waveforms[].of", {"heat", "growth"}, ""),
-               text("waveforms[].where", "body, or displacement"),
-               sometimes(text("waveforms[].to", "the other body: `value` is then a conductance between them [W/K]")),
-               sometimes(number("waveforms[].log_likelihood_gain", "over no such heat [nats]")),
-               sometimes(number("waveforms[].explained", "share of the squared misses of the readings")),
-               object("waveforms[].shape"),
-               text("waveforms[].shape.class", "constant, step, windows, decay, proportional, periodic or none of these"),
-               number("waveforms[].shape.size", "in `unit`"),
-               text("waveforms[].shape.unit", "W, W/K, um or urad"),
-               number("waveforms[].shape.standard_deviation", "of the size, in `unit`"),
-               number("waveforms[].shape.explained", "share of the squares of the waveform"),
-               sometimes(number("waveforms[].shape.time_min", "of a step or decay: when it begins [min]")),
-               sometimes(number("waveforms[].shape.time_constant_min", "of a decay [min]")),
-               sometimes(number("waveforms[].shape.period_min", "of a periodic one [min]")),
-               sometimes(text("waveforms[].shape.follows", "of a proportional one: the channel")),
-               sometimes(number("waveforms[].shape.windows_min[][]", "of windows: from and to [min]")),
-               number("waveforms[].time_min[]", "[min]"),
-               number("waveforms[].value[]", "in `shape.unit`")});
 }
 
 void add_gain(std::vector<ResultKey>& keys) {
@@ -225,33 +199,18 @@ void add_gain(std::vector<ResultKey>& keys) {
 }
 
 void add_search(std::vector<ResultKey>& keys) {
-  keys.insert(keys.end(),
-              {flag("complete", "false: it was ended early, and tells what it knew by then"),
-               flag("weighed_by_model_error", "whether what the model misses counts as noise"),
-               count("n_candidates", "causes that were weighed"),
-               object("chance", "evidence of the best candidate where nothing is wrong [nats]"),
-               or_null(number("chance.median", "")),
-               or_null(number("chance.one_in_100", "of machines")),
-               or_null(number("chance.one_in_10000", "of machines")),
-               count("chance.simulations", "0: by a formula"),
-               sometimes(object("bars", "evidence that a cause must have")),
-               words("bars.set_by", {"simulation", "formula"}, ""),
-               number("bars.suspected_nats[]", "of a first, a second and a third cause [nats]"),
-               number("bars.named_nats", "[nats]"),
-               number("bars.named_beside_nats", "of a second cause [nats]"),
-               number("bars.named_timed_nats",
-                      "of a cause that begins or ends at a time of its own, unless it is an instrument's [nats]"),
-               number("bars.chance_of_suspected", "share of faultless machines of which a candidate reaches it"),
-               number("bars.chance_of_named", "the same"),
-               object("calibrated[]", "the scenario's own numbers as fitted"),
-               text("calibrated[].name", "as the scenario calls it"),
-               number("calibrated[].value", "in `unit`"),
-               text("calibrated[].unit", ""),
-               number("calibrated[].sigmas_of_prior", "how far it moved, in standard deviations of what is known of it"),
-               number("calibrated[].ci95[]", "interval of 95 %, from and to"),
-               number("calibrated[].known_to", "one standard deviation of what is known of it, in `known_to_unit`"),
-               text("calibrated[].known_to_unit", "% of the number, or a unit"),
-               sometimes(flag("calibrated[].written", "whether the scenario written holds it"))});
+  keys.insert(
+      keys.end(),
+      {flag("complete", "false: it was ended early, and tells what it knew by then"),
+       flag("weighed_by_model_error", "whether what the model misses counts as noise"),
+       count("n_candidates", "causes that were weighed"), object("calibrated[]", "the scenario's own numbers as fitted"),
+       text("calibrated[].name", "as the scenario calls it"), number("calibrated[].value", "in `unit`"),
+       text("calibrated[].unit", ""),
+       number("calibrated[].sigmas_of_prior", "how far it moved, in standard deviations of what is known of it"),
+       number("calibrated[].ci95[]", "interval of 95 %, from and to"),
+       number("calibrated[].known_to", "one standard deviation of what is known of it, in `known_to_unit`"),
+       text("calibrated[].known_to_unit", "% of the number, or a unit"),
+       sometimes(flag("calibrated[].written", "whether the scenario written holds it"))});
 }
 
 void add_compared(std::vector<ResultKey>& keys) {
@@ -274,7 +233,6 @@ std::vector<ResultKey> common_keys(const std::string& scenario) {
   add_causes(keys);
   add_experiment(keys);
   add_unexplained(keys);
-  add_waveforms(keys);
   add_gain(keys);
   add_search(keys);
   keys.push_back(object(scenario.c_str(), "the scenario that is written"));

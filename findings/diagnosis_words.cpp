@@ -15,6 +15,7 @@ using diagnosis::Estimate;
 using diagnosis::kTooFar;
 
 constexpr double kClearlyBetter = 0.95;  // of the RMSE
+constexpr double kEvenOdds = 0.5;        // that nothing is missing
 
 std::string unit_of(const Estimate& e) {
   return e.unit == "1" ? "" : " " + e.unit;
@@ -75,28 +76,6 @@ std::string taken_up_text(const diagnosis::Diagnosis& d) {
       fmt::join(left_out, " and "), far.empty() ? "" : fmt::format(": {} moved", fmt::join(far, ", ")));
 }
 
-std::string bars_text(const diagnosis::Diagnosis& d) {
-  const diagnosis::Chance& chance = d.search.chance;
-  const diagnosis::Bars& bars = d.search.bars;
-  if (bars.suspected.empty()) return "";
-  const auto share = [&](double gain) { return fmt::format("{:.2g} %", 100.0 * chance.share_above(gain)); };
-  const std::string how =
-      chance.n_simulated > 0
-          ? fmt::format("as {} simulated sets of readings of this machine with nothing wrong say", chance.n_simulated)
-          : "by the formula, since nothing was simulated";
-  return fmt::format(
-      "A cause is suspected from {:.1f} nats on, which chance alone reaches at {} of faultless machines, and named from "
-      "{:.1f} "
-      "({}), one of several or with chosen windows from {:.1f}, one that begins or ends at a time of its own, unless it is "
-      "an instrument's, from {:.1f}; "
-      "a second one beside another is suspected from {:.1f}; {}. "
-      "Where none is, the "
-      "candidate with the least chance is suspected if fewer than {:.2g} % of faultless machines have one with as little.",
-      bars.suspected.front(), share(bars.suspected.front()), bars.named, share(bars.named), bars.named_beside,
-      bars.named_timed, bars.suspected.size() > 1 ? bars.suspected[1] : bars.suspected.front(), how,
-      100.0 * diagnosis::SearchOptions{}.wrongly_suspected_faint);
-}
-
 std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
   if (!d.ended_at.empty()) return "";
   const diagnosis::KeptOutMisses& m = d.misses;
@@ -137,7 +116,7 @@ std::string better_regression_text(const diagnosis::Diagnosis& d) {
                      fmt::join(better, "; "));
 }
 
-std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
+std::string calibration_warning(const diagnosis::Diagnosis& d) {
   std::vector<std::string> reasons;
   if (d.verdict == diagnosis::Verdict::kInsufficientData) reasons.push_back(d.reason);
   if (d.unexplained) {
@@ -145,12 +124,10 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
     reasons.push_back(fmt::format("the {} is left with {:.2g} {} that is not noise", channel_text(worst.name, worst.unit),
                                   worst.rms, worst.unit));
   }
-  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  if (!d.search.scores.empty() &&
-      d.search.scores.front().gain > price + d.search.chance.gain_at(diagnosis::SearchOptions{}.wrongly_suspected)) {
-    const diagnosis::Score& s = d.search.scores.front();
-    reasons.push_back(fmt::format("{} at {} would bring {:.0f} nats of evidence", candidates.at(s.candidate).effect,
-                                  candidates.at(s.candidate).where, s.gain));
+  if (!d.statements.stated.empty() && d.statements.nothing < kEvenOdds) {
+    const diagnosis::Stated& s = d.statements.stated.front();
+    reasons.push_back(fmt::format("something is missing with a probability of {:.0f} %, most likely {}",
+                                  100.0 * (1.0 - d.statements.nothing), diagnosis::words(s.says)));
   }
   for (const Estimate& e : d.calibrated) {
     if (std::abs(e.deviation) > kTooFar) reasons.push_back(fmt::format("{} moved by {:+.1f} sigmas", e.name, e.deviation));
@@ -160,18 +137,6 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
   if (!d.written.keeps_numbers) return fmt::format("{}. `diagnose` looks for what is wrong.", fmt::join(reasons, "; "));
   return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
                      fmt::join(reasons, "; "));
-}
-
-std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
-  std::vector<MissingHeat> list;  // scores come best first, several laws a candidate
-  for (const diagnosis::Score& s : d.search.scores) {
-    const diagnosis::Candidate& c = candidates.at(s.candidate);
-    if (c.effect != "heat_source" || !(s.gain > 0.0) || s.start.size() == 0) continue;
-    const diagnosis::Variant& v = c.variants.at(s.variant);
-    const bool has_better = std::any_of(list.begin(), list.end(), [&](const auto& h) { return h.body == c.where; });
-    if (!has_better) list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
-  }
-  return list;
 }
 
 }  // namespace driftwright::findings

@@ -28,12 +28,8 @@ struct Compared {
 
 /// The unit that a statement's size is shown in, and what it is multiplied by for that.
 [[nodiscard]] std::pair<std::string, double> shown_unit(const diagnosis::Stated& stated);
-/// "heat in spindle, while it runs", "thermometer t_head, 84 % of the ambient from 95 min on": what is missing, where, and what it follows.
-[[nodiscard]] std::string statement_text(const diagnosis::Statement& statement);
 /// Its size with the interval of 95 %: "40 W (35 to 46)".
 [[nodiscard]] std::string size_text(const diagnosis::Stated& stated);
-/// Its records: "all", "monday", "tuesday and friday".
-[[nodiscard]] std::string records_text(const diagnosis::Statement& statement);
 
 /// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
 [[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
@@ -41,23 +37,9 @@ struct Compared {
 [[nodiscard]] std::string channel_text(const std::string& name, const std::string& unit);
 /// Which causes the scenario's own numbers may have taken up, since they were fitted anew without them, and which have gone far in doing so, a sentence; else "".
 [[nodiscard]] std::string taken_up_text(const diagnosis::Diagnosis& d);
-/// The bars that causes were held to, and how often chance alone reaches them, a sentence or two.
-[[nodiscard]] std::string bars_text(const diagnosis::Diagnosis& d);
 /// What of the gain on kept-out rows is calibration's, the named causes' and that of all that is written, a sentence.
 [[nodiscard]] std::string shares_of_gain_text(const diagnosis::Diagnosis& d);
 /// Why the numbers alone do not explain a measurement that a search without effects was made on; "" where they do.
-/// @param candidates  those that the scores number
-[[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d,
-                                              const std::vector<diagnosis::Candidate>& candidates);
-/// Best claim of missing heat in a region or lumped node, on top of scatter alone.
-struct MissingHeat {
-  std::string body;
-  double evidence = 0.0;  ///< nats, by the linear theory
-  double power_W = 0.0;   ///< at the claim's stated speed, or at all times; < 0: the scenario has too much
-  std::string law;
-};
-/// Strongest first; bodies in which no heat brings evidence are left out.
-[[nodiscard]] std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d,
-                                                    const std::vector<diagnosis::Candidate>& candidates);
+[[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d);
 
 }  // namespace driftwright::findings

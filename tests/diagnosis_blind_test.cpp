@@ -133,19 +133,14 @@ TEST(EffectOutsideTheCatalogue, IsCalledByWhatDoesTheSameAtItsPlace) {
   EXPECT_EQ(heat.diagnosis.causes[0].where, heat.truth["effects"][0]["where"]) << heat.diagnosis.reason;
 }
 
-TEST(EffectOutsideTheCatalogue, IsOneCauseWithoutANameWhereTwoNamedOnesWouldDo) {
-  const Told coolant = told(55);  // the catalogue is without heat that is constant
-  ASSERT_TRUE(coolant.diagnosis.unexplained && coolant.diagnosis.unexplained->one_cause) << coolant.diagnosis.reason;
-  EXPECT_EQ(coolant.diagnosis.unexplained->one_cause->where, coolant.truth["effects"][0]["where"]);
-  EXPECT_EQ(coolant.diagnosis.unexplained->one_cause->follows, "nothing");
-  const double true_W = -coolant.truth["effects"][0]["parameters"][0]["value"].get<double>();
-  EXPECT_NEAR(coolant.diagnosis.unexplained->one_cause->value.front(), true_W,
-              0.25 * std::abs(true_W));  // d' 20: 5 % and scatter
-
-  const Told creep = told(215);  // of the turns made: no law of the catalogue
-  ASSERT_TRUE(creep.diagnosis.unexplained && creep.diagnosis.unexplained->one_cause) << creep.diagnosis.reason;
-  EXPECT_EQ(creep.diagnosis.unexplained->one_cause->where, creep.truth["effects"][0]["where"]);
-  EXPECT_EQ(creep.diagnosis.unexplained->one_cause->follows, "the turns made");
+TEST(EffectOutsideTheCatalogue, IsStatedAtItsPlace) {
+  for (const std::uint64_t seed :
+       {55, 215}) {  // constant heat, its key taken out; creep of the turns made, no law of the catalogue
+    const Told t = told(seed);
+    ASSERT_FALSE(t.diagnosis.statements.stated.empty());
+    const std::vector<std::string> place = {t.truth["effects"][0]["where"]};
+    EXPECT_EQ(t.diagnosis.statements.stated[0].says.place, place) << t.diagnosis.reason;
+  }
 }
 
 }  // namespace

@@ -62,56 +62,26 @@ TEST(DiagnosisData, CausesThatAreNotWrittenSayWhy) {
   EXPECT_EQ(json["why_not_written"], "rows that were kept out are predicted worse with it");
 }
 
-// Bars of a machine at which chance has less to offer than is asked for at least, and the shares of Gumbel's distribution there.
-TEST(DiagnosisData, BarsAreThoseInForceWithTheirChance) {
-  diagnosis::Diagnosis d;
-  d.search.chance = {.mode = -4.0, .spread = 0.5, .n_simulated = 200};
-  d.search.bars = diagnosis::bars_of(d.search.chance, {});
-  const Json json = output::section_json(search_data(d));
-  EXPECT_EQ(json["chance"]["simulations"], 200);
-  EXPECT_EQ(json["bars"]["set_by"], "simulation");
-  EXPECT_EQ(json["bars"]["suspected_nats"], Json::parse("[0.5, 3.0, 12.0]"));
-  EXPECT_EQ(json["bars"]["named_nats"], 4.0);
-  EXPECT_EQ(json["bars"]["named_beside_nats"], 8.0);
-  EXPECT_NEAR(json["bars"]["chance_of_suspected"], -std::expm1(-std::exp(-4.5 / 0.5)), 1e-9);
-  EXPECT_THAT(bars_text(d), ::testing::AllOf(::testing::HasSubstr("suspected from 0.5 nats"),
-                                             ::testing::HasSubstr("named from 4.0"), ::testing::HasSubstr("200 simulated")));
-  d.search.chance = {.mode = 1.0, .spread = 1.0};  // and where chance offers more
-  d.search.bars = diagnosis::bars_of(d.search.chance, {});
-  const Json above = output::section_json(search_data(d));
-  EXPECT_NEAR(above["bars"]["suspected_nats"][0], 1.0 + 4.6, 0.01);
-  EXPECT_NEAR(above["bars"]["named_nats"], 1.0 + 9.21, 0.01);
-  EXPECT_EQ(above["bars"]["set_by"], "formula");
-}
-
 TEST(DiagnosisData, NoCausesAreAnEmptyList) {
   output::Section section;
   add_causes_data(section, {});
   EXPECT_EQ(output::section_json(section)["causes"], Json::array());
 }
 
-// As programs read them: a step of 5 W, and windows as pairs of minutes.
-TEST(DiagnosisData, WaveformsHaveTheirCourse) {
+TEST(DiagnosisData, StatementsHaveTheirCourseInShownUnits) {
   diagnosis::Diagnosis d;
-  diagnosis::Waveform w;
-  w.run = "monday";
-  w.where = "head";
-  w.of = diagnosis::Waveform::Of::kHeat;
-  w.time_s = {0.0, 60.0};
-  w.value = {0.0, 5.0};
-  w.shape.shape = diagnosis::Shape::kWindows;
-  w.shape.size = 5.0;
-  w.shape.windows_s = {{60.0, 120.0}};
-  d.waveforms.push_back(w);
+  diagnosis::Stated s;
+  s.says.quantity = diagnosis::StatedQuantity::kDisplacement;
+  s.says.place = {"nose"};
+  s.says.unit = "m";
+  s.course = {{.record = "monday", .edge_s = {0.0, 60.0, 180.0}, .value = {0.0, 5e-6}}};
+  d.statements.stated.push_back(s);
   output::Section section;
-  add_waveforms_data(section, d);
-  const Json json = output::section_json(section)["waveforms"][0];
+  add_statements_data(section, d);
+  const Json json = output::section_json(section)["statements"][0]["course"][0];
   EXPECT_EQ(json["record"], "monday");
-  EXPECT_EQ(json["of"], "heat");
-  EXPECT_EQ(json["time_min"], Json::parse("[0.0, 1.0]"));
+  EXPECT_EQ(json["edge_min"], Json::parse("[0.0, 1.0, 3.0]"));
   EXPECT_EQ(json["value"], Json::parse("[0.0, 5.0]"));
-  EXPECT_EQ(json["shape"]["unit"], "W");
-  EXPECT_EQ(json["shape"]["windows_min"], Json::parse("[[1.0, 2.0]]"));
 }
 
 }  // namespace

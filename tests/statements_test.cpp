@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/inquiry.hpp"
+#include "diagnosis/naming.hpp"
 #include "diagnosis/scatter.hpp"
 #include "tests/lumped_records.hpp"
 
@@ -17,22 +18,24 @@ constexpr double kNoise_K = 0.05, kNoise_um = 0.2;
 /// A fitter of the scenario's numbers beside records, its noise known.
 struct Ground {
   std::unique_ptr<Fitter> fitter;
-  Prediction as_written;
 
   explicit Ground(const Beside& b) {
     std::vector<Knob> numbers = scatter(*b.twin);
     for (Knob& k : ambient_scatter(b.runs)) numbers.push_back(std::move(k));
     fitter = std::make_unique<Fitter>(*b.twin, b.runs, numbers,
                                       unknown_columns(*b.twin, nullptr, 1.0, b.runs, b.twin->as_written()));
-    Twin::Workspace workspace(*b.twin);
-    as_written = fitter->predict({}, Eigen::VectorXd::Zero(fitter->n_nuisance()), workspace);
     std::map<std::string, NoiseModel> noise;
     for (const MeasuredRun& run : b.runs) {
       for (const MeasuredChannel& c : run.channels) noise[c.name] = {.white = c.unit == "K" ? kNoise_K : 1e-6 * kNoise_um};
     }
     fitter->set_noise(noise);
   }
-  [[nodiscard]] Posterior stated() const { return statements_of(*fitter, as_written, {}); }
+  [[nodiscard]] Posterior stated() const {
+    Twin::Workspace workspace(fitter->twin());
+    const Fit fit = fitter->fit({}, Eigen::VectorXd(0), workspace);
+    fitter->settle({}, fit);
+    return StatedBeside(*fitter, {}, fit).posterior({});
+  }
 };
 
 std::string first(const Posterior& p) {
@@ -191,6 +194,91 @@ TEST(Statements, ACourseThatTheCatalogueHasNoWordForIsSaidToFollowNothing) {
   ASSERT_FALSE(p.stated.empty());
   EXPECT_EQ(p.stated[0].says.quantity, StatedQuantity::kHeat) << first(p);
   EXPECT_EQ(p.stated[0].says.place, std::vector<std::string>{"column"}) << first(p);
+}
+
+// Readings of three thermometers move together by a share of the air: one number says it, at all of them.
+TEST(Statements, WhatAllThermometersHaveInCommonIsOneStatement) {
+  const Posterior p = stated_of(
+      "{type: sensor_place, sensor: t_head, body: ambient, share: 0.12}\n"
+      "  - {type: sensor_place, sensor: t_column, body: ambient, share: 0.12}",
+      "common_");
+  ASSERT_FALSE(p.stated.empty());
+  EXPECT_EQ(p.stated[0].says.place, (std::vector<std::string>{"t_head", "t_column"})) << first(p);
+  EXPECT_EQ(p.stated[0].says.follows, "difference to ambient");
+}
+
+// The course of any shape at the place of a window: more than half of its 25 W in the window, less than half elsewhere.
+TEST(Statements, TheCourseAtAPlaceIsWhatActedThere) {
+  const Posterior p =
+      stated_of("{type: heat_window, node: column, power: 25 W, windows: [[100 min, 160 min]], in: tuesday}", "course_");
+  const auto heat = std::find_if(p.stated.begin(), p.stated.end(), [](const Stated& s) {
+    return s.says.quantity == StatedQuantity::kHeat && s.says.place == std::vector<std::string>{"column"};
+  });
+  ASSERT_NE(heat, p.stated.end()) << first(p);
+  ASSERT_FALSE(heat->course.empty());
+  for (const StatedCourse& c : heat->course) {
+    ASSERT_EQ(c.edge_s.size(), c.value.size() + 1);
+    for (std::size_t i = 0; i < c.value.size(); ++i) {
+      const double begin_min = c.edge_s[i] / 60.0, end_min = c.edge_s[i + 1] / 60.0;
+      const bool is_in = c.record.find("tuesday") != std::string::npos;
+      const bool is_beside = !is_in || end_min < 95.0 || begin_min > 165.0;
+      if (is_in && begin_min > 105.0 && end_min < 155.0) {
+        EXPECT_GT(c.value[i], 12.5) << c.record << " " << begin_min;
+      } else if (is_beside) {
+        EXPECT_LT(std::abs(c.value[i]), 12.5) << c.record << " " << begin_min;
+      }
+    }
+  }
+}
+
+// What the catalogue calls a statement: effects of its quantity at its place, and no others.
+TEST(Naming, IsByQuantityAndPlace) {
+  const auto statement = [](StatedQuantity q, std::vector<std::string> place, std::string follows = "constant") {
+    return Statement{
+        .quantity = q, .place = std::move(place), .follows = std::move(follows), .law = {}, .in_run = {}, .unit = {}};
+  };
+  const Statement heat = statement(StatedQuantity::kHeat, {"head"}),
+                  path = statement(StatedQuantity::kExchange, {"head", "column"}),
+                  swap = statement(StatedQuantity::kReading, {"t_head", "t_column"}, "exchanged"),
+                  all = statement(StatedQuantity::kHeat, {"all"});
+  EXPECT_TRUE(says(heat, "friction_law", "head"));
+  EXPECT_FALSE(says(heat, "friction_law", "column"));
+  EXPECT_FALSE(says(heat, "link", "head,ambient"));
+  EXPECT_TRUE(says(path, "link", "column,head"));
+  EXPECT_FALSE(says(path, "link", "head,base"));
+  EXPECT_TRUE(says(swap, "sensor_swap", "t_head,t_column"));
+  EXPECT_FALSE(says(swap, "sensor_swap", "t_head,t_base"));
+  EXPECT_TRUE(says(all, "run_state", "monday"));
+  EXPECT_FALSE(says(heat, "run_state", "monday"));
+  EXPECT_TRUE(says(heat, "a_kind_of_somebody_else", "head"));
+}
+
+// A window of a statement becomes a window of the catalogue, at its times; candidates elsewhere are gone.
+TEST(Naming, MakesWindowsOfTheCatalogueAtTheTimesOfAStatement) {
+  const std::string path = write_file("plain.yaml", kTwoNodes);
+  const Beside beside(path, noisy_records(path, "naming_", 60.0, kNoise_K, kNoise_um));
+  Posterior p;
+  p.nothing = 0.0;
+  p.stated.push_back({.says = {.quantity = StatedQuantity::kHeat,
+                               .place = {"column"},
+                               .follows = "window",
+                               .law = "two windows",
+                               .in_run = {1, 0, 0},
+                               .windows = {{.run = 0, .begin_s = 1200.0, .end_s = 3000.0, .wide_s = 300.0},
+                                           {.run = 0, .begin_s = 6000.0, .end_s = 9000.0, .wide_s = 300.0}},
+                               .record = {beside.runs[0].name, beside.runs[1].name, beside.runs[2].name},
+                               .unit = "W"},
+                      .size = 20.0});
+  p.stated.front().windows = {p.stated.front().says, 20.0};
+  const std::vector<Candidate> list = named_by(p, candidates(*beside.twin, beside.runs, {}), *beside.twin, beside.runs, {});
+  ASSERT_FALSE(list.empty());
+  const auto window = std::find_if(list.begin(), list.end(), [](const Candidate& c) { return c.effect == "heat_window"; });
+  for (const Candidate& c : list) EXPECT_EQ(c.where, "column") << c.effect;
+  ASSERT_NE(window, list.end());
+  ASSERT_EQ(window->variants.size(), 1U);
+  EXPECT_EQ(window->variants[0].in, beside.runs[0].name);
+  EXPECT_EQ(window->variants[0].knobs.size(), 5U);  // size, two begins and ends
+  EXPECT_NEAR(window->variants[0].trial_x, 20.0, 1e-9);
 }
 
 }  // namespace

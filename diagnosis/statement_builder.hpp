@@ -1,0 +1,93 @@
+#pragma once
+// Makes the columns of a statement space: what each quantity, at each place, does to the readings as each course asks for it. Of the room alone.
+
+#include "diagnosis/scene.hpp"
+#include "diagnosis/statement.hpp"
+
+namespace driftwright::diagnosis {
+
+/// A course in time, of any quantity that takes one.
+struct TimedCourse {
+  std::string follows, law;
+  std::vector<Eigen::RowVectorXd> at_row, in_interval;  ///< by run
+  bool rests = false;                                   ///< nothing while the machine has not been started
+};
+
+inline constexpr double kUsualLogarithm = 0.7;  ///< of a factor's logarithm: what is typical of one that is wrong
+
+class StatementBuilder {
+ public:
+  StatementBuilder(StatementSpace& space, const Fitter& fitter, const TwinState& state);
+  /// All columns and cells of the space.
+  void build();
+
+ private:
+  using Body = effects::Body;
+  using Row = Eigen::RowVectorXd;
+  struct Channel {
+    std::string name, unit;
+    double swing = 1.0;
+    int output = -1;
+  };
+  using Loads = std::vector<LinearOperator::Load>;
+  double swing(const std::string& name) const;
+  /// Course of a function of the drive.
+  TimedCourse of_drive(std::string follows, std::string law, const std::function<double(const Drive&)>& u) const;
+  void make_courses();  ///< statement_courses.cpp
+  static double value_at(const TimeSeries& series, double t_s);
+  void add(Statement says, std::vector<Acting> acts);
+  Acting respond(const std::shared_ptr<const Loads>& loads, const TimedCourse& course) const;
+  /// A channel alone. @param course  of the rows by run
+  static Acting alone(const std::string& channel, const std::vector<Row>& course);
+  std::vector<Eigen::Index> edges(std::size_t r) const;
+  void add_cells(Statement says, std::vector<Acting> acts, bool lasts = false);
+  void add_heat_cells(const Statement& says, const std::shared_ptr<const Loads>& loads);
+
+  // of the machine (statement_machine.cpp)
+  void heats();
+  /// All own heat, and all exchange with the ambient: states of running.
+  void all_alike();
+  /// Another size, exponent or growth with temperature of the heat that a body has.
+  void own_laws(const Body& body, const Statement& says, const std::shared_ptr<const Loads>& loads);
+  void exchanges();
+  /// What two bodies exchange by a third one that nobody wrote, to first order: a body between them, with a way of its own to the ambient (1 W/K each way: a third of it is seen between any
+  /// two of the three); the air of a guard, which their loss warms over the ambient by a resistance [K/W].
+  void by_a_third(const Statement& of_both, const Body& a, const Body& b, double loss_a_W_K, double loss_b_W_K);
+  void conductivities();
+  void capacities();
+
+  // of its instruments (statement_instruments.cpp)
+  Row predicted(std::size_t r, const std::string& name) const;
+  template <class Of>
+  std::vector<Row> by_run(Of of) const {
+    std::vector<Row> rows;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      Row row = of(r);
+      rows.push_back(row.size() > 0 ? row : Row(Row::Zero(machine_[r].n_rows())));
+    }
+    return rows;
+  }
+  void readings();
+  /// Thermometers that are wrong together, by one number: what one of them does alone, in all at once.
+  void instruments_in_common();
+
+  // of what is about it (statement_surroundings.cpp)
+  void surroundings();
+  /// What an effect does to all channels, by the twin itself. @param size  that it has: columns are of one of that
+  std::vector<Acting> exactly(const effects::Effect& effect, double size) const;
+  /// The same of another state.
+  std::vector<Acting> exactly(const TwinState& other, double size) const;
+
+  StatementSpace& space_;
+  std::vector<LinearOperator>& machine_;
+  const Fitter& fitter_;
+  const std::vector<MeasuredRun>& runs_;
+  effects::DoubtScene scene_;
+  TwinState state_;
+  std::vector<Channel> channels_;
+  std::vector<TimedCourse> courses_;
+  std::size_t n_drives_ = 0;  ///< of the courses, the constant among them
+  bool settled_ = false;
+};
+
+}  // namespace driftwright::diagnosis
