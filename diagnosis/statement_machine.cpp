@@ -51,39 +51,32 @@ void StatementBuilder::heats() {
 }
 
 void StatementBuilder::all_alike() {
+  const auto say = [&](StatedQuantity quantity, const char* follows, std::string law, double size, const char* unit,
+                       std::vector<Acting> acts) {
+    add({.quantity = quantity,
+         .place = {"all"},
+         .follows = follows,
+         .law = std::move(law),
+         .in_run = {},
+         .unit_size = size,
+         .unit = unit},
+        std::move(acts));
+  };
   auto heat = std::make_shared<Loads>(), air = std::make_shared<Loads>();
   for (const LinearOperator& m : machine_) {
     heat->push_back(m.all_heat());
     air->push_back(m.all_loss());
   }
-  add({.quantity = StatedQuantity::kHeat,
-       .place = {"all"},
-       .follows = "own heat",
-       .law = "factor on all heat",
-       .in_run = {},
-       .unit_size = kUsualLogarithm,
-       .unit = "1"},
-      {respond(heat, courses_.front())});
-  add({.quantity = StatedQuantity::kExchange,
-       .place = {"all"},
-       .follows = "constant",
-       .law = "factor on all loss to the ambient",
-       .in_run = {},
-       .unit_size = kUsualLogarithm,
-       .unit = "1"},
+  say(StatedQuantity::kHeat, "own heat", "factor on all heat", kUsualLogarithm, "1", {respond(heat, courses_.front())});
+  say(StatedQuantity::kExchange, "constant", "factor on all loss to the ambient", kUsualLogarithm, "1",
       {respond(air, courses_.front())});
   for (double run_s : kRunBefore_s) {
     if (!scene_.turns) break;
-    add({.quantity = StatedQuantity::kHeat,
-         .place = {"all"},
-         .follows = "before the record",
-         .law = fmt::format("as after {:g} min of its mean drive before the record", run_s / 60.0),
-         .in_run = {},
-         .unit_size = run_s,
-         .unit = "s"},
-        exactly(effects::make_effect("run_state", effects::Place::kSpindle, effects::place_key(effects::Place::kSpindle),
-                                     {{"warmed_up", run_s / 60.0}}),
-                run_s));
+    const effects::Effect before = effects::make_effect(
+        "run_state", effects::Place::kSpindle, effects::place_key(effects::Place::kSpindle), {{"warmed_up", run_s / 60.0}});
+    say(StatedQuantity::kHeat, "before the record",
+        fmt::format("as after {:g} min of its mean drive before the record", run_s / 60.0), run_s, "s",
+        exactly(before, run_s));
   }
 }
 

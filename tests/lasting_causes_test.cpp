@@ -30,7 +30,7 @@ struct Cause {
   const char* law;  ///< part of it
   double size, tolerance;
   const char* believed = "";  ///< an effect of both
-  double as_heat_W = 0.0;     ///< heat in the same place that no reading tells from it; 0: there is none
+  double as_heat_W = 0.0;     ///< constant heat in that body that gives the same readings; 0: none does
 };
 
 /// What is said of the file is what it would hold: numbers of written causes are those that are written, and what is left out says why and who may have taken it up.
