@@ -209,6 +209,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
 }
 
 Verdict verdict_of(const Diagnosis& d) {
+  if (is_wrong_all_over(d)) return Verdict::kSuspected;  // whatever is left beside so many numbers, none of it is one cause
   if (rest_rules(d)) return Verdict::kUnexplained;
   const auto is_any = [&](Standing s) {
     return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });
