@@ -180,11 +180,14 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
   return prediction;
 }
 
+Eigen::VectorXd Fitter::of_machine(Eigen::VectorXd x) const {
+  x.segment(static_cast<Eigen::Index>(scatter_.size()), static_cast<Eigen::Index>(linear_.size())).setZero();
+  return x;
+}
+
 Prediction Fitter::predict_machine(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
                                    Twin::Workspace& workspace) const {
-  Eigen::VectorXd alone = x;
-  alone.segment(static_cast<Eigen::Index>(scatter_.size()), static_cast<Eigen::Index>(linear_.size())).setZero();
-  return predict(hypothesis, alone, workspace);
+  return predict(hypothesis, of_machine(x), workspace);
 }
 
 Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,
@@ -257,12 +260,13 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
   KeptRuns about;
   {
     Twin::Workspace workspace(twin_);
-    base = predict(hypothesis, x, workspace);
+    base = predict_machine(hypothesis, x, workspace);
     about = kept_runs(state(hypothesis, x), workspace);
   }
+  const Eigen::VectorXd at = of_machine(x);
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
-      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, about, i, workspace); },
+      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, at, base, about, i, workspace); },
       listener);
   differences_ = std::move(differences);
 }
@@ -306,15 +310,18 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) const {
   Eigen::MatrixXd slopes = slopes_;
   KeptRuns about;
+  Prediction base;
+  const Eigen::VectorXd x = of_machine(at.x);
   {
     Twin::Workspace workspace(twin_);  // as new as those that are held against it
-    about = kept_runs(state(hypothesis, at.x), workspace);
+    base = predict(hypothesis, x, workspace);
+    about = kept_runs(state(hypothesis, x), workspace);
   }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
       [&](std::size_t i, Twin::Workspace& own) {
         slopes.col(static_cast<Eigen::Index>(i)) =
-            comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, own));
+            comparison_->whitened(slope(hypothesis, x, base, about, i, own));
       });
   return slopes;
 }
