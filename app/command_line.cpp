@@ -75,7 +75,7 @@ void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause
   CLI::Option* record = verb->add_option("--start", start,
                                          "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
                                          "of the scenario: the model runs it first [cold]");
-  verb->add_option("--after-pause", after_pause, "time at rest behind it, such as '30 min' [none]")->needs(record);
+  verb->add_option("--after-pause", after_pause, "time at rest after it, such as '30 min' [none]")->needs(record);
   verb->add_option("--model", model, "reduced or full [reduced; full for lumped nodes alone where the scenario has it]")
       ->check(CLI::IsMember({"reduced", "full"}));
 }
@@ -157,7 +157,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
           ->excludes(replay)
           ->excludes(mqtt);
   verb->add_flag("--sample", options.sample,
-                 "of the agent all observations (/sample), at their own times, not what it tells now")
+                 "of the agent all observations (/sample), at their own times, not only the latest ones")
       ->needs(agent);
   verb->add_option("--topic", options.topics,
                    "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, the id or name of "
@@ -172,7 +172,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::Option* serve =
       verb->add_option("--serve", options.serve,
                        "port of a page for browsers: machine, drift, correction, trust, alarms; 0: any that is free");
-  verb->add_option("--bind", options.bind, "address that the page is served at; beyond loopback it wants --token")
+  verb->add_option("--bind", options.bind, "address that the page is served at; beyond loopback --token is required")
       ->needs(serve)
       ->capture_default_str();
   verb->add_option("--token", options.token,
@@ -261,7 +261,7 @@ void add_import(CLI::App& cli, app::ImportOptions& options) {
       "YAML with the key `columns`: a scenario, or the columns.yaml of an import before [guessed from the file]");
   verb->add_option("--zone", options.zone, "time zone of its stamps, such as Europe/Berlin [a clock that is never set]")
       ->excludes(by);
-  verb->add_option("--interval", options.interval, "from row to row, such as '10 s', where no column tells the time")
+  verb->add_option("--interval", options.interval, "from row to row, such as '10 s', where no column holds the time")
       ->excludes(by);
   verb->add_option("--every", options.every,
                    "from row to row of the record, such as '10 s', of a log with a tag in each row [at each time]")
@@ -451,7 +451,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->required();
   add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
-  verb = add_verb(cli, "warmup", "the shortest warm-up behind which a job keeps its tolerance (docs/warmup.md)",
+  verb = add_verb(cli, "warmup", "the shortest warm-up after which a job keeps its tolerance (docs/warmup.md)",
                   "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
   verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
   verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
@@ -495,7 +495,7 @@ int app::command_line(int argc, const char* const* argv) {
   add_shards(verb, place, "the work");
   verb->callback([&] { app::place(place); });
   verb = add_verb(cli, "plan-test",
-                  "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
+                  "before anything is measured: the test after which most faults would be named (docs/test_planning.md)",
                   "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");

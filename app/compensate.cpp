@@ -57,7 +57,7 @@ void require_inputs(const Scenario& scenario, const DeployedPredictor& d, const 
     const std::string unit = is_temperature ? "degC" : input.name == "speed" ? "rpm" : input.unit;
     if (input.unit != unit)
       throw InputError(
-          fmt::format("{}: it reads '{}' in {}, which {} tells in {}", path, input.name, input.unit, scenario.path, unit));
+          fmt::format("{}: it reads '{}' in {}, but {} gives it in {}", path, input.name, input.unit, scenario.path, unit));
   }
 }
 
@@ -110,13 +110,13 @@ void require_axis(const Scenario& scenario, const std::string& target) {
   if (!scenario.axis_loop) {
     throw InputError(
         scenario.study->where,
-        "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
+        "--through injector requires the block `axis_loop`, which describes encoder, injector and servo (docs/injector.md)");
   }
   if (target != scenario.axis_loop->displacement)
-    throw InputError(scenario.axis_loop->where,
-                     fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
-                                 "another --model",
-                                 scenario.axis_loop->displacement, target, target));
+    throw InputError(
+        scenario.axis_loop->where,
+        fmt::format("the axis corrects '{}', but the predictor gives '{}'; set `displacement: {}`, or take another --model",
+                    scenario.axis_loop->displacement, target, target));
 }
 
 std::string corrected_csv(const studies::CorrectionStudy& o, const std::vector<std::string>& comments) {
@@ -144,7 +144,8 @@ std::string frame_csv(const studies::FrameStudy& study) {
 }
 
 void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
-  if (!scenario.table) throw InputError(scenario.machine->where, "--through frame wants the block `table` (docs/table.md)");
+  if (!scenario.table)
+    throw InputError(scenario.machine->where, "--through frame requires the block `table` (docs/table.md)");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::FrameStudy study = studies::correct_through_frame(scenario, options.model, progress.listener());

@@ -72,7 +72,7 @@ void warmup(const WarmUpVerbOptions& options) {
   }
   folder.write_text(
       "record.csv",
-      record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
+      record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} after its {}", job.name, what))));
   output::Document document = findings::document_of(plan, scenario, job, options.then, folder.made_by());
   findings::add_plausibility(document.body, scenario, scenarios::unusual_values(plan.job_at_once));
   finish(document, folder, progress, options);

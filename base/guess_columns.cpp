@@ -106,7 +106,8 @@ bool guess_stamps(const LoggerSheet& sheet, const GuessHints& hints, bool is_tag
     time.format = formats.front();
     time.zone = hints.zone;
     if (formats.size() > 1 && formats[0].find("%d/%m") == 0 && formats[1].find("%m/%d") == 0)
-      guessed.guesses.push_back("days and months cannot be told apart in the time; the day is taken to stand first");
+      guessed.guesses.push_back(
+          "the time does not show which number is the day and which the month; the first is taken to be the day");
     return true;
   }
   return false;
@@ -240,7 +241,8 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
         fmt::format("'{}' is taken to be an absolute temperature in kelvin: 273.15 K are taken off", header));
   } else if (channel.unit == "K") {
     guessed.guesses.push_back(fmt::format(
-        "'{}' is taken to be a difference of temperatures; an absolute one wants `unit: degC, offset: -273.15 K`", header));
+        "'{}' is taken to be a difference of temperatures; for an absolute one write `unit: degC, offset: -273.15 K`",
+        header));
   }
   if (words.unit.empty())
     guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}", header,
@@ -286,7 +288,7 @@ void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::
       if (row[c].empty() || row[c] == row[first]) continue;
       throw InputError(
           fmt::format("{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
-                      "channels behind it go by it. Split the "
+                      "channels to the right of it go by it. Split the "
                       "file into one for each time, or name in `columns` what goes by one of them (docs/record.md)",
                       path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
     }
@@ -334,8 +336,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
              !guess_numbers(sheet, true, guessed, used)) {
     const std::string stamp = stamp_like_cell(sheet);
     throw InputError(fmt::format(
-        "{}: no column tells the time in a way that is known; there are '{}' in line {}{}. --interval '10 s' counts rows, "
-        "--zone Europe/Berlin tells clocks that are set, and `columns` says any other format (docs/record.md)",
+        "{}: no column holds the time in a known format; the columns are '{}' in line {}{}. --interval '10 s' counts rows, "
+        "--zone Europe/Berlin is for clocks that are set, and `columns` says any other format (docs/record.md)",
         path, fmt::join(sheet.names, "', '"), header_line, stamp.empty() ? "" : fmt::format("; {}", stamp)));
   }
   std::set<std::string> missing;

@@ -62,14 +62,15 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
   if (header == "time_min") return 60.0;
   if (header == "time_h") return 3600.0;
   if (header.find(';') != std::string::npos || header.find('\t') != std::string::npos) {
-    throw InputError(where,
-                     "columns are separated by ';' or tabs; commas are wanted, with decimal points. `driftwright import` "
-                     "makes such a record of a "
-                     "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: "
-                     "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
-                     "{t_housing: {column: NAME, unit: degC}}}");
+    throw InputError(
+        where,
+        "columns are separated by ';' or tabs; they must be separated by commas, with decimal points. `driftwright import` "
+        "makes such a record of a "
+        "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: "
+        "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
+        "{t_housing: {column: NAME, unit: degC}}}");
   }
-  throw InputError(where, fmt::format("the first column is '{}'; time_s, time_min or time_h is wanted", header));
+  throw InputError(where, fmt::format("the first column is '{}'; it must be time_s, time_min or time_h", header));
 }
 
 }  // namespace
@@ -120,8 +121,9 @@ Record read_record_csv(const std::string& path) {
         if (std::any_of(cells[i].begin(), cells[i].end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }))
           throw InputError(where(i), fmt::format("column {:?} has a control character in its name", cells[i]));
         if (channel.unit.empty()) {
-          throw InputError(where(i), fmt::format("column '{}' names no unit; '<channel>_<unit>' is wanted with one of {}",
-                                                 cells[i], fmt::join(unit_table(), ", ")));
+          throw InputError(where(i),
+                           fmt::format("column '{}' names no unit; it must be called '<channel>_<unit>' with one of {}",
+                                       cells[i], fmt::join(unit_table(), ", ")));
         }
         if (record.find(channel.header())) {
           throw InputError(where(i), fmt::format("column '{}' appears twice", channel.header()));

@@ -29,7 +29,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   const bool at_40 = e.has("viscosity_40"), at_100 = e.has("viscosity_100");
   if (e.has("viscosity") == (at_40 || at_100)) {
-    in.fail("viscosity", "one of two is wanted: `viscosity`, held constant, or `viscosity_40` with `viscosity_100`");
+    in.fail("viscosity",
+            "exactly one of the two is required: `viscosity`, held constant, or `viscosity_40` with `viscosity_100`");
   }
   if (at_40 != at_100) in.fail(at_40 ? "viscosity_40" : "viscosity_100", "`viscosity_40` and `viscosity_100` go together");
   if (at_40 && !(e["viscosity_40"] > e["viscosity_100"])) {

@@ -394,9 +394,8 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
       e["growth_beyond"] == 1.0 && e["factor_below"] == 1.0 && e["difference_exponent"] == 0.0)
     in.fail("factor",
-            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
-            "`decay`, "
-            "`difference_exponent`, `warmer` is wanted");
+            "the entry changes nothing; give one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
+            "`decay`, `difference_exponent`, `warmer` another value");
   if (e.references.contains("over") && e["decay"] == 0.0)
     in.fail("over", "it is what the temperature of the law's body counts over where there is a `decay`");
   if (e.references.contains("over") && in.has("at_temperature"))

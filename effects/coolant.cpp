@@ -46,7 +46,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.references.contains("tank")) {
-    if (e.references.at("tank").name == kAmbientName) in.fail("tank", "a name of its own is wanted; the ambient is no tank");
+    if (e.references.at("tank").name == kAmbientName)
+      in.fail("tank", "the tank must have a name of its own; the ambient is no tank");
     if (!e.has("volume")) in.fail("volume", "`tank` and `volume` go together");
     if (e.has("set_point") != (e["cooling_power"] > 0.0))
       in.fail("set_point", "`set_point` and `cooling_power` go together");

@@ -30,7 +30,7 @@ namespace driftwright::effects {
 }
 inline void check_amount(const Effect& effect, const ConfigMap& in, const std::string& name) {
   if (effect.has(name) == effect.has("tilt")) {
-    in.fail(name, "one of two is wanted: `" + name + "` of a displacement (um) or `tilt` of a tilt (urad)");
+    in.fail(name, "exactly one of the two is required: `" + name + "` of a displacement (um) or `tilt` of a tilt (urad)");
   }
 }
 

@@ -138,7 +138,7 @@ Table curve_table(const Placement& p) {
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
-              .caption = "Random: median and best of six sets; which is best is known behindhand only.",
+              .caption = "Random: median and best of six sets; which is best is known only afterwards.",
               .columns = {{.key = "way", .title = "way"}},
               .rows = {}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
@@ -269,7 +269,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(body, Value{.key = "noise_K", .words = "noise of a reading", .datum = p.options.noise_K, .unit = "K", .digits = output::significant(2)});
   add(body, Value{.key = "drift_um", .words = "drift without correction, RMS", .datum = p.drift_um, .unit = "um", .digits = output::decimals(2)});
   add(body, Value{.key = "model_alone_um", .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted", .datum = p.without.observer_um, .unit = "um", .digits = output::decimals(2)});
-  add(body, Value{.key = "enough", .words = "thermometers behind which no more take off a tenth each", .datum = enough(p)});
+  add(body, Value{.key = "enough", .words = "thermometers after which no more take off a tenth each", .datum = enough(p)});
   add(body, curve_table(p));
   add(body, curve_plot(p, &Residual::observer_um, "observer"));
   add(body, curve_plot(p, &Residual::regression_um, "regression"));

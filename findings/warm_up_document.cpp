@@ -71,9 +71,10 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
                                 plan.at_once.peak_um, tolerance)};
   const WarmUp& best = plan.best();
   if (!best.is_enough) {
-    std::string text = fmt::format("Of warm-ups up to {:.0f} min and {:.0f} rpm none was found behind which {} drifts by less than {:.2f} µm ({}); "
-                                   "allowed are {}.",
-                                   plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
+    std::string text = fmt::format(
+        "Of warm-ups up to {:.0f} min and {:.0f} rpm none was found after which {} drifts by less than {:.2f} µm ({}); "
+        "allowed are {}.",
+        plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
     if (plan.by_jobs.is_enough)
       text += fmt::format(" Behind {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
                           plan.by_jobs.duration_s() / 60.0, plan.by_jobs.peak_um);

@@ -125,14 +125,16 @@ void SampleRows::ask() {
         continue;
       }
       if (streams.is_out_of_range) {
-        say_(fmt::format(
-            "it has forgotten observations from number {} on: its buffer is too short for that; what it tells now is taken",
-            next_));
+        say_(
+            fmt::format("it no longer has the observations from number {} on, because its buffer is too short; its latest "
+                        "ones are taken instead",
+                        next_));
         begin(agent_.current(most_s));
         continue;
       }
       if (streams.next < next_ || (streams.next == next_ && next_ <= streams.last) || streams.next == 0)
-        throw RangeError(fmt::format("its answer does not go on behind observation {} (nextSequence {})", next_, streams.next));
+        throw RangeError(
+            fmt::format("its answer does not continue after observation {} (nextSequence {})", next_, streams.next));
       take(streams);
       if (next_ > streams.last) break;
     }

@@ -25,9 +25,9 @@ MqttAddress read_mqtt_address(const std::string& text) {
     const char *begin = text.data() + colon + 1, *end = text.data() + text.size();
     const auto [at, error] = std::from_chars(begin, end, address.port);
     if (error != std::errc() || at != end || address.port < 1 || address.port > 65535)
-      throw InputError(fmt::format("--mqtt '{}': a port from 1 to 65535 is wanted behind the colon", text));
+      throw InputError(fmt::format("--mqtt '{}': a port from 1 to 65535 is required after the colon", text));
   }
-  if (address.host.empty()) throw InputError(fmt::format("--mqtt '{}': HOST or HOST:PORT is wanted", text));
+  if (address.host.empty()) throw InputError(fmt::format("--mqtt '{}' must be HOST or HOST:PORT", text));
   return address;
 }
 

@@ -28,11 +28,11 @@ WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   const Json scales = output::list(j, "scales");
   const auto n = static_cast<Eigen::Index>(limits.sensors.size());
   if (scales.size() != limits.scales.size())
-    throw InputError(fmt::format("`scales` has {} entries; {} are wanted", scales.size(), limits.scales.size()));
+    throw InputError(fmt::format("`scales` has {} entries; {} are required", scales.size(), limits.scales.size()));
   for (std::size_t k = 0; k < scales.size(); ++k) {
     if (output::finite(scales[k], "mean_over_s") != kWatchedOver_s[k])
       throw InputError(
-          fmt::format("`mean_over_s` is {}; {} is wanted", scales[k].at("mean_over_s").dump(), kWatchedOver_s[k]));
+          fmt::format("`mean_over_s` is {}; it must be {}", scales[k].at("mean_over_s").dump(), kWatchedOver_s[k]));
     const auto values = output::value<std::vector<double>>(scales[k], "covariance_K2");
     if (static_cast<Eigen::Index>(values.size()) != n * n)
       throw InputError("`covariance_K2` is of another number of sensors");

@@ -91,8 +91,8 @@ GantryTable read_gantry_table(const ConfigMap& in) {
   t.guideway_gauge_m = length(ways, "gauge");
   for (const ConfigMap* map : {&table, &bed, &ways}) map->reject_unknown_keys();
   if (t.guideway_gauge_m + t.guideway_width_m > std::min(t.table.width_m, t.bed.width_m))
-    in.fail("guideways", "the guideways stand out beside bed or table");
-  if (t.guideway_gauge_m <= t.guideway_width_m) in.fail("guideways", "the guideways overlap; a wider gauge is wanted");
+    in.fail("guideways", "the guideways reach beyond the bed or the table");
+  if (t.guideway_gauge_m <= t.guideway_width_m) in.fail("guideways", "the guideways overlap; a wider gauge is required");
   if (const auto piece = in.optional_map("workpiece")) {
     t.workpiece = size(*piece);
     const Eigen::Vector3d at_m = piece->vector3("at");

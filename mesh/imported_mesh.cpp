@@ -29,13 +29,13 @@ Format format_of(const std::string& path, const Where& where) {
 
 std::string read_place_name(const ConfigMap& in, const std::string& key) {
   std::string name = in.text(key);
-  if (name.find('@') != std::string::npos) in.fail(key, "'@' marks the sides of joints and may not stand in a name");
+  if (name.find('@') != std::string::npos) in.fail(key, "'@' marks the sides of joints and is not allowed in a name");
   return name;
 }
 
 Eigen::Vector3d read_direction(const ConfigMap& in, const std::string& key) {
   Eigen::Vector3d v = in.vector3(key);
-  if (!(v.norm() > 1e-9)) in.fail(key, "a direction of length above zero is wanted");
+  if (!(v.norm() > 1e-9)) in.fail(key, "the direction must have a length above zero");
   return v.normalized();
 }
 
@@ -96,7 +96,7 @@ const schema::Map& imported_mesh_schema() {
                schema::optional("remaining", choice({"true"}), "the outer faces on no surface so far")},
       .groups = {{Group::Rule::kExactlyOne,
                   {"plane", "cylinder", "remaining"},
-                  "one of plane, cylinder, remaining: true is wanted"}}};
+                  "exactly one of plane, cylinder and remaining: true is required"}}};
   const schema::Map joint = {.name = "machine (imported mesh), joints",
                              .keys = {compulsory("name", text(), "of the joint, without `@`"),
                                       compulsory("a", text(), "one surface"), compulsory("b", text(), "the other")}};

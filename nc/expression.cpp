@@ -195,10 +195,10 @@ class Reader {
 
   NcValue bracket() {
     const char close = syntax_ == NcSyntax::kLinuxCnc ? ']' : ')';
-    if (peek() != opening()) throw RangeError(fmt::format("'{}' is wanted here", opening()));
+    if (peek() != opening()) throw RangeError(fmt::format("'{}' is expected here", opening()));
     ++at_;
     const NcValue value = expression(0);
-    if (peek() != close) throw RangeError(fmt::format("'{}' is wanted here", close));
+    if (peek() != close) throw RangeError(fmt::format("'{}' is expected here", close));
     ++at_;
     return value;
   }
@@ -229,7 +229,7 @@ class Reader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
     if (error != std::errc() || end != digits.data() + digits.size()) {
       at_ = begin;
-      throw RangeError(digits.empty() ? "a number, a variable or an expression is wanted here"
+      throw RangeError(digits.empty() ? "a number, a variable or an expression is expected here"
                                       : fmt::format("'{}' is no number", digits));
     }
     return {value};
@@ -244,10 +244,11 @@ class Reader {
 
   NcValue call(const std::string& function) {
     if (syntax_ == NcSyntax::kLinuxCnc && function == "EXISTS") {
-      if (peek() != '[' || at_ + 1 >= text_.size() || text_[at_ + 1] != '#') throw RangeError("EXISTS[#<name>] is wanted");
+      if (peek() != '[' || at_ + 1 >= text_.size() || text_[at_ + 1] != '#')
+        throw RangeError("EXISTS must be written as EXISTS[#<name>]");
       at_ += 2;
       const std::string name = parameter();
-      if (peek() != ']') throw RangeError("']' is wanted here");
+      if (peek() != ']') throw RangeError("']' is expected here");
       ++at_;
       try {
         return {1.0, lookup_(name).certain};
@@ -256,20 +257,20 @@ class Reader {
       }
     }
     if (syntax_ == NcSyntax::kSiemens && function == "ATAN2") {
-      if (peek() != '(') throw RangeError("'(' is wanted here");
+      if (peek() != '(') throw RangeError("'(' is expected here");
       ++at_;
       const NcValue y = expression(0);
-      if (peek() != ',') throw RangeError("',' is wanted here");
+      if (peek() != ',') throw RangeError("',' is expected here");
       ++at_;
       const NcValue x = expression(0);
-      if (peek() != ')') throw RangeError("')' is wanted here");
+      if (peek() != ')') throw RangeError("')' is expected here");
       ++at_;
       return {std::atan2(y.value, x.value) / kDegree, y.certain && x.certain};
     }
     const bool bare = syntax_ == NcSyntax::kHeidenhain && peek() != '(';
     const NcValue x = bare ? primary() : bracket();
     if (syntax_ == NcSyntax::kLinuxCnc && function == "ATAN") {
-      if (peek() != '/') throw RangeError("ATAN[y]/[x] is wanted");
+      if (peek() != '/') throw RangeError("ATAN must be written as ATAN[y]/[x]");
       ++at_;
       const NcValue along = bracket();
       return {std::atan2(x.value, along.value) / kDegree, x.certain && along.certain};

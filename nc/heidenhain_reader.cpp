@@ -86,7 +86,8 @@ class HeidenhainReader {
       run_.end();
       if (ends) return;
     }
-    throw InputError(fmt::format("{}: the program has no end; its first line once more, M2 or M30 is wanted", path_));
+    throw InputError(
+        fmt::format("{}: the program has no end; write its first line once more, M2 or M30 as its last block", path_));
   }
 
  private:
@@ -100,7 +101,7 @@ class HeidenhainReader {
     begun_ = true;
     const bool inch = line.text.find("G70") != std::string::npos;
     if (!inch && line.text.find("G71") == std::string::npos)
-      fail(line, "the first line has no unit; %NAME G71 (mm) or G70 (inch) is wanted");
+      fail(line, "the first line has no unit; write %NAME G71 (mm) or G70 (inch)");
     run_.unit_m = inch ? kInch_m : 1e-3;
     run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
     run_.step().unit_word = true;
@@ -109,7 +110,7 @@ class HeidenhainReader {
 
   bool formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is wanted");
+    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     std::size_t i = equals + 1;
@@ -136,7 +137,7 @@ class HeidenhainReader {
       if (number == 3) label = fmt::format("{}", std::lround(p[number]));
     }
     if (n >= 9 && n <= 12) {
-      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are wanted");
+      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are required");
       if (tnc_.compares(line, n, p[1], p[2])) tnc_.go_to(line, label);
     } else if (!p.contains(1) || q.empty() || q[0] != 'Q' || !tnc_.function(line, n, q, p[1], p.contains(2) ? p[2] : 0.0)) {
       fail(line, fmt::format("D{:02}: not known here, or what it reads is known only at the machine", n));
@@ -156,7 +157,7 @@ class HeidenhainReader {
       const std::size_t begin = i;
       IsoWord word{.letter = t[i]};
       if (word.letter < 'A' || word.letter > 'Z')
-        fail(line, fmt::format("'{}' cannot stand here; words of a letter and a number are wanted", t[i]));
+        fail(line, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", t[i]));
       ++i;
       if (word.letter == 'T' && i < t.size() && t[i] == '"') {
         i = std::min(t.find('"', i + 1), t.size() - 1) + 1;
@@ -172,7 +173,7 @@ class HeidenhainReader {
         while (i < t.size() && t[i] == ' ') ++i;
         const bool bare = i >= t.size() || (std::isalpha(static_cast<unsigned char>(t[i])) != 0 && t[i] != 'Q');
         if (bare && std::string("XYZ").find(word.letter) == std::string::npos)
-          fail(line, fmt::format("'{}' is no word; a number is wanted after the letter", word.letter));
+          fail(line, fmt::format("'{}' is no word; a number is expected after the letter", word.letter));
         word.computed = !bare && t.find('Q', i) <= i + 1;
         if (!bare) word.value = tnc_.value(line, t, i);  // G28 X names an axis alone
       }
@@ -347,13 +348,13 @@ class HeidenhainReader {
     if (contains(b.m, 136)) run_.set_feed_mode(NcFeedMode::PerRevolution);
     if (contains(b.m, 137)) run_.set_feed_mode(NcFeedMode::PerMinute);
     if (dwells) {
-      if (!has(b, 'F') || b.words.at('F').value < 0.0) fail(line, "G04 without its time; F in seconds is wanted");
+      if (!has(b, 'F') || b.words.at('F').value < 0.0) fail(line, "G04 has no time; write F in seconds");
       run_.motion.wait(b.words.at('F').value);
     } else if (has(b, 'F') && moves && !has(b, 'T')) {
       run_.set_feed(b.words.at('F').value);
     }
     if (has(b, 'S')) {
-      if (b.words.at('S').value < 0.0) fail(line, "a speed of zero or above is wanted");
+      if (b.words.at('S').value < 0.0) fail(line, "the speed must be zero or above");
       run_.motion.programmed_rpm = b.words.at('S').value;
     }
     if (has(b, 'T')) tnc_.change_tool();
@@ -445,7 +446,7 @@ class HeidenhainReader {
     if (!has(b, 'X') && !has(b, 'Y') && !has(b, 'Z') &&
         !(polar && (has(b, 'H') || (has(b, 'R') && run_.step().motion_word))))
       return;
-    if (!run_.motion_word) fail(line, "axis words before any motion word; G00 or G01 is wanted first");
+    if (!run_.motion_word) fail(line, "axis words come before any motion word; write G00 or G01 first");
     const int word = *run_.motion_word;
     if (contains(b.m, 91)) {
       std::array<double, 3> target_m = run_.motion.position_m;
@@ -477,7 +478,7 @@ class HeidenhainReader {
       last_clockwise_ = code == 12;
       tnc_.circle_to(target_m, tnc_.pole_m, code == 12, turns);
     } else if (code == 5 || code == 15) {
-      if (!last_clockwise_) fail(line, "an arc without its sense; G02 or G03 is wanted");
+      if (!last_clockwise_) fail(line, "the arc has no sense; write G02 or G03");
       int turns = 1;
       const std::array<double, 3> target_m = code == 15 ? polar_target(b, turns) : target(b);
       const std::array<double, 3> centre_m =

@@ -67,7 +67,7 @@ class IsoSource::Impl {
       }
     }
     if (frames_.size() > 1)
-      throw InputError(fmt::format("{}: a subroutine ends with its file; ENDSUB or M99 is wanted", path_));
+      throw InputError(fmt::format("{}: a subroutine ends with its file; write ENDSUB or M99 at its end", path_));
     return std::nullopt;
   }
 
@@ -131,7 +131,7 @@ class IsoSource::Impl {
   /// Behind an O word's keyword. @returns whether it is true; notes where that is decided at the machine
   bool condition(const IsoLine& line) {
     std::size_t i = line.rest;
-    if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is wanted");
+    if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is expected");
     const NcValue c = value(line, i, false);
     if (!c.certain)
       run_.note_at(line.where, line.keyword,
@@ -154,7 +154,7 @@ class IsoSource::Impl {
         } catch (const RangeError& e) {
           fail(line, i, e.what());
         }
-        if (i >= text.size() || text[i] != '=') fail(line, i, "'=' is wanted behind a parameter");
+        if (i >= text.size() || text[i] != '=') fail(line, i, "'=' is expected after a parameter");
         ++i;
         assigned.emplace_back(name, value(line, i, false));
         continue;
@@ -163,7 +163,7 @@ class IsoSource::Impl {
       word.letter = text[i];
       word.column = line.columns[i];
       if (word.letter < 'A' || word.letter > 'Z')
-        fail(line, i, fmt::format("'{}' cannot stand here; words of a letter and a number are wanted", word.letter));
+        fail(line, i, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", word.letter));
       ++i;
       const NcValue number = value(line, i, false);
       word.value = number.value;
@@ -231,7 +231,7 @@ class IsoSource::Impl {
       block.words.resize(1);
       return;
     }
-    if (!frame().fanuc) fail(line, 0, "M99 within a subroutine of O words; ENDSUB or RETURN is wanted");
+    if (!frame().fanuc) fail(line, 0, "M99 is not allowed within a subroutine of O words; write ENDSUB or RETURN instead");
     if (frame().runs_left-- > 0) {
       const std::vector<IsoLine>& lines = frame().file->lines;
       for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -292,7 +292,7 @@ class IsoSource::Impl {
       at = find(line, at - 1, {"WHILE"}, false);
     } else if (k == "REPEAT") {
       std::size_t i = line.rest;
-      if (i >= line.text.size()) fail(line, i, "a count in [ ] is wanted");
+      if (i >= line.text.size()) fail(line, i, "a count in [ ] is expected");
       const NcValue n = value(line, i, false);
       if (!n.certain)
         run_.note_at(line.where, k, fmt::format("the count is known only at the machine; planned as {:g}", n.value));
@@ -335,13 +335,13 @@ class IsoSource::Impl {
     std::size_t i = line.rest;
     if (label.empty()) {
       label = fmt::format("{}", std::lround(value(line, i, false).value));
-      if (line.text.compare(i, 4, "CALL") != 0) fail(line, i, "CALL is wanted here");
+      if (line.text.compare(i, 4, "CALL") != 0) fail(line, i, "CALL is expected here");
       i += 4;
     }
     Frame next;
     next.label = label;
     for (int n = 1; i < line.text.size() && n <= kLocals; ++n) {
-      if (line.text[i] != '[') fail(line, i, "arguments stand in [ ]");
+      if (line.text[i] != '[') fail(line, i, "arguments must be written in [ ]");
       next.locals[n] = value(line, i, false);
     }
     const auto begins = [&](const File& file) -> std::optional<std::size_t> {

@@ -112,7 +112,7 @@ class KlartextReader {
       run_.end();
       if (ends) return;
     }
-    throw InputError(fmt::format("{}: the program has no end; END PGM, M2 or M30 is wanted", path_));
+    throw InputError(fmt::format("{}: the program has no end; write END PGM, M2 or M30", path_));
   }
 
  private:
@@ -132,7 +132,7 @@ class KlartextReader {
     const std::string& t = line.text;
     if (begins(t, "BEGIN PGM")) {
       const bool inch = t.ends_with(" INCH");
-      if (!inch && !t.ends_with(" MM")) fail(line, "BEGIN PGM without its unit; MM or INCH is wanted at its end");
+      if (!inch && !t.ends_with(" MM")) fail(line, "BEGIN PGM has no unit; write MM or INCH at its end");
       run_.unit_m = inch ? kInch_m : 1e-3;
       run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
       run_.step().unit_word = true;
@@ -224,7 +224,7 @@ class KlartextReader {
         p.feed_word = "F AUTO";
         continue;
       } else if (is("FU") || is("FZ") || is("FT")) {
-        fail(line, fmt::format("{}: a feed per minute is wanted", t.substr(begin, 2)));
+        fail(line, fmt::format("{}: this must be a feed per minute", t.substr(begin, 2)));
       } else if (is("F")) {
         p.feed = value();
         p.feed_word = t.substr(begin, i - begin);
@@ -361,7 +361,7 @@ class KlartextReader {
     }
     const std::array<double, 3> target_m = word == "CP" ? polar_target(line, p, turns, clockwise) : target(p);
     if (!clockwise) clockwise = last_clockwise_;
-    if (!clockwise) fail(line, "an arc without its sense; DR+ or DR- is wanted");
+    if (!clockwise) fail(line, "the arc has no sense; write DR+ or DR-");
     last_clockwise_ = clockwise;
     if (word == "CR") {
       if (!p.radius) fail(line, "CR without its radius R");
@@ -423,7 +423,7 @@ class KlartextReader {
       std::size_t i = 0;
       const double n = count.empty() ? 1.0 : tnc_.value(line, count, i);
       if (!(n >= 1.0 && n <= kMostRuns && n == std::floor(n)))
-        fail(line, fmt::format("REP {}: a count from 1 is wanted", count));
+        fail(line, fmt::format("REP {} must be a count from 1", count));
       times = static_cast<int>(n);
       label.erase(rep);
     }
@@ -454,7 +454,7 @@ class KlartextReader {
         ++i;
       } else if (c == 'S') {
         run_.motion.programmed_rpm = tnc_.value(line, t, ++i);
-        if (run_.motion.programmed_rpm < 0.0) fail(line, "a speed of zero or above is wanted");
+        if (run_.motion.programmed_rpm < 0.0) fail(line, "the speed must be zero or above");
       } else if (c == 'F') {
         const double before = run_.motion.feed;
         run_.set_feed(tnc_.value(line, t, ++i));
@@ -589,14 +589,14 @@ class KlartextReader {
 
   void formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is wanted");
+    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     if (name.starts_with("QS")) return;  // texts
     std::size_t i = equals + 1;
     tnc_.set_q(name, tnc_.value(line, line.text, i, true));
     if (line.text.find_first_not_of(' ', i) != std::string::npos)
-      fail(line, fmt::format("'{}' cannot stand here", line.text.substr(i)));
+      fail(line, fmt::format("'{}' is not allowed here", line.text.substr(i)));
   }
 
   /// FN 1: Q5 = +Q2 + +5; FN 9: IF +Q1 EQU +Q3 GOTO LBL 5.
@@ -606,11 +606,11 @@ class KlartextReader {
     while (i < t.size() && t[i] == ' ') ++i;
     int n = 0;
     while (i < t.size() && is_digit(t[i])) n = 10 * std::min(n, 1000) + (t[i++] - '0');
-    if (i >= t.size() || t[i] != ':') fail(line, "FN and its number, such as FN 0: Q1 = +5, is wanted");
+    if (i >= t.size() || t[i] != ':') fail(line, "FN and its number are expected, such as FN 0: Q1 = +5");
     ++i;
     if (n >= 9 && n <= 12) {
       const std::size_t condition = t.find("IF", i), jump = t.find("GOTO LBL");
-      if (condition == std::string::npos || jump == std::string::npos) fail(line, "IF ... GOTO LBL is wanted");
+      if (condition == std::string::npos || jump == std::string::npos) fail(line, "IF ... GOTO LBL is expected");
       i = condition + 2;
       const double a = tnc_.value(line, t, i);
       i = t.find_first_of("ENGL", i);  // EQU, NE, GT, LT

@@ -47,7 +47,7 @@ std::vector<std::array<NcEntry, 3>> nc_entries(const std::vector<NcStep>& steps)
 }
 
 std::string why_not_divisible(const NcStep& step) {
-  if (step.kind == NcStepKind::kNone) return "the axes stand";
+  if (step.kind == NcStepKind::kNone) return "the axes are at rest";
   if (step.kind == NcStepKind::kArc) return "an arc";
   if (step.kind == NcStepKind::kDrilling) return "a canned cycle";
   if (step.kind == NcStepKind::kMachine) return "in machine coordinates";

@@ -63,7 +63,7 @@ void NcRun::pass_over(const std::string& word) {
 }
 
 void NcRun::set_feed(double f) {
-  if (f < 0.0) fail(fmt::format("a feed of {:g}; a value of zero or above is wanted", f));
+  if (f < 0.0) fail(fmt::format("the feed is {:g}; it must be zero or above", f));
   switch (motion.feed_mode) {
     case NcFeedMode::PerMinute:
       motion.feed = f * feed_unit_m / 60.0;

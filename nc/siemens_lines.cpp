@@ -202,7 +202,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
     const std::size_t begin = i;
     if (text[i] == '(') fail(line, i, "'(': comments follow ';' in this language; programs in ISO code begin with G291");
     if (!begins_name(text[i]))
-      fail(line, i, fmt::format("'{}' cannot stand here; words such as G1, X10, CR=5 are wanted", text[i]));
+      fail(line, i, fmt::format("'{}' is not allowed here; words such as G1, X10, CR=5 are expected", text[i]));
     SiemensWord word;
     std::size_t k = i + 1;
     while (k < text.size() && is_digit(text[k])) ++k;
@@ -257,7 +257,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
         word.kind = SiemensWord::kKeyword;
         word.column = begin;
         if (word.name.size() == 1)
-          fail(line, begin, fmt::format("'{}' is no word; a number is wanted after the letter", word.name));
+          fail(line, begin, fmt::format("'{}' is no word; a number is expected after the letter", word.name));
       }
     }
     word.text = text.substr(begin, i - begin);

@@ -55,7 +55,7 @@ const char* hint_of(int g) {
     case 83:
     case 98:
     case 99:
-      return "a word of ISO code, which this control knows behind G291 alone";
+      return "this is a word of ISO code, which this control knows only after G291";
     case 33:
     case 34:
     case 35:
@@ -99,7 +99,7 @@ class SiemensReader {
       if (!statement(line) && !block(line)) return;
       end_repetitions();
     }
-    throw InputError(fmt::format("{}: the program has no end; a last block M30, M2, M17 or RET is wanted", path_));
+    throw InputError(fmt::format("{}: the program has no end; write M30, M2, M17 or RET as its last block", path_));
   }
 
  private:
@@ -134,7 +134,7 @@ class SiemensReader {
     try {
       const double x = evaluate(word.value, at, NcSyntax::kSiemens, lookup(), true).value;
       if (word.value.find_first_not_of(" \t", at) != std::string::npos)
-        throw RangeError("an expression with more behind it");
+        throw RangeError("the expression has more text after its end");
       return x;
     } catch (const RangeError& e) {
       fail(line, word.column + at, e.what());
@@ -204,10 +204,10 @@ class SiemensReader {
         at_ = met ? at_ + 1 : line.partner + 1;
       } else if (!met) {
         std::size_t behind = i;
-        if (!siemens_name(line.text, behind).starts_with("GOTO")) fail(line, i, "GOTOF, GOTOB or GOTO is wanted behind IF");
+        if (!siemens_name(line.text, behind).starts_with("GOTO")) fail(line, i, "GOTOF, GOTOB or GOTO is expected after IF");
         ++at_;
       } else if (!jump(line, i)) {
-        fail(line, i, "GOTOF, GOTOB or GOTO is wanted behind IF");
+        fail(line, i, "GOTOF, GOTOB or GOTO is expected after IF");
       }
       return true;
     }
@@ -239,14 +239,14 @@ class SiemensReader {
       fail(line, line.begin, "of variables REAL, INT and BOOL are followed here");
     while (true) {
       const std::string name = siemens_name(line.text, i);
-      if (name.empty()) fail(line, i, "a name is wanted here");
+      if (name.empty()) fail(line, i, "a name is expected here");
       double initial = 0.0;
       while (i < line.text.size() && line.text[i] == ' ') ++i;
       if (i < line.text.size() && line.text[i] == '=') initial = value(line, line.text, ++i);
       variables_[name] = initial;
       while (i < line.text.size() && line.text[i] == ' ') ++i;
       if (i >= line.text.size()) break;
-      if (line.text[i++] != ',') fail(line, i - 1, "',' or the end of the line is wanted here");
+      if (line.text[i++] != ',') fail(line, i - 1, "',' or the end of the line is expected here");
     }
     ++at_;
     return true;
@@ -260,9 +260,9 @@ class SiemensReader {
     For loop;
     loop.name = siemens_name(line.text, i);
     while (i < line.text.size() && line.text[i] == ' ') ++i;
-    if (i >= line.text.size() || line.text[i] != '=') fail(line, i, "FOR R1=1 TO 5 is wanted");
+    if (i >= line.text.size() || line.text[i] != '=') fail(line, i, "a loop such as FOR R1=1 TO 5 is expected");
     const std::size_t to = line.text.find(" TO ", i);
-    if (to == std::string::npos) fail(line, i, "FOR R1=1 TO 5 is wanted");
+    if (to == std::string::npos) fail(line, i, "a loop such as FOR R1=1 TO 5 is expected");
     loop.from = value(line, line.text, ++i);
     i = to + 4;
     loop.to = value(line, line.text, i);
@@ -297,15 +297,15 @@ class SiemensReader {
           line.text.find_first_not_of("P ", i) == line.text.find('=', i)) {
         i = line.text.find('=', i) + 1;
         const double n = value(line, line.text, i);
-        if (!(n >= 0.0 && n <= kMostRuns && n == std::floor(n))) fail(line, i, fmt::format("P={:g}: a count is wanted", n));
+        if (!(n >= 0.0 && n <= kMostRuns && n == std::floor(n))) fail(line, i, fmt::format("P={:g} must be a count", n));
         times = static_cast<int>(n);
         continue;
       }
       const std::size_t column = i;
       labels.push_back(siemens_name(line.text, i));
-      if (labels.back().empty()) fail(line, column, "a label is wanted here");
+      if (labels.back().empty()) fail(line, column, "a label is expected here");
     }
-    if (labels.empty() || labels.size() > 2) fail(line, line.begin, "REPEAT wants one label or two");
+    if (labels.empty() || labels.size() > 2) fail(line, line.begin, "REPEAT requires one label or two");
     const std::size_t first = place_of(line, labels[0], line.begin, 0);
     std::size_t last = at_ - 1;
     if (labels.size() == 2) last = place_of(line, labels[1], line.begin, 0);
@@ -451,7 +451,7 @@ class SiemensReader {
   double not_negative(const Block& b, const char* name) {
     const double x = number(b, name);
     if (x < 0.0)
-      fail(*b.line, b.words.at(name)->column, fmt::format("{}: a value of zero or above is wanted", b.words.at(name)->text));
+      fail(*b.line, b.words.at(name)->column, fmt::format("{}: the value must be zero or above", b.words.at(name)->text));
     return x;
   }
   static bool contains(const std::vector<int>& codes, int code) {
@@ -589,10 +589,10 @@ class SiemensReader {
       run_.motion.wait(not_negative(b, "F"));
     } else if (has(b, "S")) {
       const double rpm = run_.motion.speed_rpm();
-      if (!(rpm > 0.0)) run_.fail("G4 S counts turns of the spindle, which stands");
+      if (!(rpm > 0.0)) run_.fail("G4 S counts turns of the spindle, but the spindle is at rest");
       run_.motion.wait(not_negative(b, "S") * 60.0 / rpm);
     } else {
-      run_.fail("G4 without its time; F in seconds or S in turns of the spindle is wanted");
+      run_.fail("G4 has no time; write F in seconds or S in turns of the spindle");
     }
   }
 
@@ -663,7 +663,7 @@ class SiemensReader {
     const bool axes = has(b, "X") || has(b, "Y") || has(b, "Z");
     const bool centre = has(b, "I") || has(b, "J") || has(b, "K") || has(b, "CR");
     if (!axes && !(arc && centre)) {
-      if (machine) run_.fail("SUPA, G53 or G153 without a straight move; X, Y or Z are wanted with it");
+      if (machine) run_.fail("SUPA, G53 or G153 has no straight move; write X, Y or Z with it");
       return;
     }
     if (!run_.motion_word) run_.motion_word = 10;  // the control's own after a start
@@ -714,7 +714,7 @@ class SiemensReader {
         const double x_m = value_of(*b.line, *found->second) * run_.unit_m;
         centre_m[axis] = found->second->mode == "AC" ? x_m : run_.motion.position_m[axis] + x_m;
       }
-      if (n == 0) run_.fail("an arc without its centre; I, J, K of the plane or CR= is wanted");
+      if (n == 0) run_.fail("the arc has no centre; write I, J, K of the plane or CR=");
     }
     run_.arc_to(target_m, centre_m, clockwise, turns);
   }

@@ -129,14 +129,15 @@ void NcWords::take_all(const std::string& letters) {
 double NcWords::take_not_negative(char letter) {
   const std::size_t i = find(letter);
   const double value = take(letter).value();
-  if (value < 0.0) fail(i, "a value of zero or above is wanted");
+  if (value < 0.0) fail(i, "the value must be zero or above");
   return value;
 }
 
 int NcWords::take_count(char letter) {
   const std::size_t i = find(letter);
   const double value = take(letter).value();
-  if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value))) fail(i, "a whole number from 1 to 100000 is wanted");
+  if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value)))
+    fail(i, "the value must be a whole number from 1 to 100000");
   return static_cast<int>(value);
 }
 

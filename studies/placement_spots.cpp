@@ -46,8 +46,10 @@ std::vector<std::string> allowed(const std::vector<std::string>& known, const Sp
     }
   }
   if (names.empty())
-    throw InputError(fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names want --region; --exclude takes away what --region gives",
-                                 what, fmt::join(known, ", ")));
+    throw InputError(
+        fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names "
+                    "require --region; --exclude takes away what --region gives",
+                    what, fmt::join(known, ", ")));
   return names;
 }
 

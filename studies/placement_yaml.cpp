@@ -33,7 +33,7 @@ std::string with_sensors(const std::string& scenario_path, const std::vector<std
   }
   if (!is_written)
     throw InputError((sensors ? *sensors : yaml.root()).where("sensors"),
-                     "this list is an alias or shared with one, and no sensors can be added where it stands; write it out");
+                     "this list is an alias or shared with one, and no sensors can be added to it; write it out");
   return yaml.text(head);
 }
 

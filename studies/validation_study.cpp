@@ -105,7 +105,7 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
   if (!how.count_from_start)
     return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
   if (effects::has_reading_effects(machine.effects))
-    return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
+    return {std::nullopt, "the scenario's effects change what instruments read, and a model gives what is true"};
   if (machine.start != scenarios::Start::kAmbient && machine.start != scenarios::Start::kSteady)
     return {std::nullopt,
             "every record begins at an ambient temperature of its own; `start: ambient` is needed, or `start: steady` for a "

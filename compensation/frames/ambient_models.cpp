@@ -133,7 +133,8 @@ std::vector<double> lagged(const TimeSeries& ambient, double lag, std::span<cons
 std::vector<AmbientModel> compare_ambient_models(const TimeSeries& ambient, std::span<const double> time_s,
                                            std::span<const double> values, double table, double scale) {
   if (values.size() < 6)
-    throw InputError(fmt::format("{} readings are too few to compare models of the ambient; six are wanted", values.size()));
+    throw InputError(
+        fmt::format("{} readings are too few to compare models of the ambient; six are required", values.size()));
   const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   const auto column = [&](double lag) {
     const std::vector<double> t = lagged(ambient, lag, time_s);

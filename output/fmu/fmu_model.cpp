@@ -74,13 +74,14 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
 /// All but start and what is of one kind alone, sources and exchanges apart.
 FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system) {
   const MachineModel& machine = *scenario.machine;
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: a unit mass matrix is wanted");
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: the mass matrix must be the unit matrix");
   if (!system.thermostats.empty())
     throw InputError(machine.where,
                      fmt::format("thermostat '{}' switches; no FMU is made of such a machine yet (docs/fmu.md)",
                                  system.thermostats.front().name));
   if (!system.change_times_s.empty())
-    throw InputError(machine.where, "a law changes with time by itself; no FMU is made of such a machine yet (docs/fmu.md)");
+    throw InputError(machine.where,
+                     "a law changes with time on its own; no FMU is made of such a machine yet (docs/fmu.md)");
   FmuModel model{.name = scenario.name, .drive = ranges_of(scenario), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;

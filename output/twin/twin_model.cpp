@@ -94,7 +94,7 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
     if (effects::changes_drive(e))
       notes.push_back(fmt::format(
           "{} {}", e.name(),
-          e.kind->key == "heat_source" && e.has("lasts") ? "comes behind each stop of the spindle; here it never comes."
+          e.kind->key == "heat_source" && e.has("lasts") ? "comes after each stop of the spindle; here it never comes."
           : e.kind->contribute                           ? "follows what the drive was before; here it is as it is set."
                                : "changes the recorded drive or ambient; here both are as they are set."));
     if (!e.in.empty())
@@ -107,7 +107,7 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
 
 TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& system, const Eigen::VectorXd& start) {
   const MachineModel& machine = *scenario.machine;
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: a unit mass matrix is wanted");
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: the mass matrix must be the unit matrix");
   for (const Cyclogram& c : scenario.cyclograms) {
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
       throw InputError(machine.where,
@@ -116,7 +116,7 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
                                    columns.front()));
   }
   if (system.change_times_s.size() > kMostTimes)
-    throw InputError(machine.where, fmt::format("laws change {} times by themselves; the page holds up to {} (docs/view.md)",
+    throw InputError(machine.where, fmt::format("laws change {} times on their own; the page holds up to {} (docs/view.md)",
                                                 system.change_times_s.size(), kMostTimes));
   TwinModel model{.drive = ranges_of(scenario),
                   .system = system,

@@ -60,9 +60,9 @@ AxisMotion read_motion(const ConfigMap& in) {
             fmt::format("a pass takes {:g} s; at least twice that, or there is no rest in which errors are looked at",
                         m.stroke_um / m.feed_um_s));
   if (!(m.every_s > m.busy_s()))
-    in.fail("every",
-            fmt::format("{:g} s; more than {:g} s, the pass and the time to settle behind it, or the axis never rests",
-                        m.every_s, m.busy_s()));
+    in.fail("every", fmt::format("{:g} s is too short; it must be more than {:g} s, the pass and the time to settle after "
+                                 "it, or the axis never rests",
+                                 m.every_s, m.busy_s()));
   in.reject_unknown_keys();
   return m;
 }
@@ -124,10 +124,10 @@ schema::Map axis_loop_schema() {
                                     "a correction changes once it is this much more than half an insertion off"),
                    schema::optional("seed", integer(0, 1'000'000'000), static_cast<double>(loop.seed), "of the noise"),
                    schema::optional("growth", schema::map(growth), Said{"none"}, "of the screw or scale itself")},
-          .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are wanted"},
+          .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are required"},
                      {Group::Rule::kAtMostOne,
                       {"pitch", "signal_period"},
-                      "either `signal_period`, or `pitch` and `lines`, is wanted"}},
+                      "either `signal_period`, or `pitch` and `lines`, is required"}},
           .about = "The study's regression through a pulse injector, edge by edge (docs/injector.md)."};
 }
 

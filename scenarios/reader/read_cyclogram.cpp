@@ -80,7 +80,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
   std::vector<Cyclogram::Section> sections;
   for (const std::vector<double>& row : in.rows(key, entries)) {
     if (!(row[0] >= kShortest_s))
-      in.fail(key, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
+      in.fail(key, fmt::format("the section lasts {:g} s; its duration must be 1 ms or more", row[0]));
     Cyclogram::Section section{row[0], {}};
     std::size_t n_before = 0;  // of the drive
     for (std::size_t j = 0; j < columns.is_further.size(); ++j) {
@@ -125,7 +125,7 @@ RowColumns row_columns(const ConfigMap& in) {
     }
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
         names.begin() + static_cast<std::ptrdiff_t>(i))
-      in.fail("columns", fmt::format("'{}' stands there twice", names[i]));
+      in.fail("columns", fmt::format("'{}' is listed twice", names[i]));
     columns_given.is_further.push_back(further.has_value());
     if (further) {
       columns_given.further.push_back(*further);
@@ -190,7 +190,7 @@ std::vector<schema::Key> nc_keys() {
   using namespace schema;
   return {
       schema::optional("dialect", choice(kDialects), kDialects.front().c_str(),
-                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO behind G291), Heidenhain "
+                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO after G291), Heidenhain "
                        "(DIN/ISO or plain language)"),
       schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
                        "speed of rapids along their line; compulsory for programs with rapids"),
@@ -278,7 +278,8 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
             fmt::format("{} times {} sections are more than {:g}", repeat, cyclogram.sections.size(), kMostSections));
   repeat_columns(cyclogram, repeat);
   cyclogram.sections = repeated(cyclogram.sections, repeat);
-  if (cyclogram.sections.empty()) cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is wanted");
+  if (cyclogram.sections.empty())
+    cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is required");
   return cyclogram;
 }
 
@@ -297,7 +298,7 @@ std::map<int, double> read_parameter_file(const std::string& path) {
       const int parameter = std::stoi(line, &behind);
       parameters[parameter] = parse_number(plain_name(line.substr(behind)), '.');
     } catch (const std::exception&) {
-      throw InputError(Where{path, number, 1, "", line}, "a parameter's number and value are wanted, such as 5221 100.0");
+      throw InputError(Where{path, number, 1, "", line}, "a parameter's number and value are required, such as 5221 100.0");
     }
   }
   return parameters;

@@ -42,7 +42,7 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
   if (!channel) return nullptr;
   if (channel->unit != kind.unit)
     throw InputError(
-        fmt::format("{}: channel {} is in {}; {} is wanted", record.source, kind.name, channel->unit, kind.unit));
+        fmt::format("{}: channel {} is in {}; it must be in {}", record.source, kind.name, channel->unit, kind.unit));
   for (std::size_t i = 0; i + (is_plan ? 1 : 0) < channel->values.size(); ++i) {
     const double v = channel->values[i];
     const auto refuse = [&](const std::string& why) {
@@ -143,7 +143,7 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
 TimeSeries ambient_of(const Record& record, const Channel& channel, const std::vector<double>& time_s, double reference_C,
                       const TimeSeries* expected) {
   if (channel.unit != "degC") {
-    throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", record.source, channel.name, channel.unit));
+    throw InputError(fmt::format("{}: channel {} is in {}; it must be in degC", record.source, channel.name, channel.unit));
   }
   const double first_C =
       *std::find_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });

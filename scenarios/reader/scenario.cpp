@@ -51,7 +51,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
     m.start = Start::kUniform;
     m.start_K = in.quantity("start");
   } else {
-    in.fail("start", fmt::format("'{}' is no start; reference, ambient, steady or a temperature is wanted", text));
+    in.fail("start", fmt::format("'{}' is no start; write reference, ambient, steady or a temperature instead", text));
   }
 }
 
@@ -78,7 +78,9 @@ MachineModel read_machine(const ConfigMap& in) {
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
   if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
-    in.fail("sensors", "neither a sensor nor a displacement; what is wanted?");
+    in.fail("sensors",
+            "the scenario has neither a sensor nor a displacement, so it would compute nothing; write `sensors` or "
+            "`displacements`");
   reject_repeated_names(in, m);
   return m;
 }
@@ -129,7 +131,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   for (const std::string& name : s.candidates) {
     if (name == s.target) in.fail("candidates", fmt::format("'{}' is the target; it cannot predict itself", name));
     if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
-      in.fail("candidates", fmt::format("'{}' stands there twice", name));
+      in.fail("candidates", fmt::format("'{}' is listed twice", name));
   }
   const std::string image = in.choice("image");
   s.image = image == "initial_value" ? compensation::Image::kInitialValue
@@ -154,8 +156,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     };
     for (const std::string& name : s.train) {
       must_know("train", name);
-      if (std::count(s.train.begin(), s.train.end(), name) > 1)
-        in.fail("train", fmt::format("'{}' stands there twice", name));
+      if (std::count(s.train.begin(), s.train.end(), name) > 1) in.fail("train", fmt::format("'{}' is listed twice", name));
     }
     must_know("judge", s.judge);
     for (const std::string& name : s.train) {
@@ -189,8 +190,9 @@ void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& s
       in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
                               fmt::join(known, ", ")));
     if (name == study.target && channel->unit != "um")
-      in.fail(channel->name, fmt::format("the target of `study` is in {} here; a length is wanted, which records have in um",
-                                         channel->written_unit));
+      in.fail(channel->name,
+              fmt::format("the target of `study` is in {} here; it must be a length, which records have in um",
+                          channel->written_unit));
   }
 }
 
@@ -230,7 +232,7 @@ schema::Map solver_schema() {
                "without `displacements` and `tilts` no elasticity is computed")},
       .groups = {{Group::Rule::kAtMostOne,
                   {"fields_every", "fields_at"},
-                  "either `fields_at` or `fields_every` is wanted, not both"}}};
+                  "`fields_at` and `fields_every` exclude each other; write only one of them"}}};
 }
 
 /// @param of_machine  its cyclograms are simulated; else it is about records alone
@@ -316,7 +318,7 @@ schema::Map machine_scenario_schema() {
            schema::optional("table", schema::map(table_schema()), "a long table with scale, rings and probe")},
       .groups = {{Group::Rule::kAtLeastOne,
                   {"sensors", "displacements"},
-                  "`sensors` or `displacements` is wanted: what is the machine looked at by?"}},
+                  "`sensors` or `displacements` is required: what is the machine looked at by?"}},
       .when_key = "machine"};
 }
 
@@ -338,13 +340,14 @@ void reject_what_wants_a_machine(const ConfigMap& top) {
   const schema::Map& without = scenario_schemas()[1];
   for (const schema::Key& key : with.keys) {
     if (top.has(key.name) && !without.find(key.name))
-      top.fail(key.name, "it wants a `machine` to simulate; without one a scenario is about measured records alone");
+      top.fail(key.name, "`machine` is required to simulate; without one a scenario is about measured records alone");
   }
 }
 
 /// Reads the table and gives the machine a displacement for each of its points.
 TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::vector<Cyclogram>& cyclograms) {
-  if (std::holds_alternative<LumpedMachine>(machine.mesh)) in.fail("region", "a table wants a mesh; this machine has none");
+  if (std::holds_alternative<LumpedMachine>(machine.mesh))
+    in.fail("region", "`table` requires a mesh, but this machine has none");
   std::vector<std::string> sensors, names;
   for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
   for (const Cyclogram& c : cyclograms) names.push_back(c.name);
@@ -352,7 +355,7 @@ TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::v
   const auto run = std::find(names.begin(), names.end(), table.cyclogram) - names.begin();
   const double taught_s = cyclograms[static_cast<std::size_t>(run)].duration_s() - table.train_from_s;
   if (!(taught_s >= 2.0 * table.every_s)) {
-    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are wanted",
+    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are required",
                                       taught_s / 3600.0, table.every_s / 1800.0));
   }
   for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
@@ -419,7 +422,8 @@ Scenario read_scenario(const ConfigMap& top) {
     scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
-    if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
+    if (scenario.cyclograms.empty())
+      in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
     const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
@@ -448,13 +452,13 @@ Scenario read_scenario(const ConfigMap& top) {
   }
   if (const auto programme = in.optional_map("programme")) {
     if (scenario.machine->displacements.empty())
-      in.fail("programme", "a programme judges predictors of drift and wants `displacements`");
+      in.fail("programme", "a programme judges predictors of drift and requires `displacements`");
     scenario.programme = read_programme(*programme);
     for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
   }
   if (const auto validation = in.optional_map("validation")) {
-    if (!scenario.study) in.fail("validation", "it wants a `study` that names the target");
+    if (!scenario.study) in.fail("validation", "a `study` that names the target is required");
     std::vector<const Cyclogram*> known;
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(&c);
     if (scenario.programme) {
