@@ -102,9 +102,9 @@ TEST(RecordedDrive, HeatsByAPowerOfItsColumn) {
 
 TEST(RecordedDrive, WantsOneLawAndAColumn) {
   const auto refused = [](const std::string& text) { return ThrowsMessage<InputError>(HasSubstr(text)); };
-  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W}"); }, refused("one of three"));
+  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W}"); }, refused("one of the three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, opening: 2}"); },
-              refused("one of three"));
+              refused("one of the three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, gain: 1}"); }, refused("column"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, exponent: 2}"); },
               refused("`gain` holds"));

@@ -183,7 +183,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [4.75 m", "identical");
   refuses("{name: low, at: [-4.8 m, 0 m, 0 m]}", "{name: low, at: [4.9 m, 0 m, 0 m]}", "swapped");
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [-5.8 m", "outside");
-  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "at least 2 are wanted");
+  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "at least 2 are required");
   refuses("    - {name: high, at", "    - {name: middle, at: [-4.8 m, 0 m, 0 m]}\n    - {name: high, at",
           "identical with ring 'low'");
   refuses("    - {name: high, at", "    - {name: low, at: [0 m, 0 m, 0 m]}\n    - {name: high, at",
@@ -204,7 +204,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("sensor: table_mid, update", "sensor: nowhere, update", "nowhere");
   refuses("at: [2.4 m, 0.4 m, 0 m]", "at: [4.4 m, 0.4 m, 0 m]", "does not lie on the table");
   EXPECT_THAT(edited("judge_until: 24 h", "judge_until: 0 h").output, HasSubstr("scenario.yaml:93"));
-  refuses("gauge: 1.8 m", "gauge: 2.8 m", "stand out");
+  refuses("gauge: 1.8 m", "gauge: 2.8 m", "reach beyond");
 }
 
 }  // namespace

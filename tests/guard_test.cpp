@@ -187,7 +187,7 @@ TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
 TEST(AGuard, WantsANodeForItsAir) {
   for (const auto& [entry, message] :
        {std::pair{"{type: guard, node: spindle}", "key 'air' is missing"},
-        std::pair{"{type: guard, node: spindle, air: ambient}", "a lumped node is wanted"},
+        std::pair{"{type: guard, node: spindle, air: ambient}", "this must be a lumped node"},
         std::pair{"{type: guard, node: spindle, air: spindle}", "another node than the body"}}) {
     EXPECT_THAT([&] { (void)scenarios::read_scenario(write_file("bad_guard.yaml", with_effect(kMachine, entry))); },
                 ThrowsMessage<InputError>(HasSubstr(message)));

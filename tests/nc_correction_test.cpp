@@ -116,7 +116,7 @@ TEST(NcPlaces, SayWhyABlockCannotBeDivided) {
   EXPECT_EQ(why("N10 G1 X5 Y2 F100"), "");
   EXPECT_EQ(why("X5 (comment)"), "");
   EXPECT_EQ(why("G2 X2 I1 F100"), "an arc");
-  EXPECT_EQ(why("G4 P5"), "the axes stand");
+  EXPECT_EQ(why("G4 P5"), "the axes are at rest");
   EXPECT_EQ(why("G28 X0"), "in machine coordinates");
   EXPECT_EQ(why("G81 X1 Z-1 R1 F100"), "a canned cycle");
   EXPECT_EQ(why("G91 X5"), "G91");

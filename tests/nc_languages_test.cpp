@@ -352,11 +352,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"iso_no_unit", kH, "%T\nN1 G00 X+1 *\n", {":1:1: the first line has no unit"}},
         Mistaken{"iso_g20", kH, din("N1 G20 G90 *\n"), {":2:4: G20: this control's inch and mm"}},
         Mistaken{"iso_old_cycle", kH, din("N1 G83 P01 2 *\n"), {"G83: of the drilling cycles G200"}},
-        Mistaken{"klartext_no_unit", kH, "BEGIN PGM T\nEND PGM T\n", {":1:1: BEGIN PGM without its unit"}},
+        Mistaken{"klartext_no_unit", kH, "BEGIN PGM T\nEND PGM T\n", {":1:1: BEGIN PGM has no unit"}},
         Mistaken{"klartext_pocket", kH, klartext("CYCL DEF 251 RECTANGULAR POCKET Q215=0\n"), {":2:1: CYCL DEF 251"}},
         Mistaken{"klartext_unknown", kH, klartext("PLANE SPATIAL SPA+0 SPB+45 SPC+0 STAY\n"), {"PLANE: not known here"}},
         Mistaken{"klartext_unset_q", kH, klartext("L X+Q8 F100\n"), {":2:1: Q8 is what the operator"}},
-        Mistaken{"klartext_no_feed", kH, klartext("L X+8\n"), {"a feed move without a feed"}},
+        Mistaken{"klartext_no_feed", kH, klartext("L X+8\n"), {"the feed move has no feed"}},
         Mistaken{"klartext_endless", kH, klartext("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1\n"), {"has run 500004 blocks"}},
         Mistaken{"klartext_recursion", kH, klartext("LBL 1\nCALL LBL 1\nLBL 0\n"), {"nested more than 8 deep"}}),
     [](const auto& each) { return each.param.name; });

@@ -186,11 +186,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "o4 repeat [2]\no4 break\no4 endrepeat\nM2\n",
                  {":2:1: O4 BREAK with nothing that ends it"}},
         Mistaken{"unset_name", "G1 X#<a> F100\nM2\n", {":1:10: #<A> has no value yet"}},
-        Mistaken{"no_bracket", "G1 X[1+2 F100\nM2\n", {":1:10: ']' is wanted"}},
+        Mistaken{"no_bracket", "G1 X[1+2 F100\nM2\n", {":1:10: ']' is expected"}},
         Mistaken{"division", "#1=[1/0]\nM2\n", {":1:", "a division by zero"}},
         Mistaken{"root", "#1=SQRT[-1]\nM2\n", {"the root of a negative number"}},
         Mistaken{"function", "#1=FOO[1]\nM2\n", {"'FOO' is no function"}},
-        Mistaken{"assignment", "#1 5\nM2\n", {"'=' is wanted"}}),
+        Mistaken{"assignment", "#1 5\nM2\n", {"'=' is expected"}}),
     [](const auto& each) { return std::string(each.param.name); });
 
 // --- corrections, run by LinuxCNC -------------------------------------------------------------------------------------------------

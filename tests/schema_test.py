@@ -98,10 +98,10 @@ WRONG = [
     (MILL, "sensors_to_choose: 4", "sensors_to_choose: 0", "no whole number"),
     (MILL, "counts: x1 ", "counts: x3 ", "'x3' is not known here"),
     (MILL, "dialect: linuxcnc", "dialect: fanuc", "'fanuc' is not known here"),
-    (MILL, "train: [continuous_1000, continuous_1600, continuous_2000]", "train: [continuous_1000]", "at least 2 are wanted"),
+    (MILL, "train: [continuous_1000, continuous_1600, continuous_2000]", "train: [continuous_1000]", "at least 2 are required"),
     # keys that do not go together
-    (SPINDLE, "{type: link, node: stator, to: shaft", "{type: link, node: stator, region: a, to: shaft", "wants one place"),
-    (MILL, "signal_period: 1 um", "signal_period: 1 um\n  pitch: 2 mm\n  lines: 2000", "either `signal_period`"),
+    (SPINDLE, "{type: link, node: stator, to: shaft", "{type: link, node: stator, region: a, to: shaft", "requires exactly one place"),
+    (MILL, "signal_period: 1 um", "signal_period: 1 um\n  pitch: 2 mm\n  lines: 2000", "`signal_period` and `pitch`"),
     (MILL, "signal_period: 1 um", "pitch: 2 mm", "key 'lines' is missing"),
     (TABLE, "scale_y: {sensor: beam,", "scale_y: {", "one of `sensor` and `sensors`"),
     (MILL, "fixed: [x, y, z]", "", "how is this surface held?"),
@@ -111,7 +111,7 @@ WRONG = [
     # studies
     ("lumped_sweep", "samples: 48", "samples: 48\nsample: 3", "unknown key 'sample'"),
     ("lumped_sweep", "samples: 48\n", "", "key 'samples' is missing"),
-    ("lumped_sweep", "design: latin_hypercube", "design: grid", "a distribution wants"),
+    ("lumped_sweep", "design: latin_hypercube", "design: grid", "a distribution requires"),
     ("lumped_sweep", "uniform: [210 N, 390 N]", "uniform: [210 N, 390 N]\n    from: 3 N", "one of values, from"),
 ]
 RIGHT = [

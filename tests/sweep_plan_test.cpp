@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"one of values, from, uniform", "beside the key"}},
         Bad{"spread_in_grid",
             "design: grid\nvary: [{key: \"ambient[0][1]\", uniform: [20 degC, 22 degC]}]\n",
-            {"a distribution wants `design: latin_hypercube`"}},
+            {"a distribution requires `design: latin_hypercube`"}},
         Bad{"unequal_list",
             "design: list\nvary: [{name: a, key: \"ambient[0][1]\", values: [20 degC]}, {name: b, key: \"ambient[1][1]\", "
             "values: "
@@ -251,13 +251,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"log_of_zero",
             "design: latin_hypercube\nsamples: 3\nvary: [{key: \"effects[coolant].flow\", log_uniform: [0 L/min, 1 "
             "L/min]}]\n",
-            {"wants numbers above 0"}},
+            {"requires numbers above 0"}},
         Bad{"sd_of_zero",
             "design: latin_hypercube\nsamples: 3\nvary: [{key: \"ambient[0][1]\", normal: {mean: 20 degC, sd: 0 K}}]\n",
             {"must be above 0"}},
         Bad{"sd_in_degC",
             "design: latin_hypercube\nsamples: 3\nvary: [{key: \"ambient[0][1]\", normal: {mean: 20 degC, sd: 2 degC}}]\n",
-            {"a temperature difference in K is wanted"}},
+            {"this must be a temperature difference in K"}},
         Bad{"no_samples",
             "design: latin_hypercube\nvary: [{key: \"ambient[0][1]\", uniform: [20 degC, 22 degC]}]\n",
             {"key 'samples' is missing"}},
@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"no channel 'nose_y'", "Did you mean 'nose_z'?"}},
         Bad{"unknown_scalar",
             "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncollect: [nose_z.top]\n",
-            {"one of peak, time_of_peak, end, min, max is wanted"}},
+            {"one of peak, time_of_peak, end, min, max is required"}},
         Bad{"collected_twice",
             "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncollect: [nose_z, nose_z.end]\n",
             {"is collected twice"}},

@@ -49,7 +49,7 @@ def _record(table, source=None):
     for header in table.columns:
         unit = next((u for u in _UNITS if str(header).endswith("_" + u)), None)
         if unit is None:
-            raise InputError(f"column '{header}' names no unit; '<channel>_<unit>' is required with one of {', '.join(_UNITS)}")
+            raise InputError(f"column '{header}' names no unit; it must be called '<channel>_<unit>' with one of {', '.join(_UNITS)}")
         columns.append((header[:-len(unit) - 1], unit, np.asarray(table[header], dtype=float).tolist()))
     if table.index.name not in (None, "time_s"):
         raise InputError(f"the index is '{table.index.name}'; time_s is required")

@@ -127,7 +127,7 @@ schema::Map axis_loop_schema() {
           .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are required"},
                      {Group::Rule::kAtMostOne,
                       {"pitch", "signal_period"},
-                      "either `signal_period`, or `pitch` and `lines`, is required"}},
+                      "`signal_period` and `pitch` with `lines` exclude each other; write only one of them"}},
           .about = "The study's regression through a pulse injector, edge by edge (docs/injector.md)."};
 }
 
