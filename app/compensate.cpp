@@ -158,12 +158,13 @@ void require_options_that_go_together(const CompensateOptions& options) {
   const bool is_measured = !options.measured.empty(), through_frame = options.through == "frame";
   if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
     throw InputError(
-        "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
-  if (!options.after.empty() && !is_measured) throw InputError("--after goes with --measured, the record that continues it");
+        "--measured is allowed only with --through none and a predictor's file, and without --cyclogram: a record says what "
+        "happened");
+  if (!options.after.empty() && !is_measured) throw InputError("--after requires --measured, the record that continues it");
   const auto& frame_models = studies::kFrameModels;
   if (through_frame && std::find(frame_models.begin(), frame_models.end(), options.model) == frame_models.end())
     throw InputError(
-        fmt::format("--model {}: through the frame go {}; a table has six errors and more, and a model.json one",
+        fmt::format("--model {}: --through frame allows only {}; a table has six errors and more, and a model.json one",
                     options.model, fmt::join(frame_models, ", ")));
 }
 

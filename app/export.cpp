@@ -117,7 +117,7 @@ void export_model(const ExportOptions& options) {
   if (of_observer == options.model.empty())
     throw InputError(of_observer
                          ? "--of observer requires --model FILE, an observer as `validate` writes it (models/observer.json)"
-                         : "--model names the file of an observer; it goes with --of observer");
+                         : "--model names the file of an observer; it requires --of observer");
   scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "export");
   output::require_exportable(scenario);

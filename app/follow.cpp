@@ -244,7 +244,8 @@ class Following {
       if (!why.empty() && !link_)
         throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
       if (!why.empty()) {  // whoever may write to the topic has written it, and the source of the rows may write yet
-        (void)std::fputs(fmt::format("{}: {}; a header or a JSON row is waited for\n", options_.from, why).c_str(), stderr);
+        (void)std::fputs(fmt::format("{}: {}; `follow` waits for a header or a JSON row\n", options_.from, why).c_str(),
+                         stderr);
         ++n_before_header_;
       }
       return false;
@@ -357,7 +358,7 @@ void follow_stream(const FollowVerbOptions& options) {
     throw InputError("--topic names where a channel's numbers come from, which requires --mqtt HOST or --mtconnect ADDRESS");
   if (!options.calibrate_watch.empty()) return calibrate_watch(options);
   if (options.pace < 0.0) throw InputError("--pace must be 0 (as fast as it goes) or more");
-  if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace goes with --replay FILE");
+  if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace requires --replay FILE");
   if (options.serve) (void)page_address(options);  // before a machine is meshed
   Following(options).run();
 }

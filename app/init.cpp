@@ -76,7 +76,7 @@ void init(const InitOptions& options) {
   if (!is_name(name))
     throw InputError(fmt::format("'{}' names no scenario; letters, digits, '_' and '-' are allowed, 200 at most", name));
   const bool is_lumped = options.from == "lumped";
-  if (is_lumped && !options.units.empty()) throw InputError("--units goes with a mesh file");
+  if (is_lumped && !options.units.empty()) throw InputError("--units is allowed only with a mesh file");
   NewFolder folder(target);
   Progress progress(false);
   const std::string file = name + ".yaml";

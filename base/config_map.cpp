@@ -310,7 +310,7 @@ int ConfigMap::integer(const std::string& key) const {
     used = 0;
   }
   if (used != value.size() || number < as.low || number > as.high)
-    fail(key, fmt::format("'{}' is no whole number from {:.0f} to {:.0f}", value, as.low, as.high));
+    fail(key, fmt::format("'{}' must be a whole number from {:.0f} to {:.0f}", value, as.low, as.high));
   return number;
 }
 

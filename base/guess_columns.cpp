@@ -358,8 +358,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
   if (!missing.empty())
     guessed.guesses.push_back(fmt::format("'{}' are taken to be readings that are missing", fmt::join(missing, "', '")));
   if (guessed.map.channels.empty())
-    throw InputError(
-        fmt::format("{}: no column of numbers is made out beside the time; say `columns` (docs/record.md)", path));
+    throw InputError(fmt::format(
+        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/record.md)", path));
   // Names find the header in the next file of the logger, too, however long its head is; numbers of columns need the line.
   const bool by_name = std::all_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                                    [](const auto& c) { return c.column.position == 0; }) &&

@@ -133,10 +133,11 @@ Record read_record_csv(const std::string& path) {
       continue;
     }
     if (cells.size() != record.channels.size() + 1) {
-      throw InputError(where(0), fmt::format("{} cells where the header has {}", cells.size(), record.channels.size() + 1));
+      throw InputError(
+          where(0), fmt::format("this row has {} cells, but the header has {}", cells.size(), record.channels.size() + 1));
     }
     const double time_s = parse_cell(cells[0], where(0)) * seconds;
-    if (!std::isfinite(time_s)) throw InputError(where(0), "a row without a time");
+    if (!std::isfinite(time_s)) throw InputError(where(0), "this row has no time");
     if (!record.time_s.empty() && !(time_s > record.time_s.back())) {
       throw InputError(
           where(0), fmt::format("time {} s does not follow {} s; rows must increase in time", time_s, record.time_s.back()));
@@ -145,7 +146,7 @@ Record read_record_csv(const std::string& path) {
     for (std::size_t i = 1; i < cells.size(); ++i) record.channels[i - 1].values.push_back(parse_cell(cells[i], where(i)));
   }
   if (record.n_samples() < 2) {
-    throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path, record.n_samples()));
+    throw InputError(fmt::format("{}: the record has {} rows of data; at least two are required", path, record.n_samples()));
   }
   require_possible_span(path, record.time_s.front(), record.time_s.back());
   return record;

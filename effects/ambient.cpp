@@ -60,12 +60,13 @@ void check(const Effect& e, const ConfigMap& in) {
   if (!is_off && !in.has("late") && !in.has("lag") && !in.has("with_speed"))
     in.fail("offset", "one of `offset`, `ramp`, `late`, `lag` and `with_speed` is required");
   for (const char* key : {"from", "until"}) {
-    if (in.has(key) && !is_off) in.fail(key, "is of `offset` and `ramp`; `late`, `lag` and `with_speed` hold all along");
+    if (in.has(key) && !is_off)
+      in.fail(key, "this key is allowed only with `offset` and `ramp`; `late`, `lag` and `with_speed` hold all along");
   }
   for (const char* key : {"at_speed", "behind"}) {
     if (in.has(key) && !in.has("with_speed")) in.fail(key, "this key is allowed only beside `with_speed`, which is missing");
   }
-  if (!(e["until"] > e["from"])) in.fail("until", "ends before it begins `from`");
+  if (!(e["until"] > e["from"])) in.fail("until", "`until` must be later than `from`");
 }
 
 Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, double trial) {

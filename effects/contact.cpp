@@ -18,7 +18,8 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("conductance",
             "exactly one of the two is required: `conductance`, or `conductance_over_pressure` with `pressure`");
   }
-  if (e.has("pressure") != has_table) in.fail("pressure", "`conductance_over_pressure` and `pressure` go together");
+  if (e.has("pressure") != has_table)
+    in.fail("pressure", "`conductance_over_pressure` and `pressure` must be given together");
   if (!has_table) return;
   const std::vector<double>& pressure_Pa = e.tables.at(kTable).time_s;
   if (!(e["pressure"] >= pressure_Pa.front() && e["pressure"] <= pressure_Pa.back())) {

@@ -71,7 +71,8 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("body",
             "exactly one of the three is required: the `body` that it follows, a `column`, or another displacement that it "
             "reads a share `of`");
-  if (of.empty() == e.has("share")) in.fail("share", "`of` and `share` go together: which displacement, and how much of it");
+  if (of.empty() == e.has("share"))
+    in.fail("share", "`of` and `share` must be given together: which displacement, and how much of it");
   if (!of.empty()) {
     if (of == e.place) in.fail("of", "this must be another displacement");
     for (const char* key : {"sensitivity", "tilt", "gain"}) {
@@ -82,8 +83,9 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.has("gain")) {
     if (e.has("sensitivity") || e.has("tilt"))
       in.fail("gain", "exactly one of them is required: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
-    if (column.empty()) in.fail("gain", "it is of a `column`");
-    if (in.has("zero")) in.fail("zero", "it is of a column of temperatures; a `gain` multiplies what the column says");
+    if (column.empty()) in.fail("gain", "`gain` is allowed only beside a `column`");
+    if (in.has("zero"))
+      in.fail("zero", "this key is allowed only beside a column of temperatures; a `gain` multiplies what the column says");
     return;
   }
   check_amount(e, in, "sensitivity");

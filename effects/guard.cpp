@@ -39,7 +39,7 @@ void change_paths(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   if (e.references.at("air") == ambient_node())
     in.fail("air", "this must be a lumped node with an exchange of its own with the ambient");
-  if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard is another node than the body in it");
+  if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard must be another node than the body in it");
 }
 
 /// What a body exchanges with the ambient at the typical speed [W/K].

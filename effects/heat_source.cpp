@@ -77,7 +77,9 @@ void change_drive(const Effect& e, DriveChange& change) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.has("runs_on") && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
-    in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
+    in.fail(
+        "runs_on",
+        "this key is allowed only for constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
   if (e.has("lasts") && !runs_at_rest(e))
     in.fail("lasts", "this key is allowed only for heat after each stop of the spindle: `runs: while_spindle_stands`");
   if (e.has("lasts") && (e.has("fades") || e.has("period")))

@@ -63,10 +63,10 @@ void check(const Effect& e, const ConfigMap& in) {
             "as the column "
             "says; `opening`, W/K per unit of the column, to `surrounding` or to a `medium`");
   }
-  if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "it is of a `gain`");
+  if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "this key requires a `gain`");
   if (e["exponent"] != 1.0 && !e.has("at"))
     in.fail("at", "`exponent` requires the value of the column at which `gain` holds");
-  if (e.has("medium") && !e.has("opening")) in.fail("medium", "it is of an `opening`");
+  if (e.has("medium") && !e.has("opening")) in.fail("medium", "this key requires an `opening`");
   if (e.has("medium") && in.has("surrounding"))
     in.fail("medium", "exactly one of the two is required: a `surrounding` or a `medium`");
   if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))

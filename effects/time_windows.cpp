@@ -51,9 +51,9 @@ void check_windows(const Effect& e, const ConfigMap& in) {
   const TimeSeries& rows = e.tables.at(kWindows);
   for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
     if (!(rows.value[i] > rows.time_s[i])) in.fail(kWindows, "each window [begin, end] must end after it begins");
-    if (i > 0 && rows.time_s[i] < rows.value[i - 1]) in.fail(kWindows, "windows follow each other without overlap");
+    if (i > 0 && rows.time_s[i] < rows.value[i - 1]) in.fail(kWindows, "windows must follow each other without overlap");
   }
-  if (e.has("every") != e.has("until_time")) in.fail("every", "`every` and `until_time` go together");
+  if (e.has("every") != e.has("until_time")) in.fail("every", "`every` and `until_time` must be given together");
   if (!e.has("every")) return;
   if (!(e["every"] >= rows.value.back() - rows.time_s.front()))
     in.fail("every", "the next turn would begin before this one ends");

@@ -213,7 +213,7 @@ struct RowText::State {
       return cells[p.index].text;
     };
     if (!map && cells.size() != n_cells)
-      throw RangeError(fmt::format("{} cells; the header has {} columns", cells.size(), n_cells));
+      throw RangeError(fmt::format("this row has {} cells, but the header has {} columns", cells.size(), n_cells));
     if (map && map->time.interval_s > 0.0) {
       row.time_s = map->time.interval_s * static_cast<double>(n_rows);
     } else {
@@ -274,7 +274,7 @@ std::optional<StreamRow> RowText::take(const std::string& given) {
   if (!line.empty() && line.back() == '\r') line.pop_back();
   if (s.n_lines == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
   if (line.size() > kLongestLine)
-    throw RangeError(fmt::format("a line of more than {} characters, which is the most", kLongestLine));
+    throw RangeError(fmt::format("the line has more than {} characters, which is the most", kLongestLine));
   const std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string::npos || line[begin] == '#') return std::nullopt;
   const bool is_json = line[begin] == '{';

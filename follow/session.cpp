@@ -138,7 +138,7 @@ Json Session::state() const {
 
 void Session::recall(const Json& j) {
   if (output::value<std::string>(j, "format") != kFormat)
-    throw InputError(fmt::format("no state of `follow` (key `format` must be \"{}\")", kFormat));
+    throw InputError(fmt::format("this file holds no state of `follow` (key `format` must be \"{}\")", kFormat));
   const auto channels = output::value<std::vector<std::string>>(j, "channels");
   std::vector<std::string> here;
   for (const Channel& c : channels_) here.push_back(c.header());

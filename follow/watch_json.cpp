@@ -13,8 +13,9 @@ constexpr const char* kFormat = "driftwright watch 1";
 
 WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
-    throw InputError(
-        fmt::format("no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them", kFormat));
+    throw InputError(fmt::format(
+        "this file holds no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them",
+        kFormat));
   if (!is_whole(j))
     throw InputError(
         "key `hash` does not fit what the file holds: it was damaged or changed, or is of a version that wrote none; "

@@ -173,8 +173,8 @@ class InpReader {
     if (keyword_.name == "*include") fail("*INCLUDE is not followed; put the mesh into one file");
     if (keyword_.name == "*element") begin_elements();
     if (keyword_.name == "*surface") begin_surface();
-    if (keyword_.name == "*nset" && !keyword_.has("nset")) fail("*NSET without NSET=name");
-    if (keyword_.name == "*elset" && !keyword_.has("elset")) fail("*ELSET without ELSET=name");
+    if (keyword_.name == "*nset" && !keyword_.has("nset")) fail("*NSET requires NSET=name");
+    if (keyword_.name == "*elset" && !keyword_.has("elset")) fail("*ELSET requires ELSET=name");
   }
 
   void data(const std::string& line) {
@@ -350,7 +350,7 @@ class InpReader {
   }
 
   void begin_surface() {
-    if (!keyword_.has("name")) fail("*SURFACE without NAME=");
+    if (!keyword_.has("name")) fail("*SURFACE requires NAME=");
     const std::string type = keyword_.at("type");
     if (!type.empty() && type != "element" && type != "node") fail("*SURFACE must be of TYPE=ELEMENT or TYPE=NODE");
   }
@@ -382,7 +382,7 @@ class InpReader {
         const int n_faces = static_cast<int>(faces_of(raw_.cells.shape[cell->second]).size());
         const int index = face.size() == 2 && face[0] == 's' ? face[1] - '1' : -1;
         if (index < 0 || index >= n_faces) {
-          fail(fmt::format("face '{}' of element {}; S1 to S{} are allowed", face, n, n_faces));
+          fail(fmt::format("there is no face '{}' of element {}; S1 to S{} are allowed", face, n, n_faces));
         }
         surface.face.emplace_back(cell->second, index);
       }

@@ -26,11 +26,11 @@ struct Operator {
 };
 
 double checked_quotient(double a, double b) {
-  if (b == 0.0) throw RangeError("a division by zero");
+  if (b == 0.0) throw RangeError("the expression divides by zero");
   return a / b;
 }
 double modulus(double a, double b) {
-  if (b == 0.0) throw RangeError("a division by zero");
+  if (b == 0.0) throw RangeError("the expression divides by zero");
   const double rest = std::fmod(a, b);
   return rest < 0.0 ? rest + std::abs(b) : rest;
 }
@@ -110,7 +110,7 @@ const std::vector<Operator>& operators(NcSyntax syntax) {
 }
 
 double arc_of(double x, double (*f)(double)) {
-  if (!(std::abs(x) <= 1.0)) throw RangeError(fmt::format("an angle whose sine or cosine were {:g}", x));
+  if (!(std::abs(x) <= 1.0)) throw RangeError(fmt::format("there is no angle whose sine or cosine is {:g}", x));
   return f(x) / kDegree;
 }
 
@@ -123,11 +123,11 @@ std::optional<double> function_of(const std::string& name, double x, NcSyntax sy
   if (name == "ABS") return std::abs(x);
   if (name == "EXP") return std::exp(x);
   if (name == "SQRT") {
-    if (x < 0.0) throw RangeError("the root of a negative number");
+    if (x < 0.0) throw RangeError("the number under the root is negative");
     return std::sqrt(x);
   }
   if (name == "LN" || name == "LOG") {
-    if (!(x > 0.0)) throw RangeError("the logarithm of a number that is not positive");
+    if (!(x > 0.0)) throw RangeError("the logarithm requires a number above 0");
     return name == "LN" ? std::log(x) : std::log10(x);
   }
   if (name == "ROUND") return std::round(x);
@@ -159,13 +159,13 @@ class Reader {
     while (const Operator* op = next_operator(lowest)) {
       const NcValue right = expression(op->level + 1);
       left = {op->apply(left.value, right.value), left.certain && right.certain};
-      if (!std::isfinite(left.value)) throw RangeError("a number beyond all bounds");
+      if (!std::isfinite(left.value)) throw RangeError("the result is too large for a number");
     }
     return left;
   }
 
   NcValue primary() {
-    if (++depth_ > kDeepestBracket) throw RangeError("an expression nested too deeply");
+    if (++depth_ > kDeepestBracket) throw RangeError("the expression is nested too deeply");
     const NcValue value = unguarded_primary();
     --depth_;
     return value;
@@ -174,14 +174,14 @@ class Reader {
   std::string parameter() {
     if (peek() == '<') {
       const std::size_t end = text_.find('>', at_);
-      if (end == std::string::npos) throw RangeError("a named parameter without '>'");
+      if (end == std::string::npos) throw RangeError("the named parameter has no '>'");
       const std::string name = text_.substr(at_, end + 1 - at_);
       at_ = end + 1;
       return name;
     }
     const double number = primary().value;
     if (!(number >= 0.0 && number < 1e6) || std::abs(number - std::round(number)) > kSame)
-      throw RangeError(fmt::format("a parameter of number {:g}", number));
+      throw RangeError(fmt::format("a parameter cannot have the number {:g}", number));
     return fmt::format("{}", std::lround(number));
   }
 

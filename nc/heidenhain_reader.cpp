@@ -140,7 +140,7 @@ class HeidenhainReader {
       if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are required");
       if (tnc_.compares(line, n, p[1], p[2])) tnc_.go_to(line, label);
     } else if (!p.contains(1) || q.empty() || q[0] != 'Q' || !tnc_.function(line, n, q, p[1], p.contains(2) ? p[2] : 0.0)) {
-      fail(line, fmt::format("D{:02}: not known here, or what it reads is known only at the machine", n));
+      fail(line, fmt::format("D{:02} is not known here, or what it reads is known only at the machine", n));
     }
     return false;
   }
@@ -214,7 +214,7 @@ class HeidenhainReader {
       } else if (std::string("ABCUVW").find(word.letter) != std::string::npos) {
         fail(line, fmt::format("{}: rotary and further linear axes are not followed here; X, Y, Z are", word.text));
       } else if (!b.words.emplace(word.letter, word).second) {
-        fail(line, fmt::format("{}: a second {} in one block", word.text, word.letter));
+        fail(line, fmt::format("{}: a second {} in one block is not allowed", word.text, word.letter));
       }
       if (word.letter == 'F') step.feed_word = word.text;
     }
@@ -292,7 +292,8 @@ class HeidenhainReader {
         case 43:
         case 44:
           run_.compensated = true;
-          run_.note(fmt::format("G{}", g), "cutter compensation; the path is counted along the programmed contour");
+          run_.note(fmt::format("G{}", g),
+                    "cutter compensation is not followed; the path is counted along the programmed contour");
           break;
         case 54:
           shift(line, b);
@@ -341,7 +342,7 @@ class HeidenhainReader {
           fail(line, fmt::format(
                          "G{}: {}", g,
                          (g >= 80 && g <= 89)
-                             ? "of the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
+                             ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
                              : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
       }
     }
@@ -367,7 +368,7 @@ class HeidenhainReader {
       HeidenhainCycle c = b.cycle;
       c.number = *cycle;
       if (!std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(*cycle))
-        fail(line, fmt::format("G{}: of the cycles from 200 on 200, 201, 202, 203, 206, 207 and 240 are computed here; "
+        fail(line, fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
                                "write the others out",
                                *cycle));
       tnc_.define(c);
@@ -392,7 +393,7 @@ class HeidenhainReader {
       any = true;
       tnc_.shift_datum(axis, found->second.value * run_.unit_m, found->second.incremental);
     }
-    if (!any) fail(line, "a datum shift G54 without X, Y or Z");
+    if (!any) fail(line, "the datum shift G54 has no X, Y or Z");
   }
 
   std::array<double, 3> target(const Block& b) {
@@ -485,7 +486,7 @@ class HeidenhainReader {
           code == 5 && has(b, 'R') ? run_.centre_of(target_m, length_m(b, 'R'), *last_clockwise_) : tnc_.pole_m;
       tnc_.circle_to(target_m, centre_m, *last_clockwise_, turns);
     } else {
-      fail(line, fmt::format("G{}: of arcs G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
+      fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
     }
     run_.motion_word = word;  // it goes on
     if (code >= 10) run_.step().plain = false;

@@ -54,7 +54,7 @@ void read_flow(IsoLine& line) {
   std::size_t i = 1;
   if (i < text.size() && text[i] == '<') {
     const std::size_t end = text.find('>', i);
-    if (end == std::string::npos) fail(line, line.columns[i], "an O word's name without '>'");
+    if (end == std::string::npos) fail(line, line.columns[i], "the O word's name has no '>'");
     line.label = text.substr(i, end + 1 - i);
     i = end + 1;
   } else if (i < text.size() && is_digit(text[i])) {
@@ -63,7 +63,7 @@ void read_flow(IsoLine& line) {
   } else {
     const std::size_t call = text.rfind("CALL");
     if (call == std::string::npos || i >= text.size() || (text[i] != '[' && text[i] != '#'))
-      fail(line, line.columns[0], "an O word without its number or name");
+      fail(line, line.columns[0], "the O word has no number or name");
     line.keyword = "CALL";
     line.rest = 1;
     return;

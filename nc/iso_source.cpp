@@ -134,8 +134,9 @@ class IsoSource::Impl {
     if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is expected");
     const NcValue c = value(line, i, false);
     if (!c.certain)
-      run_.note_at(line.where, line.keyword,
-                   fmt::format("decided at the machine; planned as if it were {}", c.value != 0.0 ? "true" : "false"));
+      run_.note_at(
+          line.where, line.keyword,
+          fmt::format("this is decided at the machine; it is planned as if it were {}", c.value != 0.0 ? "true" : "false"));
     return c.value != 0.0;
   }
 
@@ -205,7 +206,7 @@ class IsoSource::Impl {
 
   void enter(const IsoLine& line, Frame next) {
     if (frames_.size() > kDeepestSubroutine)
-      fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepestSubroutine));
+      fail(line, 0, fmt::format("subroutines are nested more than {} deep", kDeepestSubroutine));
     frames_.push_back(std::move(next));
   }
 
@@ -219,7 +220,7 @@ class IsoSource::Impl {
       enter(line, {.file = frame().file, .at = i + 1, .label = label, .fanuc = true, .runs_left = times - 1});
       return;
     }
-    fail(line, 0, fmt::format("no subprogram O{} in the program", number));
+    fail(line, 0, fmt::format("there is no subprogram O{} in the program", number));
   }
 
   void return_from_fanuc(const IsoLine& line, NcBlock& block) {
@@ -256,7 +257,7 @@ class IsoSource::Impl {
       for (std::size_t i = from; i-- > 0;)
         if (is_it(lines[i])) return i;
     }
-    fail(line, 0, fmt::format("O{} {} with nothing that {} it", line.label, line.keyword, onward ? "ends" : "begins"));
+    fail(line, 0, fmt::format("O{} {} has nothing that {} it", line.label, line.keyword, onward ? "ends" : "begins"));
   }
 
   void flow(const IsoLine& line) {
@@ -268,7 +269,8 @@ class IsoSource::Impl {
     } else if (k == "CALL") {
       call(line);
     } else if (k == "ENDSUB" || k == "RETURN") {
-      if (frames_.size() == 1 || frame().fanuc) fail(line, 0, fmt::format("O{} {} outside of a subroutine", line.label, k));
+      if (frames_.size() == 1 || frame().fanuc)
+        fail(line, 0, fmt::format("O{} {} is outside of a subroutine", line.label, k));
       std::size_t i = line.rest;
       if (i < line.text.size()) globals_["<_VALUE>"] = value(line, i, false);
       frames_.pop_back();
@@ -295,7 +297,7 @@ class IsoSource::Impl {
       if (i >= line.text.size()) fail(line, i, "a count in [ ] is expected");
       const NcValue n = value(line, i, false);
       if (!n.certain)
-        run_.note_at(line.where, k, fmt::format("the count is known only at the machine; planned as {:g}", n.value));
+        run_.note_at(line.where, k, fmt::format("the count is known only at the machine; it is planned as {:g}", n.value));
       const long times = std::lround(std::min(n.value, 1e9));
       if (times < 1) {
         at = find(line, at, {"ENDREPEAT"}, true) + 1;
@@ -363,10 +365,10 @@ class IsoSource::Impl {
           !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
       const std::filesystem::path path = std::filesystem::path(path_).parent_path() / (name + ".ngc");
       if (!plain || !std::filesystem::exists(path))
-        fail(line, 0, fmt::format("no subroutine O{} in the program, nor {}.ngc beside it", label, name));
+        fail(line, 0, fmt::format("there is no subroutine O{} in the program, nor {}.ngc beside it", label, name));
       next.file = &load(path.string());
       begin = begins(*next.file);
-      if (!begin) fail(line, 0, fmt::format("no subroutine O{} in {}", label, path.string()));
+      if (!begin) fail(line, 0, fmt::format("there is no subroutine O{} in {}", label, path.string()));
     }
     next.at = *begin + 1;
     enter(line, std::move(next));

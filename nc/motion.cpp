@@ -34,7 +34,7 @@ void NcMotion::rapid_to(const std::array<double, 3>& target_m) {
   piece.rapid = true;
   position_m = target_m;
   if (length_m == 0.0) return;
-  if (!rapid_m_s_) throw InputError(where, "a rapid move, but nobody says how fast; state `rapid`, such as 15 m/min");
+  if (!rapid_m_s_) throw InputError(where, "the speed of rapid moves is missing; state `rapid`, such as 15 m/min");
   piece.length_m = length_m;
   note({length_m / *rapid_m_s_, speed_rpm(), travel_m, false}, piece);
 }
@@ -60,7 +60,7 @@ void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m
     throw InputError(
         where,
         feed_mode == NcFeedMode::InverseTime
-            ? "a feed move without F; with G93 every block of feed motion has an F above zero"
+            ? "the feed move has no F; with G93 every block of feed motion must have an F above zero"
             : "the feed move has no feed; write an F above zero in this block or after the last G93, G94, G95 before it");
   }
   double duration_s = length_m / feed;

@@ -86,7 +86,7 @@ void match_loops(std::vector<SiemensLine>& lines) {
     if ((word == "IF" && !jumps) || word == "WHILE" || word == "FOR" || word == "LOOP" || (word == "REPEAT" && bare)) {
       open.emplace_back(word, n);
     } else if (word == "ELSE") {
-      if (open.empty() || open.back().first != "IF") fail(line, line.begin, "ELSE without IF");
+      if (open.empty() || open.back().first != "IF") fail(line, line.begin, "ELSE has no IF before it");
       lines[open.back().second].partner = n;
       open.back() = {"IF", n};
     } else if (const auto closer = kClosers.find(word); closer != kClosers.end()) {
@@ -98,8 +98,7 @@ void match_loops(std::vector<SiemensLine>& lines) {
     }
   }
   if (!open.empty())
-    fail(lines[open.back().second], lines[open.back().second].begin,
-         fmt::format("{} that nothing closes", open.back().first));
+    fail(lines[open.back().second], lines[open.back().second].begin, fmt::format("{} is not closed", open.back().first));
 }
 
 /// The end of the brackets that open at text[i]: behind ')'.
@@ -126,7 +125,7 @@ std::size_t behind_value(const SiemensLine& line, std::size_t i) {
       ++i;
     } else if (text[i] == '"') {
       const std::size_t end = text.find('"', i + 1);
-      if (end == std::string::npos) fail(line, i, "a text without its second '\"'");
+      if (end == std::string::npos) fail(line, i, "the text has no closing '\"'");
       i = end + 1;
       wants = false;
     } else if (text[i] == '(') {

@@ -100,7 +100,8 @@ void require_guards(const DeployedPredictor& d) {
 
 PredictorFile file_of(const Json& j) {
   if (!j.is_object() || value<std::string>(j, "format") != kFormat)
-    throw InputError(fmt::format("no predictor (key `format` must be \"{}\"); `validate` writes them", kFormat));
+    throw InputError(
+        fmt::format("this file holds no predictor (key `format` must be \"{}\"); `validate` writes them", kFormat));
   PredictorFile file;
   DeployedPredictor& d = file.predictor;
   d.name = value<std::string>(j, "name");

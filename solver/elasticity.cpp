@@ -31,7 +31,7 @@ void check_materials(const Mesh& mesh, const RegionMaterials& materials) {
           fmt::format("region '{}': Young's modulus is {:g} Pa; it must be above zero", region, m.youngs_modulus_Pa));
     }
     if (!(m.poisson_ratio > -1.0 && m.poisson_ratio < 0.5)) {
-      throw InputError(fmt::format("region '{}': a Poisson ratio of {:g}; -1 to 0.5, both excluded, is allowed", region,
+      throw InputError(fmt::format("region '{}': Poisson's ratio is {:g}; -1 to 0.5, both excluded, is allowed", region,
                                    m.poisson_ratio));
     }
     for (double a_1_K : {m.expansion_1_K.x, m.expansion_1_K.y, m.expansion_1_K.z}) {

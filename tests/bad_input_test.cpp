@@ -261,17 +261,18 @@ INSTANTIATE_TEST_SUITE_P(
         Conflict{"train_alone", "validate no_such.yaml --train x.csv", "requires --test too"},
         Conflict{"test_alone", "validate no_such.yaml --test x.csv", "requires --train too"},
         Conflict{"after_alone", "compensate no_such.yaml --model x.json --through none --after x.csv",
-                 "--after goes with --measured"},
+                 "--after requires --measured"},
         Conflict{"measured_cyclogram",
                  "compensate no_such.yaml --model x.json --through none --measured x.csv --cyclogram y",
-                 "--measured goes with --through none"},
+                 "--measured is allowed only with --through none"},
         Conflict{"measured_injector", "compensate no_such.yaml --model x.json --through injector --measured x.csv",
-                 "--measured goes with --through none"},
-        Conflict{"file_through_frame", "compensate no_such.yaml --model x.json --through frame", "through the frame go"},
+                 "--measured is allowed only with --through none"},
+        Conflict{"file_through_frame", "compensate no_such.yaml --model x.json --through frame",
+                 "--through frame allows only"},
         Conflict{"shard_merge", "sweep no_such.yaml --shard 1/2 --merge", "leave out --shard"},
         Conflict{"observer_alone", "export no_such.yaml --fmu --of observer", "--model"},
         Conflict{"machine_with_model", "export no_such.yaml --fmu --model x.json", "--of observer"},
-        Conflict{"materials_markdown", "list materials --markdown", "--markdown goes with effects"},
+        Conflict{"materials_markdown", "list materials --markdown", "--markdown is allowed only for effects"},
         Conflict{"separation_alone", "inject --correction x.csv --separation 5 </dev/null", "add --clocked"},
         Conflict{"topic_alone", "follow no_such.yaml --topic speed_rpm=mill/speed </dev/null",
                  "requires --mqtt HOST or --mtconnect"},
@@ -295,7 +296,7 @@ TEST(BadCommand, AMeshThatGmshCannotMakeEndsWithThree) {
 TEST(BadCommand, ARecordToPredictMustSayWhatDroveTheMachine) {
   for (const auto& [text, words] : {std::pair{"time_s,t_degC\n100,20\n200,21\n", "no channel speed_rpm"},
                                     std::pair{"time_s,speed_rpm\n0,\n200,\n", "speed_rpm is empty"},
-                                    std::pair{"time_s,speed_rpm\n0,100\n200,-100\n300,0\n", "speeds are positive"}}) {
+                                    std::pair{"time_s,speed_rpm\n0,100\n200,-100\n300,0\n", "speeds must be positive"}}) {
     const CommandOutcome outcome =
         run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + write_file("drive.csv", text));
     EXPECT_EQ(outcome.exit_code, 2) << words;

@@ -35,8 +35,10 @@ INSTANTIATE_TEST_SUITE_P(
             "mm^2/s, "
             "viscosity_100: 5 mm^2/s}",
             "exactly one of the two is required"},
-        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_40: 32 mm^2/s}", "go together"},
-        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_100: 5 mm^2/s}", "go together"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_40: 32 mm^2/s}",
+            "must be given together"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_100: 5 mm^2/s}",
+            "must be given together"},
         Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_40: 5 mm^2/s, viscosity_100: 5 "
             "mm^2/s}",
             "thinner at 100 degC"},
@@ -44,9 +46,9 @@ INSTANTIATE_TEST_SUITE_P(
             "looks at the oil"},
         Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, preload_growth: 5 N/K, "
             "inner: a}",
-            "go together"},
+            "must be given together"},
         Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, inner: a, outer: b}",
-            "go together"},
+            "must be given together"},
         Bad{"{type: servo_loss, region: m, axis: w, power: 1 W, at_feed: 1 m/s}", "'w' is not known here"},
         Bad{"{type: servo_loss, region: m, axis: x, power: 1 W, at_feed: 0 m/s}", "outside what is allowed"},
         Bad{"{type: ball_screw, region: n, axis: x, torque: 1 N m, lead: 0 mm}", "outside what is allowed"},
@@ -59,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: heat_source, region: n, power: 1 W, runs: while_spindle_stands, exponent: 1}",
             "does not grow with speed"},
         Bad{"{type: heat_source, region: n, power: 1 W, fades: 3 min, period: 1 min, until: 1 h}", "exclude each other"},
-        Bad{"{type: recorded_drive, node: n, column: a_1, gain: 1, medium: 20 degC}", "of an `opening`"},
+        Bad{"{type: recorded_drive, node: n, column: a_1, gain: 1, medium: 20 degC}", "requires an `opening`"},
         Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",
             "exactly one of the two is required"},
         Bad{"{type: changed_law, law: coolant a}", "the entry changes nothing"},
@@ -70,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: heat_source, node: a, power: 1 W, runs: while_spindle_stands, lasts: 5 min, fades: 9 min}",
             "neither fades nor"},
         Bad{"{type: heat_source, node: a, power: 1 W, runs: while_spindle_stands, exponent: 2}", "does not grow with speed"},
-        Bad{"{type: changed_law, law: coolant a, growth_beyond: 0}", "go together"},
-        Bad{"{type: changed_law, law: coolant a, factor_below: 2}", "go together"},
+        Bad{"{type: changed_law, law: coolant a, growth_beyond: 0}", "must be given together"},
+        Bad{"{type: changed_law, law: coolant a, factor_below: 2}", "must be given together"},
         Bad{"{type: link, node: a, to: ambient, conductance: 1 W/K, runs_on: 3 min}", "goes with the spindle"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "later than `from`"},
         Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "later than `from`"},
@@ -88,8 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
             "pressure: 0 "
             "Pa}",
             "exactly one of the two is required"},
-        Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)]]}", "go together"},
-        Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), pressure: 1 Pa}", "go together"},
+        Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)]]}", "must be given together"},
+        Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), pressure: 1 Pa}", "must be given together"},
         Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)], [2 Pa, 3 W/(m^2 K)]], pressure: 3 "
             "Pa}",
             "outside the table"},
@@ -114,10 +116,10 @@ INSTANTIATE_TEST_SUITE_P(
             "outside what is allowed"},
         Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, cooling_power: 1 "
             "kW}",
-            "go together"},
+            "must be given together"},
         Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, set_point: 20 "
             "degC}",
-            "go together"},
+            "must be given together"},
         Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, cooling_power: 1 "
             "kW, "
             "set_point: 20 degC, hysteresis: 0 K}",

@@ -109,7 +109,7 @@ TEST(RecordedDrive, WantsOneLawAndAColumn) {
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, exponent: 2}"); },
               refused("`gain` holds"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: valve_1, opening: 1, exponent: 2, at: 3}"); },
-              refused("of a `gain`"));
+              refused("requires a `gain`"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: feed_x, gain: 1, lag: 3 min}"); }, refused("at once"));
 }
 

@@ -378,7 +378,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"three_columns", "row,a_um,b_um\n1,2,3\n", "--period '1 um'", "0 0\n", "no column 'predicted_um'"},
         BadCase{"no_such_column", "row,a_um,b_um\n1,2,3\n", "--period '1 um' --column c_um", "0 0\n", "no column 'c_um'"},
         BadCase{"ragged", "row,predicted_um,b_um\n1,2\n", "--period '1 um'", "0 0\n",
-                ":2: '1,2': 2 columns; the header has 3"},
+                ":2: '1,2' has 2 columns, but the header has 3"},
         BadCase{"strict_and_hold", kGood, "--period '1 um' --strict --on-fault hold", "0 0\n", "--on-fault"},
         BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
         BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},

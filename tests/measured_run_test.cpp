@@ -405,7 +405,7 @@ TEST_F(MeasuredRunTest, RefusesWhatCannotBeComparedAndSaysWhatIsWanted) {
   EXPECT_THAT(refusal("time_s,speed_rpm,other_degC\n0,0,20\n60,0,21\n120,0,22\n"),
               AllOf(HasSubstr("no channel to compare"), HasSubstr("t_front")));
   EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,0,20\n60,0,21\n"), HasSubstr("2 rows"));
-  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,-5,20\n60,0,21\n120,0,22\n"), HasSubstr("speeds are positive"));
+  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,-5,20\n60,0,21\n120,0,22\n"), HasSubstr("speeds must be positive"));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST(NcPlaces, SayWhyABlockCannotBeDivided) {
   EXPECT_EQ(why("/X5"), "a block that '/' may leave out");
   EXPECT_EQ(why("G41 D1 G1 X5 F100"), "cutter compensation");
   const std::vector<NcStep> steps = steps_of("G0 X5\nM2\n");
-  EXPECT_EQ(why_not_divisible(steps[0]), "nobody has said where it starts");
+  EXPECT_EQ(why_not_divisible(steps[0]), "its starting point is not stated");
 }
 
 const NcOffsetOptions kXZ{.dialect = NcDialect::kLinuxCnc,

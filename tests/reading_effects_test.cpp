@@ -105,12 +105,13 @@ TEST(Learned, FollowsARecordedColumn) {
 
 TEST(Learned, RefusesWhatDoesNotGoTogether) {
   for (const auto& [entry, says] : {
-           std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) are of a sensor"},
-           {"{type: learned, sensor: a}", "nothing is learned"},
-           {"{type: learned, sensor: a, follows: running}", "go together"},
-           {"{type: learned, displacement: z, offset: 1 K, keeps: 0.5}", "it is of a sensor"},
-           {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` go together"},
-           {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}", "the `column` go together"},
+           std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) of a sensor"},
+           {"{type: learned, sensor: a}", "the entry learns nothing"},
+           {"{type: learned, sensor: a, follows: running}", "must be given together"},
+           {"{type: learned, displacement: z, offset: 1 K, keeps: 0.5}", "only for a sensor"},
+           {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` must be given together"},
+           {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}",
+            "the `column` must be given together"},
        })
     EXPECT_THAT(([entry = std::string(entry)] { (void)read(entry); }), ThrowsMessage<InputError>(HasSubstr(says))) << entry;
 }
@@ -137,7 +138,7 @@ TEST(DisplacementPath, ReadsAShareOfAnotherDisplacementAfterWhatThatOneFollows) 
     EXPECT_NEAR(t(2, i), 0.25 * t(4, i), 1e-15);
   }
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y}"); },
-              ThrowsMessage<InputError>(HasSubstr("go together")));
+              ThrowsMessage<InputError>(HasSubstr("must be given together")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: z, share: 0.1}"); },
               ThrowsMessage<InputError>(HasSubstr("this must be another displacement")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y, share: 0.1, gain: 2}"); },
@@ -225,7 +226,7 @@ TEST(DisplacementPath, WantsOneThingToFollow) {
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: a_N, gain: 1, sensitivity: 1 um/K}"); },
               ThrowsMessage<InputError>(HasSubstr("one of them")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, gain: 1}"); },
-              ThrowsMessage<InputError>(HasSubstr("of a `column`")));
+              ThrowsMessage<InputError>(HasSubstr("only beside a `column`")));
 }
 
 TEST(MountShift, IsAStepFromItsTimeOn) {

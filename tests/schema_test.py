@@ -95,7 +95,7 @@ WRONG = [
     (SPINDLE, "runs: always", "runs: often", "'often' is not known here"),
     (SPINDLE, "type: motor_loss, node: shaft", "type: motor_los, node: shaft", "'motor_los' is not known here"),
     (SPINDLE, "name: t_stator", "name: t/stator", "is no name"),
-    (MILL, "sensors_to_choose: 4", "sensors_to_choose: 0", "no whole number"),
+    (MILL, "sensors_to_choose: 4", "sensors_to_choose: 0", "must be a whole number"),
     (MILL, "counts: x1 ", "counts: x3 ", "'x3' is not known here"),
     (MILL, "dialect: linuxcnc", "dialect: fanuc", "'fanuc' is not known here"),
     (MILL, "train: [continuous_1000, continuous_1600, continuous_2000]", "train: [continuous_1000]", "at least 2 are required"),

@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(
             {":4:50: ", "wrong unit 'N'", "[vary[0].to]"}},
         Bad{"one_step",
             "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 degC, steps: 1}]\n",
-            {"no whole number from 2"}},
+            {"must be a whole number from 2"}},
         Bad{"log_of_degC",
             "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 degC, steps: 3, spacing: log}]\n",
             {"and no degC"}},

@@ -220,7 +220,7 @@ TEST_F(ValidationStudy, WhatCannotBeCorrectedIsRefused) {
     EXPECT_THAT(o.output, HasSubstr(words)) << arguments;
   };
   expect("scenarios/cnc_mill_13.yaml --model observer --through schedule", "models/observer.json");
-  expect("scenarios/cnc_mill_13.yaml --model modes --through none --measured a.csv", "--measured goes with");
+  expect("scenarios/cnc_mill_13.yaml --model modes --through none --measured a.csv", "--measured is allowed only with");
   expect("scenarios/cnc_mill_13.yaml --model modes --through injector", "axis_loop");
   expect("scenarios/cnc_mill_13.yaml --model modes --through frame", "table");
   expect("scenarios/cnc_mill_13.yaml --model no_such.json --through schedule", "no_such.json");

@@ -78,7 +78,7 @@ constexpr double kMostQuarters = 1e15;
 
 double checked_quarters(double quarters, const std::string& path, std::int64_t line) {
   if (!(std::abs(quarters) <= kMostQuarters))
-    fail(path, line, fmt::format("{:g} quarter steps; at most {:g}", quarters, kMostQuarters));
+    fail(path, line, fmt::format("{:g} quarter steps are too many; at most {:g} are allowed", quarters, kMostQuarters));
   return quarters;
 }
 
@@ -114,7 +114,7 @@ std::size_t CorrectionInput::column_of(const std::vector<std::string>& header, s
     if (trimmed(header[c]) == wanted) return c;
   }
   fail(path_, line,
-       fmt::format("no column '{}' among {}; --column NAME says which holds the correction", wanted,
+       fmt::format("there is no column '{}' among {}; --column NAME says which holds the correction", wanted,
                    fmt::join(header, ", ")));
 }
 
@@ -133,7 +133,7 @@ void CorrectionInput::read_table() {
     if (rows_per_unit == 0.0) column = column_of(cells, n_lines);
     if (cells.size() < 2 || cells.size() != n_cells + (n_cells == 0 ? cells.size() : 0))
       fail(path_, n_lines,
-           n_cells > 2 ? fmt::format("'{}': {} columns; the header has {}", text, cells.size(), n_cells)
+           n_cells > 2 ? fmt::format("'{}' has {} columns, but the header has {}", text, cells.size(), n_cells)
                        : fmt::format("'{}': the line must have two columns, such as 'row,correction_um'", text));
     n_cells = cells.size();
     const std::string_view first = trimmed(cells[0]), second = trimmed(cells[column]);

@@ -90,7 +90,7 @@ Programme read_programme(const ConfigMap& in) {
     random->reject_unknown_keys();
   }
   if (p.cyclograms.empty() && p.random.count == 0)
-    in.fail("cyclograms", "neither `cyclograms` nor `random` to judge predictors on");
+    in.fail("cyclograms", "`cyclograms` or `random` is required, to judge predictors on");
   p.most_modes = in.integer("most_modes");
   p.model_scatter = in.quantity("model_scatter");
   p.extrapolate = in.flag("extrapolate");

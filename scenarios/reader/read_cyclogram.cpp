@@ -93,7 +93,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
       }
       const std::size_t i = n_before++;
       if (!(value >= 0.0 && value <= given[i]->most)) {
-        in.fail(key, fmt::format("a {} of {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
+        in.fail(key, fmt::format("the {} is {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
                                  given[i]->most, given[i]->unit));
       }
       *given[i]->place(section.drive) = value;
@@ -110,7 +110,8 @@ RowColumns row_columns(const ConfigMap& in) {
   for (const Column& c : columns()) known.emplace_back(c.name);
   const std::vector<std::string> names = in.texts("columns");
   if (names.empty() || names[0] != "duration")
-    in.fail("columns", fmt::format("the first column is duration; after it any of {}", fmt::join(known, ", ")));
+    in.fail("columns",
+            fmt::format("the first column must be duration; after it any of {} are allowed", fmt::join(known, ", ")));
   RowColumns columns_given;
   std::vector<const Column*>& given = columns_given.drive;
   for (std::size_t i = 1; i < names.size(); ++i) {

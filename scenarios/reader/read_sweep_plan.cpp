@@ -239,7 +239,7 @@ std::vector<CollectedScalar> read_collect(const ConfigMap& in, const Scenario& s
     const auto found = std::find(known.begin(), known.end(), channel);
     if (found == known.end()) {
       const std::string near = nearest_word(channel, known);
-      in.fail("collect", fmt::format("no channel '{}'; there are {}.{}", channel, fmt::join(known, ", "),
+      in.fail("collect", fmt::format("there is no channel '{}'; there are {}.{}", channel, fmt::join(known, ", "),
                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
     }
     const std::string& unit = channels[static_cast<std::size_t>(found - known.begin())].second;
@@ -272,8 +272,8 @@ std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& sc
   const std::vector<std::string> names = in.texts("cyclograms");
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    in.fail("cyclograms",
-            fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+    in.fail("cyclograms", fmt::format("there is no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
+                                      did_you_mean(name, known)));
   }
   return names;
 }
@@ -299,7 +299,7 @@ schema::Map variation_schema() {
           .groups = {{Group::Rule::kExactlyOne, kKinds,
                       fmt::format("exactly one of {} is required beside the key", fmt::join(kKinds, ", "))},
                      {Group::Rule::kAllOrNone, {"from", "to", "steps"}, "all three are required"},
-                     {Group::Rule::kWantFirst, {"from", "spacing"}, "`spacing` goes with `from`, `to` and `steps`"}},
+                     {Group::Rule::kWantFirst, {"from", "spacing"}, "`spacing` requires `from`, `to` and `steps`"}},
           .about = "What varies."};
 }
 

@@ -55,7 +55,7 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
                       "holds the value before",
                       record.source, channel->header(), record.time_s[i]));
     if (v < 0.0 && !kind.may_be_signed)
-      refuse(fmt::format("{} are positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
+      refuse(fmt::format("{} must be positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
     if (std::abs(v) > kind.most) refuse(fmt::format("{:g} {} at most is allowed", kind.most, kind.unit));
   }
   return channel;

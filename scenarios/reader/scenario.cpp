@@ -76,7 +76,7 @@ MachineModel read_machine(const ConfigMap& in) {
     m.written += fmt::format("{}: {}\n", key, in.written(key));
   }
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
-  if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
+  if (has_mesh && m.supports.empty()) in.fail("supports", "there is no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
     in.fail("sensors",
             "the scenario has neither a sensor nor a displacement, so it would compute nothing; write `sensors` or "
@@ -114,7 +114,7 @@ void check_candidates(const ConfigMap& in, const Study& study, const MachineMode
   for (const std::string& name : study.candidates) {
     const bool is_ambient = name == kAmbient && has_ambient_channel(machine);
     if (!is_ambient && std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
-      in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
+      in.fail("candidates", fmt::format("there is no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
     }
   }
   const std::size_t n_candidates = study.candidates.empty() ? sensors.size() : study.candidates.size();
@@ -150,8 +150,8 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
     const auto must_know = [&](const char* key, const std::string& name) {
       if (std::find(known.begin(), known.end(), name) == known.end()) {
-        in.fail(key,
-                fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+        in.fail(key, fmt::format("there is no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
+                                 did_you_mean(name, known)));
       }
     };
     for (const std::string& name : s.train) {
@@ -168,7 +168,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     std::vector<std::string> channels;
     for (const DisplacementOutput& d : scenario.machine->displacements) channels.push_back(d.name);
     if (std::find(channels.begin(), channels.end(), s.target) == channels.end()) {
-      in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
+      in.fail("target", fmt::format("there is no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
     }
     s.sensor_resolution_K = in.quantity("sensor_resolution");
     check_candidates(in, s, *scenario.machine);
@@ -372,8 +372,8 @@ const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
     if (c.name == cyclogram_name) return c;
     known.push_back(c.name);
   }
-  throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}.{}", path, cyclogram_name, fmt::join(known, ", "),
-                               did_you_mean(cyclogram_name, known)));
+  throw InputError(fmt::format("{}: there is no cyclogram '{}'; there are {}.{}", path, cyclogram_name,
+                               fmt::join(known, ", "), did_you_mean(cyclogram_name, known)));
 }
 
 void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {

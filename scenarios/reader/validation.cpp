@@ -21,7 +21,7 @@ Cyclogram named(const ConfigMap& in, const std::string& key, const std::string& 
     if (c->name == name) return *c;
     names.push_back(c->name);
   }
-  in.fail(key, fmt::format("no cyclogram '{}'; there are {}", name, fmt::join(names, ", ")));
+  in.fail(key, fmt::format("there is no cyclogram '{}'; there are {}", name, fmt::join(names, ", ")));
 }
 
 Validation::Family read_family(const ConfigMap& in, const std::string& name, const std::vector<const Cyclogram*>& known,
@@ -106,7 +106,7 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
       }
     }
   }
-  if (v.families.empty()) in.fail("families", "no family of cyclograms to judge on");
+  if (v.families.empty()) in.fail("families", "there is no family of cyclograms to judge on");
   v.seasons.push_back({.name = "as trained"});
   if (const auto seasons = in.optional_map("seasons")) {
     for (const std::string& name : seasons->keys()) {
