@@ -136,7 +136,7 @@ EffectKind kind() {
       .places = {Place::kSpindle},
       .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"},
                      {"warmed_up", "min", 0.0, kLongest_min, 0.0, "that the machine had run before the record began"},
-                     {"rested", "min", 0.0, kLongest_min, 0.0, "and how long it had stood then"}},
+                     {"rested", "min", 0.0, kLongest_min, 0.0, "and how long it had rested then"}},
       .timing = Timing::kInRecord,
       .change_laws = change_laws,
       .change_drive = change_drive,
