@@ -48,7 +48,7 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   verb->add_option(input, options.scenario, input + " YAML")->required();
   add_results(verb, options, "<name of the " + input + ">", example);
   verb->add_flag("--strict", options.strict,
-                 "refuse what no machine has or does in place of warning of it (docs/scenario.md, Plausibility)");
+                 "refuse implausible values instead of warning about them (docs/scenario.md, Plausibility)");
   return verb;
 }
 
@@ -103,11 +103,12 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
                    "of a table of several columns [predicted_um], or axis of lines that `follow` writes [the only one]");
   CLI::Option* on_fault =
       verb->add_option("--on-fault", options.on_fault,
-                       "what a row or a correction from a FIFO that is none does: hold what was before it, or "
-                       "bypass: the correction is withdrawn until the next good one")
+                       "what happens at an invalid row, or at an invalid correction from a FIFO: hold (the value before it "
+                       "holds) or bypass (the correction is withdrawn until the next good one)")
           ->check(CLI::IsMember({"hold", "bypass"}))
           ->capture_default_str();
-  verb->add_flag("--strict", options.strict, "it ends the run, with exit code 2")->excludes(on_fault);
+  verb->add_flag("--strict", options.strict, "an invalid row or correction ends the run, with exit code 2")
+      ->excludes(on_fault);
   verb->add_flag("--bypass", options.bypass, "pass all bytes on as they are");
   verb->add_flag("--clocked", options.clocked,
                  "one row out for each row in, as in a running simulation; else inserted rows are added");
@@ -140,7 +141,9 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       "--columns", options.columns,
       "scenario whose key `columns` says how the rows are written [as records], or `topics` where they come from");
   CLI::Option* replay = verb->add_option("--replay", options.replay, "rows from a file in place of standard input");
-  verb->add_option("--pace", options.pace, "so many times as fast as its rows say [as fast as it goes]")->needs(replay);
+  verb->add_option("--pace", options.pace,
+                   "speed of the replay, as a multiple of the pace of its rows [as fast as possible]")
+      ->needs(replay);
   CLI::Option* mqtt =
       verb->add_option("--mqtt", options.mqtt, "MQTT broker HOST or HOST:PORT in place of standard input")->excludes(replay);
   CLI::Option* from =
@@ -157,7 +160,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
           ->excludes(replay)
           ->excludes(mqtt);
   verb->add_flag("--sample", options.sample,
-                 "of the agent all observations (/sample), at their own times, not only the latest ones")
+                 "read all observations of the agent (/sample) at their own times, not only the latest ones")
       ->needs(agent);
   verb->add_option("--topic", options.topics,
                    "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, the id or name of "
@@ -167,8 +170,8 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();
   verb->add_option("--to", options.to, "topic that lines go to beside standard output")->needs(mqtt);
   verb->add_option("--state", options.state,
-                   "file that keeps what is known, every second, and that a new start goes on from");
-  verb->add_option("--record", options.record, "record CSV of the rows that were taken");
+                   "file in which the state is saved every second, and from which a restart continues");
+  verb->add_option("--record", options.record, "record CSV into which the rows that were used are written");
   CLI::Option* serve =
       verb->add_option("--serve", options.serve,
                        "port of a page for browsers: machine, drift, correction, trust, alarms; 0: any that is free");
@@ -176,20 +179,23 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       ->needs(serve)
       ->capture_default_str();
   verb->add_option("--token", options.token,
-                   "word that each request for the page has to bring, or @FILE, whose first line it is")
+                   "token that each request for the page must contain, or @FILE, whose first line is the token")
       ->needs(serve);
   verb->add_option("--slew", options.slew,
                    "how fast a correction may change, such as '0.5 um/s' [as the model was fitted, else 1 um/s]");
-  verb->add_option("--hold", options.hold,
-                   "so long without a row a correction holds, such as '5 min' [as the model was fitted, else 5 min]");
-  verb->add_option("--fade", options.fade, "time constant with which it fades then [as the model was fitted, else 10 min]");
+  verb->add_option(
+      "--hold", options.hold,
+      "time for which a correction holds without a new row, such as '5 min' [as the model was fitted, else 5 min]");
+  verb->add_option("--fade", options.fade,
+                   "time constant with which it fades afterwards [as the model was fitted, else 10 min]");
   CLI::Option* watch = verb->add_option(
-      "--watch", options.watch, "limits of a watch: says while it runs that the machine is not as modelled; of an observer");
+      "--watch", options.watch,
+      "limits of a watch, which reports during the run that the machine is not as modelled; for an observer");
   CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
-                                            "writes such limits, by simulation, and follows nothing")
+                                            "compute such limits by simulation and write them; nothing is followed")
                                ->excludes(watch)
                                ->excludes(replay);
-  verb->add_option("--top-speed", options.top_speed, "of the spindle, that they are simulated to, such as '2500 rpm'")
+  verb->add_option("--top-speed", options.top_speed, "top speed of the spindle in these simulations, such as '2500 rpm'")
       ->needs(calibrate);
   verb->footer(
       "Example:\n  driftwright follow scenarios/fp3_spindle.yaml --replay scenarios/records/monday.csv > lines.txt\n  "
@@ -235,10 +241,10 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
           "--drive", options.drives,
           "channel that drives the machine though its unit does not say so, such as a bed's temperature; may be repeated")
       ->allow_extra_args(false);
-  verb->add_option(
-          "--prior", options.prior,
-          "a scenario to begin with: what it misses of the records is learned beside its physics and written as "
-          "extended.yaml, where rows that were kept out speak for it; --ambient and --drive then are the scenario's")
+  verb->add_option("--prior", options.prior,
+                   "a scenario to start from: what it does not explain of the records is learned in addition to its physics "
+                   "and written as extended.yaml, where rows that were kept out confirm it; --ambient and --drive are then "
+                   "those of the scenario")
       ->excludes("--ambient")
       ->excludes("--drive");
   add_results(verb, options, "<name of the first record>",
@@ -301,7 +307,7 @@ void add_init(CLI::App& cli, app::InitOptions& options) {
   verb->add_option("--from", options.from, "a drawing or mesh (.step, .msh, .inp, .vtu), which is copied, or lumped")
       ->capture_default_str();
   verb->add_option("--units", options.units,
-                   "of a mesh, or of a drawing that says a wrong one: mm, cm, m or inch [by its size]");
+                   "unit of a mesh, or of a drawing whose stated unit is wrong: mm, cm, m or inch [by its size]");
   verb->footer(
       "Example:\n  driftwright init results/mill --from scenarios/parts/vertical_mill.step\n  driftwright init "
       "results/two_nodes");
@@ -422,7 +428,7 @@ int app::command_line(int argc, const char* const* argv) {
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
   add_verb(cli, "check",
-           "read and mesh a scenario, place its sensors, say what no machine has; lumped nodes are run, a mesh is not",
+           "read and mesh a scenario, place its sensors, report implausible values; lumped nodes are run, a mesh is not",
            "check scenarios/fp3_spindle.yaml", check)
       ->callback([&] { app::check(check); });
   CLI::App* verb =

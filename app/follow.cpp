@@ -300,10 +300,12 @@ class Following {
     if (n_before_header_ > 0)
       (void)std::fputs(fmt::format("follow: {} lines before the header could not be read\n", n_before_header_).c_str(),
                        stderr);
-    if (n_unheard_ > 0) (void)std::fputs(fmt::format("follow: {} lines found no broker\n", n_unheard_).c_str(), stderr);
+    if (n_unheard_ > 0)
+      (void)std::fputs(
+          fmt::format("follow: {} lines could not be sent, because no broker was connected\n", n_unheard_).c_str(), stderr);
     if (link_ && link_->n_lost() > 0)
-      (void)std::fputs(fmt::format("follow: {} messages came faster than they could be taken\n", link_->n_lost()).c_str(),
-                       stderr);
+      (void)std::fputs(
+          fmt::format("follow: {} messages came faster than they could be processed\n", link_->n_lost()).c_str(), stderr);
   }
 
   const FollowVerbOptions& options_;

@@ -274,7 +274,7 @@ class Filter {
           "--separation\n",
           how_much, injector_.room(), where, longest_));
     } else if (injector_.inserted() == 0) {
-      tell(fmt::format("inject: {}: in no row {} was there room before the input ended\n", how_much, where));
+      tell(fmt::format("inject: {}: no row {} left room for an insertion before the input ended\n", how_much, where));
     }
   }
 
@@ -326,9 +326,9 @@ class Filter {
       if (!hal) throw InputError(fmt::format("{}: cannot be written", options_.hal));
     }
     if (n_bad_rows_ > 0 || n_bad_corrections_ > 0)
-      tell(fmt::format("inject: {} rows and {} corrections were none; {}\n", n_bad_rows_, n_bad_corrections_,
+      tell(fmt::format("inject: {} rows and {} corrections were invalid; {}\n", n_bad_rows_, n_bad_corrections_,
                        options_.on_fault == "bypass" ? "the correction was withdrawn until the next good one"
-                                                     : "what was before them held"));
+                                                     : "the value before them held"));
     if (encoder.n_jumps() > 0)
       tell(fmt::format("inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
                        rules_.bypass ? "" : "; the correction waited a period after each"));

@@ -231,7 +231,8 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
   try {
     channel.unit = record_unit(channel.written_unit);
   } catch (const RangeError&) {
-    guessed.guesses.push_back(fmt::format("'{}' is left out: records have no channel for {}", header, channel.written_unit));
+    guessed.guesses.push_back(
+        fmt::format("'{}' is left out, because records have no channel for {}", header, channel.written_unit));
     return false;
   }
   if (channel.unit == "K" && are_absolute_K(cells, guessed.map.decimal)) {

@@ -83,7 +83,7 @@ RowSource::Got CurrentRows::next(std::string& line, double wait_s) {
     has_answered_ = true;
     is_away_ = false;
   } catch (const RangeError& e) {
-    if (!is_away_) say_(fmt::format("{}; it is asked again every {:g} s", e.what(), every_s_));
+    if (!is_away_) say_(fmt::format("{}; `follow` asks it again every {:g} s", e.what(), every_s_));
     is_away_ = true;
   }
   if (!has_answered_) return Got::kNothingYet;
@@ -142,7 +142,7 @@ void SampleRows::ask() {
     is_away_ = false;
   } catch (const RangeError& e) {
     if (!is_away_)
-      say_(fmt::format("{}; it is asked again every {:g} s, for all that it observes meanwhile", e.what(), every_s_));
+      say_(fmt::format("{}; `follow` asks it again every {:g} s, for all that it observes meanwhile", e.what(), every_s_));
     is_away_ = true;
   }
 }

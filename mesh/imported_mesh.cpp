@@ -24,7 +24,7 @@ Format format_of(const std::string& path, const Where& where) {
   if (extension == ".inp") return Format::kInp;
   if (extension == ".vtu") return Format::kVtu;
   if (extension == ".step" || extension == ".stp") return Format::kStep;
-  throw InputError(where, fmt::format("'{}' files are not read; .msh, .inp, .vtu, .step and .stp are", extension));
+  throw InputError(where, fmt::format("'{}' files cannot be read; .msh, .inp, .vtu, .step and .stp are allowed", extension));
 }
 
 std::string read_place_name(const ConfigMap& in, const std::string& key) {

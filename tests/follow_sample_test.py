@@ -118,7 +118,7 @@ def main():
 
         observe(60)
         agent.leave()
-        wait_for("word that it is away", lambda: any("it is asked again" in w for w in words))
+        wait_for("word that it is away", lambda: any("asks it again" in w for w in words))
         observe(60)
         agent.open(agent.port)
         wait_for("word that it is back", lambda: any("answers again" in w for w in words))

@@ -166,7 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"wrong_unit", "units: mm", "units: m", {"400 m large", "unit mm (0.4 m)?"}},
         Mistake{"other_unit", "units: mm", "units: furlong", {"'furlong' is not known here", "inch"}},
         Mistake{"no_file", "parts/machine.inp", "parts/nowhere.inp", {"there is no file", "parts/nowhere.inp"}},
-        Mistake{"other_format", "parts/machine.inp", "parts/machine.cdb", {"'.cdb' files are not read", ".msh, .inp, .vtu"}},
+        Mistake{
+            "other_format", "parts/machine.inp", "parts/machine.cdb", {"'.cdb' files cannot be read", ".msh, .inp, .vtu"}},
         Mistake{"step_key",
                 "  units: mm\n",
                 "  units: mm\n  element_order: 2\n",

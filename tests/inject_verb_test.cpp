@@ -208,8 +208,8 @@ TEST(InjectVerb, ABadRowHoldsIsCountedAndLogged) {
       inject("bad_row", "--period '1 um' --log log.csv --correction " + c, "x\n0 0\n1 0\n1 2\n\n1 1\n0 1 1\n0 1\n");
   EXPECT_EQ(f.exit_code, 0);
   EXPECT_EQ(f.rows, "0 0\n1 0\n1 0\n1 0\n1 1\n1 1\n0 1\n");
-  EXPECT_THAT(f.words,
-              AllOf(HasSubstr("line 4: '1 2'"), HasSubstr("4 rows and 0 corrections were none"), HasSubstr("encoder +3")));
+  EXPECT_THAT(f.words, AllOf(HasSubstr("line 4: '1 2'"), HasSubstr("4 rows and 0 corrections were invalid"),
+                             HasSubstr("encoder +3")));
   EXPECT_THAT(read_text(temporary_folder() / "bad_row" / "log.csv"), HasSubstr("# fault at row"));
   const Filtered raw = inject("bad_raw", "--bypass --period '1 um' --correction " + c, "0 0\n0 2\n1 0\n");
   EXPECT_EQ(raw.rows, "0 0\n0 2\n1 0\n");  // a wire
