@@ -75,7 +75,7 @@ std::vector<std::string> joined(const LoggerSheet& sheet, const std::vector<std:
   return stamps;
 }
 
-/// By name, or by position where the name is not there or is there twice.
+/// By name, or by position where the name does not exist or is there twice.
 ColumnPlace place(const LoggerSheet& sheet, std::size_t c) {
   const std::string& name = sheet.names[c];
   const bool by_name = !name.empty() && std::count(sheet.names.begin(), sheet.names.end(), name) == 1;

@@ -67,7 +67,7 @@ struct Group {
   };
   Rule rule;
   std::vector<std::string> keys;
-  std::string message;  ///< what is wanted, for errors
+  std::string message;  ///< what is required, for errors
 };
 
 /// Keys of a map. Where several maps may stand in one place, `when` says which it is: the one that has that key, with that word.

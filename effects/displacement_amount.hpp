@@ -5,7 +5,7 @@
 
 namespace driftwright::effects {
 
-/// Two parameters of which one is wanted: `name` [um] and `tilt` [urad].
+/// Two parameters of which one is required: `name` [um] and `tilt` [urad].
 [[nodiscard]] inline std::vector<Parameter> amount_parameters(const std::string& name, const std::string& meaning,
                                                               std::vector<Parameter> further) {
   further.insert(further.begin(), {{name, "um", -1e5, 1e5, kNotGiven, meaning + " of a displacement"},

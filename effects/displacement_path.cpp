@@ -93,7 +93,7 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("column", "this must be a column of temperatures, but it is one of the drive; write its effect as `gain`");
 }
 
-/// At once, where the displacement does not follow it yet, and behind a lag.
+/// At once, where the displacement does not follow it yet, and with a lag.
 /// @param path  what its size is set in by `size`
 void add_paths(const DoubtScene::Displacement& d, const Effect& path, const DoubtedNumber& size, const std::string& follows,
                bool at_once, std::vector<Doubt>& list) {

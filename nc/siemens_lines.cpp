@@ -119,7 +119,7 @@ std::size_t behind_bracket(const SiemensLine& line, std::size_t i) {
 std::size_t behind_value(const SiemensLine& line, std::size_t i) {
   const std::string& text = line.text;
   const std::string operators = "+-*/";
-  bool wants = true;  // an operand is wanted
+  bool wants = true;  // an operand is required
   while (i < text.size()) {
     if (text[i] == ' ') {
       ++i;

@@ -34,7 +34,7 @@ struct Spots {
 
 /// Points of a mesh's outside that a hand can reach (mesh::reachable_nodes()): each region has its share by area, twelve at least, and of its nodes
 /// always the one that lies furthest from all before it.
-/// @throws InputError  for a region that is not there, and where none is left
+/// @throws InputError  for a region that does not exist, and where none is left
 [[nodiscard]] Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules);
 /// The lumped nodes. @throws InputError  the same
 [[nodiscard]] Spots spots_of(const std::vector<std::string>& nodes, const SpotRules& rules);

@@ -88,7 +88,7 @@ struct Outlook {
 /// The cyclogram of that name in the scenario, or the one that a record CSV tells, named as the file without its folder and ending; looked
 /// at by check_cyclogram().
 /// @param name_or_file  a file ends with .csv
-/// @throws InputError  for a name that is not there, for a CSV that tells no cyclogram, for a cyclogram that the machine cannot run
+/// @throws InputError  for a name that does not exist, for a CSV that tells no cyclogram, for a cyclogram that the machine cannot run
 [[nodiscard]] Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file);
 
 }  // namespace driftwright::studies

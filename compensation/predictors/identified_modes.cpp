@@ -166,7 +166,7 @@ Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_
 }
 
 /// Steady levels of given time constants: least squares with a prior that none is larger than the channel itself (1 sigma is its range), and that
-/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests tell apart badly would cancel each other there and not elsewhere.
+/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests distinguish badly would cancel each other there and not elsewhere.
 struct Linear {
   Eigen::MatrixXd amplitude;  ///< n_columns x n_channels, in units of noise
   Eigen::MatrixXd residual;   ///< of the rows that take part, then amplitude over its prior
