@@ -54,7 +54,7 @@ char find_separator(const std::string& path, const std::vector<std::string>& lin
       if (static_cast<double>(usual_width(body, separator).second) >= share * n_filled) return separator;
     }
   }
-  throw InputError(fmt::format("{}: no rows of cells are made out; say `columns` in a scenario (docs/record.md)", path));
+  throw InputError(fmt::format("{}: no rows of cells are made out; say `columns` in a scenario (docs/reference/record.md)", path));
 }
 
 char find_decimal(const std::vector<std::string>& lines, char separator) {
@@ -142,7 +142,7 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
     if (next >= lines.size() || is_data(cells_of(lines[next], sheet.separator), sheet.decimal)) break;
   }
   if (first >= lines.size())
-    throw InputError(fmt::format("{}: no rows of numbers are made out; say `columns` in a scenario (docs/record.md)", path));
+    throw InputError(fmt::format("{}: no rows of numbers are made out; say `columns` in a scenario (docs/reference/record.md)", path));
   std::vector<std::size_t> above;  // lines of cells over the rows, the nearest first
   for (std::size_t i = first; i-- > 0 && above.size() < 4;) {
     const Row row = cells_of(lines[i], sheet.separator);
@@ -151,7 +151,7 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
   if (above.empty())
     throw InputError(fmt::format(
         "{}: there is no line of names over the rows, which begin in line {}; say `columns` with `header_line: none` "
-        "(docs/record.md)",
+        "(docs/reference/record.md)",
         path, first + 1));
   std::size_t header = above.front();
   if (above.size() > 1 && are_units(cells_of(lines[header], sheet.separator)) &&
