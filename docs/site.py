@@ -41,7 +41,7 @@ def make(folder):
     import markdown
 
     pages = [DOCS / "README.md", *(p for shelf in SHELVES for p in sorted((DOCS / shelf).glob("*.md")))]
-    titles = {p: re.match(r"# (.*)", p.read_text())[1] for p in pages}
+    titles = {p: re.match(r"# (.*)", p.read_text())[1].replace("`", "") for p in pages}
     index = []
     for page in pages:
         text = markdown.Markdown(extensions=["tables", "fenced_code", "toc", "sane_lists"], extension_configs={"toc": {"slugify": slug}})
