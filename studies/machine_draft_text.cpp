@@ -38,7 +38,7 @@ std::string direction(const Eigen::Vector3d& n) {
 
 constexpr const char* kGuess =
     "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` stands for one that\n"
-    "  # you know (docs/reference/scenario.md).\n";
+    "  # you know (docs/how-to/scenario.md).\n";
 
 /// Two digits: it is a guess.
 double rounded(double x) {
