@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes a static site with search of the pages in docs/: site.py FOLDER   (needs Debian's python3-markdown; works from disk, without a server)"""
 import json, os, re, shutil, sys
 from html import escape, unescape

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """docs/site.py makes a page of each page, whose links lead somewhere, and the search finds each: site_test.py PROJECT; 77: no python3-markdown"""
 import json, re, subprocess, sys, tempfile
 from pathlib import Path
