@@ -48,7 +48,7 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   verb->add_option(input, options.scenario, input + " YAML")->required();
   add_results(verb, options, "<name of the " + input + ">", example);
   verb->add_flag("--strict", options.strict,
-                 "refuse implausible values instead of warning about them (docs/scenario.md, Plausibility)");
+                 "refuse implausible values instead of warning about them (docs/reference/scenario.md, Plausibility)");
   return verb;
 }
 
@@ -125,7 +125,7 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
   verb->footer(
       "Example:\n  driftwright inject --correction scenarios/records/drift.csv --period '4 um' --row-time '1 ms' < "
       "scenarios/records/encoder_rows.txt > injected_rows.txt\n"
-      "  with drift.csv: 'time_s,drift_um', then '0,0', '0.5,6', ... (docs/injector.md)");
+      "  with drift.csv: 'time_s,drift_um', then '0,0', '0.5,6', ... (docs/how-to/injector.md)");
   verb->callback([&] { app::inject(options); });
 }
 
@@ -133,7 +133,7 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
 void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "follow",
-      "rows of a running machine from standard input, its correction after each to standard output (docs/follow.md)");
+      "rows of a running machine from standard input, its correction after each to standard output (docs/how-to/follow.md)");
   verb->add_option("model", options.models,
                    "a file models/NAME.json that `validate` has written, or a scenario; several for several axes")
       ->required();
@@ -207,7 +207,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
 /// A model for other programs: one file.
 void add_export(CLI::App& cli, app::ExportOptions& options) {
   CLI::App* verb =
-      cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/fmu.md)");
+      cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/how-to/fmu.md)");
   verb->add_option("scenario", options.scenario, "scenario YAML")->required();
   verb->add_flag("--fmu", options.fmu, "as a functional mock-up unit (FMI), C sources and linux64 binary inside");
   verb->add_option("-o,--out", options.out, "file NAME.fmu [results/<name of the scenario>.fmu]");
@@ -230,7 +230,7 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
 
 void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "identify", "a network of bodies from records alone, as a scenario that every verb runs (docs/identification.md)");
+      "identify", "a network of bodies from records alone, as a scenario that every verb runs (docs/how-to/identification.md)");
   verb->add_option("--record", options.records,
                    "record CSV or logger's file with what drives the machine (rpm, W, V, %), its ambient and readings "
                    "(degC, um); may be repeated")
@@ -258,9 +258,9 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
 
 void add_import(CLI::App& cli, app::ImportOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
+      "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/reference/record.md)");
   verb->add_option("file", options.scenario,
-                   "of a logger or a control: text with cells, in any of the forms of docs/record.md")
+                   "of a logger or a control: text with cells, in any of the forms of docs/reference/record.md")
       ->required();
   CLI::Option* by = verb->add_option(
       "--by", options.by,
@@ -282,7 +282,7 @@ void add_import(CLI::App& cli, app::ImportOptions& options) {
 /// The machine in a browser: one file.
 void add_view(CLI::App& cli, app::ViewOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/view.md)");
+      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/how-to/view.md)");
   verb->add_option("scenario", options.scenario, "scenario YAML")->required();
   verb->add_option("-o,--out", options.out, "file NAME.html [results/<name of the scenario>.html]");
   verb->add_option("--cyclogram", options.cyclogram,
@@ -453,11 +453,11 @@ int app::command_line(int argc, const char* const* argv) {
                   "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
                   "predict scenarios/fp3_spindle.yaml --cyclogram scenarios/records/plan.csv -o results/plan", predict);
   verb->add_option("--cyclogram", predict.cyclogram,
-                   "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
+                   "name in the scenario, or a record CSV with the column speed_rpm (docs/how-to/cyclograms.md)")
       ->required();
   add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
-  verb = add_verb(cli, "warmup", "the shortest warm-up after which a job keeps its tolerance (docs/warmup.md)",
+  verb = add_verb(cli, "warmup", "the shortest warm-up after which a job keeps its tolerance (docs/how-to/warmup.md)",
                   "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
   verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
   verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
@@ -476,7 +476,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--channel", warmup.channels, "displacement that counts; may be repeated [all]")->allow_extra_args(false);
   add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);
   verb->callback([&] { app::warmup(warmup); });
-  verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/placement.md)",
+  verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/how-to/placement.md)",
                   "place scenarios/fp3_spindle.yaml --count 4 --exclude table -o results/place", place);
   verb->add_option("--count", place.count, "thermometers to place, 1 to 12 [the study's, else 4]");
   verb->add_option("--region", place.regions,
@@ -501,7 +501,7 @@ int app::command_line(int argc, const char* const* argv) {
   add_shards(verb, place, "the work");
   verb->callback([&] { app::place(place); });
   verb = add_verb(cli, "plan-test",
-                  "before anything is measured: the test after which most faults would be named (docs/test_planning.md)",
+                  "before anything is measured: the test after which most faults would be named (docs/how-to/test_planning.md)",
                   "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
@@ -516,7 +516,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
-  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")
+  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/how-to/schedule.md)")
       ->required();
   verb->add_option("--policy", schedule.policy,
                    "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
@@ -559,7 +559,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->required();
   verb->add_option(
           "--through", compensate.through,
-          "injector (docs/injector.md), schedule, frame (docs/table.md), or none: the correction as `validate` judges it")
+          "injector (docs/how-to/injector.md), schedule, frame (docs/how-to/table.md), or none: the correction as `validate` judges it")
       ->required()
       ->check(CLI::IsMember({"none", "injector", "schedule", "frame"}));
   verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
@@ -572,7 +572,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
                   "calibrate scenarios/fp3_spindle.yaml --measured scenarios/records/good.csv -o results/calibration",
                   calibrate);
-  verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")
+  verb->add_option("--measured", calibrate.measured, "record CSV (docs/reference/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
   verb->callback([&] { app::calibrate(calibrate); });
@@ -580,7 +580,7 @@ int app::command_line(int argc, const char* const* argv) {
                   "diagnose scenarios/fp3_spindle.yaml --measured scenarios/records/monday.csv --measured "
                   "scenarios/records/tuesday.csv -o results/diagnosis",
                   diagnose);
-  verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
+  verb->add_option("--measured", diagnose.measured, "record CSV (docs/reference/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
   verb->add_flag("--causes-only", diagnose.causes_only,
@@ -589,7 +589,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   verb->callback([&] { app::diagnose(diagnose); });
   verb = add_verb(
-      cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
+      cli, "sweep", "many variants of one scenario, one table (docs/how-to/sweep.md)",
       "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 1/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --shard 2/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --merge -o results/shards",
@@ -614,7 +614,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
   verb->add_flag("--markdown", schema.markdown,
-                 "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
+                 "as tables, which docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 

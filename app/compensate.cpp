@@ -110,7 +110,7 @@ void require_axis(const Scenario& scenario, const std::string& target) {
   if (!scenario.axis_loop) {
     throw InputError(
         scenario.study->where,
-        "--through injector requires the block `axis_loop`, which describes encoder, injector and servo (docs/injector.md)");
+        "--through injector requires the block `axis_loop`, which describes encoder, injector and servo (docs/how-to/injector.md)");
   }
   if (target != scenario.axis_loop->displacement)
     throw InputError(
@@ -145,7 +145,7 @@ std::string frame_csv(const studies::FrameStudy& study) {
 
 void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
   if (!scenario.table)
-    throw InputError(scenario.machine->where, "--through frame requires the block `table` (docs/table.md)");
+    throw InputError(scenario.machine->where, "--through frame requires the block `table` (docs/how-to/table.md)");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::FrameStudy study = studies::correct_through_frame(scenario, options.model, progress.listener());

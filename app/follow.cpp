@@ -84,7 +84,7 @@ std::optional<ColumnMap> columns_of(const std::string& path) {
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
   if (!scenario.columns && scenario.topics.empty())
     throw InputError(fmt::format(
-        "--columns {}: it has neither a key `columns` (docs/record.md), which says what the columns are, nor `topics`",
+        "--columns {}: it has neither a key `columns` (docs/reference/record.md), which says what the columns are, nor `topics`",
         path));
   return scenario.columns;
 }

@@ -69,7 +69,7 @@ void identify(const IdentifyOptions& asked) {
       identification::identify(records, {options.ambient, options.drives}, progress.listener());
   progress.begin("writing");
   std::vector<std::string> head = {
-      fmt::format("{}: a network from records alone, by `driftwright identify` (docs/identification.md)", name)};
+      fmt::format("{}: a network from records alone, by `driftwright identify` (docs/how-to/identification.md)", name)};
   for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
   head.emplace_back(
       "Bodies lie side by side; their names say what warms them, not what they are. Rename them, or put in what you know.");

@@ -80,7 +80,7 @@ void validate(const RecordOptions& options) {
     if (!scenario.programme && !scenario.validation) {
       throw InputError(fmt::format(
           "{}: `validate` requires records (--train, --test), or the key `validation` or `programme` in the scenario "
-          "(docs/validation.md, docs/prediction.md)",
+          "(docs/how-to/validation.md, docs/how-to/prediction.md)",
           scenario.path));
     }
     return validate_machine(scenario, options);

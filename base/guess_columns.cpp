@@ -275,7 +275,7 @@ void add_channels(const std::vector<NumberColumn>& columns, char decimal, Guesse
   }
   if (!speed)
     guessed.guesses.push_back(
-        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm (docs/record.md)");
+        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm (docs/reference/record.md)");
 }
 
 /// @throws InputError  for a second column of times in numbers that tells others than the first: which channels go by which?
@@ -290,7 +290,7 @@ void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::
       throw InputError(
           fmt::format("{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
                       "channels to the right of it go by it. Split the "
-                      "file into one for each time, or name in `columns` what goes by one of them (docs/record.md)",
+                      "file into one for each time, or name in `columns` what goes by one of them (docs/reference/record.md)",
                       path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
     }
   }
@@ -338,7 +338,7 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     const std::string stamp = stamp_like_cell(sheet);
     throw InputError(fmt::format(
         "{}: no column holds the time in a known format; the columns are '{}' in line {}{}. --interval '10 s' counts rows, "
-        "--zone Europe/Berlin is for clocks that are set, and `columns` says any other format (docs/record.md)",
+        "--zone Europe/Berlin is for clocks that are set, and `columns` says any other format (docs/reference/record.md)",
         path, fmt::join(sheet.names, "', '"), header_line, stamp.empty() ? "" : fmt::format("; {}", stamp)));
   }
   std::set<std::string> missing;
@@ -360,7 +360,7 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     guessed.guesses.push_back(fmt::format("'{}' are taken to be readings that are missing", fmt::join(missing, "', '")));
   if (guessed.map.channels.empty())
     throw InputError(fmt::format(
-        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/record.md)", path));
+        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/reference/record.md)", path));
   // Names find the header in the next file of the logger, too, however long its head is; numbers of columns need the line.
   const bool by_name = std::all_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                                    [](const auto& c) { return c.column.position == 0; }) &&

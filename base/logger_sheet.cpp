@@ -55,7 +55,7 @@ char find_separator(const std::string& path, const std::vector<std::string>& lin
     }
   }
   throw InputError(fmt::format(
-      "{}: no rows of cells were recognised; describe the file by `columns` in a scenario (docs/record.md)", path));
+      "{}: no rows of cells were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)", path));
 }
 
 char find_decimal(const std::vector<std::string>& lines, char separator) {
@@ -144,7 +144,7 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
   }
   if (first >= lines.size())
     throw InputError(fmt::format(
-        "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/record.md)", path));
+        "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)", path));
   std::vector<std::size_t> above;  // lines of cells over the rows, the nearest first
   for (std::size_t i = first; i-- > 0 && above.size() < 4;) {
     const Row row = cells_of(lines[i], sheet.separator);
@@ -154,7 +154,7 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
     throw InputError(
         fmt::format("{}: there is no line of names over the rows, which begin in line {}; describe the file by `columns` "
                     "with `header_line: none` "
-                    "(docs/record.md)",
+                    "(docs/reference/record.md)",
                     path, first + 1));
   std::size_t header = above.front();
   if (above.size() > 1 && are_units(cells_of(lines[header], sheet.separator)) &&

@@ -66,7 +66,7 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
         where,
         "columns are separated by ';' or tabs; they must be separated by commas, with decimal points. `driftwright import` "
         "makes such a record of a "
-        "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: "
+        "logger's file; or the scenario says how the file is written (docs/reference/record.md): columns: {separator: "
         "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
         "{t_housing: {column: NAME, unit: degC}}}");
   }

@@ -1,6 +1,6 @@
 #pragma once
 // What the maps of a YAML file may hold, as plain data: a reader describes its keys once, and ConfigMap reads by that, `driftwright schema` prints
-// it, docs/scenario.md has it as tables. A key that stands in no description cannot be read, and one that nobody reads cannot stand there.
+// it, docs/reference/scenario.md has it as tables. A key that stands in no description cannot be read, and one that nobody reads cannot stand there.
 
 #include <limits>
 #include <optional>

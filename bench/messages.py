@@ -3,8 +3,8 @@
 
     bench/messages.py                 every message with file and line, and a count of each room
     bench/messages.py --dialect       those with a word of the dialect below; exit code 1 where there is one
-    bench/messages.py --write         docs/messages.txt anew: the list for a review, without line numbers
-    bench/messages.py --check         exit code 1 where docs/messages.txt is not what --write would write
+    bench/messages.py --write         docs/reference/messages.txt anew: the list for a review, without line numbers
+    bench/messages.py --check         exit code 1 where docs/reference/messages.txt is not what --write would write
 
 A message is a sentence with a subject. It says what is wrong, where, what is allowed, and what to write instead: "must be", "is required", "is expected",
 "is allowed", "after", "write ... instead". It begins in lower case and ends without a full stop, since "error: file:line:column:" comes before it and
@@ -20,7 +20,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parent.parent
 ROOMS = ("app base compensation diagnosis effects findings follow identification include library machine mesh nc output python scenarios solver "
          "studies").split()
-LIST = TOP / "docs/messages.txt"
+LIST = TOP / "docs/reference/messages.txt"
 
 # word of the dialect: what to write instead
 DIALECT = {

@@ -20,7 +20,7 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kMB = 1048576.0;
-// Measured (docs/performance.md): what a process takes without a mesh, and per pair of nodes that couple.
+// Measured (docs/theory/performance.md): what a process takes without a mesh, and per pair of nodes that couple.
 constexpr double kProgram = 74.0 * kMB;
 constexpr double kAssembled = 254.0;       // both triangles of blocks, CHOLMOD's copy, mesh and loads
 constexpr double kMultigrid = 610.0;       // the same with all levels

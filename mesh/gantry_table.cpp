@@ -67,7 +67,7 @@ const schema::Map& gantry_table_schema() {
                                           length("gauge", "between the middles of the two")}};
   static const schema::Map description = {
       .name = "machine (gantry_table)",
-      .keys = {compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/table.md)"),
+      .keys = {compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/how-to/table.md)"),
                compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
                compulsory("bed", schema::map(bed), "the same"),
                compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),

@@ -110,7 +110,7 @@ const schema::Map& imported_mesh_schema() {
   static const schema::Map description = {
       .name = "machine (imported mesh)",
       .keys = {compulsory("mesh", text(),
-                          "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/meshes.md)"),
+                          "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/how-to/meshes.md)"),
                schema::optional("units", choice({"mm", "cm", "m", "inch"}),
                                 "the lengths in the file; compulsory, save for STEP, which says its unit: there, what its "
                                 "numbers are in truth"),

@@ -38,7 +38,7 @@ enum class ElasticMethod { kAutomatic, kFactor, kMultigrid };
 
 /// Up to here a Cholesky factor takes a fraction of a second, and each solve after it is cheap. Above, multigrid needs
 /// less time in all for a few solves, and far less memory; a factor pays from 10 solves at 57 000 unknowns and from 20 at 279 000
-/// (docs/performance.md), as long as it fits into half of the memory.
+/// (docs/theory/performance.md), as long as it fits into half of the memory.
 inline constexpr int kMostUnknownsToFactorise = 20000;
 [[nodiscard]] bool factor_pays(int n_unknowns, int n_solves);
 

@@ -37,8 +37,8 @@ std::string direction(const Eigen::Vector3d& n) {
 }
 
 constexpr const char* kGuess =
-    "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` is for one that\n  "
-    "# you know (docs/scenario.md).\n";
+    "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` is for one that\n"
+    "  # you know (docs/how-to/scenario.md).\n";
 
 /// Two digits: it is a guess.
 double rounded(double x) {
@@ -93,7 +93,7 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
 
 /// What both kinds of machines are run with and judged by.
 std::string runs_block() {
-  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record (docs/cyclograms.md)\n"
+  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record (docs/how-to/cyclograms.md)\n"
          "\ncyclograms:                              # guesses: [duration, spindle speed]\n"
          "  warm_up: [[120 min, 3000 rpm]]\n"
          "  steps: [[40 min, 1000 rpm], [40 min, 3000 rpm], [40 min, 0 rpm]]\n"
@@ -112,7 +112,7 @@ std::string study_block(const std::string& target, std::size_t n_sensors) {
 std::string head(const std::string& name, const std::string& what) {
   return fmt::format(
       "# {}, as `driftwright init` has written it. It runs as it is:\n#\n#     driftwright run THIS_FILE\n#\n"
-      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/scenario.md; effects: "
+      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/reference/scenario.md; effects: "
       "driftwright list effects.\n"
       "name: {}\n\nreference_temperature: 20 degC           # a guess: at it the machine is straight\n",
       what, name);

@@ -329,8 +329,8 @@ TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
 // --- documentation and errors -----------------------------------------------------------------------------------
 
 TEST(Documentation, HoldsTheTableThatTheCatalogueMakes) {
-  // after a change of the catalogue: driftwright list effects --markdown, put into docs/effects.md in place of the table there
-  std::ifstream file("docs/effects.md");
+  // after a change of the catalogue: driftwright list effects --markdown, put into docs/reference/effects.md in place of the table there
+  std::ifstream file("docs/reference/effects.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("\n\n" + catalogue_table()), std::string::npos);
 }

@@ -88,7 +88,7 @@ TEST(GantryTable, JudgesTableLessScale) {
   EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
 }
 
-// docs/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
+// docs/how-to/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
 // leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings alone miss, and 90 %, which no frame reaches.
 TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
@@ -157,7 +157,7 @@ CommandOutcome edited(const std::string& what, const std::string& with) {
   return run_program("check " + edited_file({{what, with}}));
 }
 
-// docs/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's instrument), 48.6 um by the
+// docs/how-to/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's instrument), 48.6 um by the
 // table's thermometer alone (30.9), 59.7 um by the control's own (47.9). All of them read the same instrument.
 TEST(GantryTable, ThermometersHelpNoMoreThanTheirInstrumentLetsThem) {
   const std::string file = edited_file({{"sensor_noise: 0.02 K", "sensor_noise: 0.1 K"},

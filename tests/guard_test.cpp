@@ -161,7 +161,7 @@ TEST(AGuard, FindsSomethingToTake) {
 }
 
 // Two guards, each of them around bodies of its own: one is written and the other one is to be found. Not reached: the first search finds it (53 nats), the second one, with sharper noise,
-// begins anew, where 'a body that follows the tank' explains more to first order, and says sensor_lag at t_tank (docs/diagnosis.md).
+// begins anew, where 'a body that follows the tank' explains more to first order, and says sensor_lag at t_tank (docs/theory/diagnosis.md).
 TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
   const std::string other =
       "{type: node, node: motor, capacity: 3 kJ/K}\n  - {type: node, node: tank, capacity: 9 kJ/K}\n  - {type: heat_source, "

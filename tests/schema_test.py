@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What `driftwright schema` prints, by a validator of another make: every shipped file is valid; what the schema refuses, the program refuses with
-exit 2, and what is written otherwise but right both take; the tables in docs/ are those that the program prints.
+exit 2, and what is written otherwise but right both take; the tables in docs/reference/ are those that the program prints.
 
     schema_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -171,15 +171,15 @@ class Schema(unittest.TestCase):
     def test_tables_of_the_documentation_are_those_of_the_program(self):
         for page, words in (("scenario.md", "schema scenario"), ("sweep.md", "schema sweep"), ("diagnosis.md", "schema diagnosis"), ("scenario.md", "list ranges")):
             with self.subTest(words):
-                text = (TOP / "docs" / page).read_text()
+                text = (TOP / "docs/reference" / page).read_text()
                 begin, end = f"<!-- driftwright {words} --markdown -->\n", "<!-- end -->\n"
                 self.assertIn(begin, text)
                 table = text.split(begin)[1].split(end)[0]
-                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/{page} is stale: tests/schema_tables.sh writes it anew")
+                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/reference/{page} is stale: tests/schema_tables.sh writes it anew")
 
     def test_the_reference_has_every_key(self):
         """of the scenario's upper two levels, told from the JSON and not from the tables"""
-        text = (TOP / "docs" / "scenario.md").read_text()
+        text = (TOP / "docs/reference/scenario.md").read_text()
         for block, schema in VALIDATORS["scenario"].schema["then"]["properties"].items():
             self.assertIn(f"`{block}`", text)
             if block == "effects":

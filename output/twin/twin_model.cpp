@@ -77,7 +77,7 @@ TwinTimedLaw timed_law(const Scenario& scenario, const solver::BoundLaw& bound, 
       throw InputError(
           scenario.machine->where,
           fmt::format("'{}' depends on temperatures, or on variables of the drive, together in a way that no "
-                      "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/view.md)",
+                      "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/how-to/view.md)",
                       name));
     auto known = std::find_if(timed.laws.begin(), timed.laws.end(), [&](const TwinLaw& l) { return is_equal(l, *table); });
     timed.of_stretch.push_back(static_cast<int>(known - timed.laws.begin()));
@@ -112,11 +112,11 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
       throw InputError(machine.where,
                        fmt::format("an effect follows the recorded column '{}', which is no input of the page "
-                                   "yet (docs/view.md)",
+                                   "yet (docs/how-to/view.md)",
                                    columns.front()));
   }
   if (system.change_times_s.size() > kMostTimes)
-    throw InputError(machine.where, fmt::format("laws change {} times on their own; the page holds up to {} (docs/view.md)",
+    throw InputError(machine.where, fmt::format("laws change {} times on their own; the page holds up to {} (docs/how-to/view.md)",
                                                 system.change_times_s.size(), kMostTimes));
   TwinModel model{.drive = ranges_of(scenario),
                   .system = system,
@@ -136,7 +136,7 @@ LumpedSystem lumped_system(const MachineModel& model) {
     if (!f.follows_ambient && f.theta.value.size() > 1)
       throw InputError(
           model.where,
-          fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/view.md)", f.name));
+          fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/how-to/view.md)", f.name));
   }
   solver::FullSystem system = machine.system;
   solver::hold_by_exchanges(system);

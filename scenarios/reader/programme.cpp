@@ -51,7 +51,7 @@ schema::Map programme_schema() {
       .groups = {{Group::Rule::kAtLeastOne,
                   {"cyclograms", "random"},
                   "`cyclograms` or `random` is required, to judge predictors on"}},
-      .about = "What predictors of drift are judged on by `validate` (docs/prediction.md)."};
+      .about = "What predictors of drift are judged on by `validate` (docs/how-to/prediction.md)."};
 }
 
 Programme::Random read_random(const ConfigMap& in) {

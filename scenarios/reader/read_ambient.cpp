@@ -48,7 +48,7 @@ schema::Key ambient_key() {
       Ways{rows({quantity("s"), temperature(kColdestAmbient_K, kHottestAmbient_K)}), temperature(kColdestAmbient_K, kHottestAmbient_K),
            schema::map(record)},
       "ambient air: rows of [time, temperature], linear between and constant outside; one temperature; or a record "
-      "(docs/cyclograms.md)");
+      "(docs/how-to/cyclograms.md)");
 }
 
 TimeSeries read_ambient(const ConfigMap& in, double reference_K) {

@@ -133,7 +133,7 @@ schema::Map axis_loop_schema() {
                      {Group::Rule::kAtMostOne,
                       {"pitch", "signal_period"},
                       "`signal_period` and `pitch` with `lines` exclude each other; write only one of them"}},
-          .about = "The study's regression through a pulse injector, edge by edge (docs/injector.md)."};
+          .about = "The study's regression through a pulse injector, edge by edge (docs/how-to/injector.md)."};
 }
 
 AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& context) {

@@ -180,7 +180,7 @@ schema::Map columns_schema() {
                    compulsory("time", schema::map(time), "which columns give it"),
                    schema::optional("tags", schema::map(tags), "of a log with a tag in each row: where tag and value are"),
                    compulsory("channels", schema::map(channels), "by name: which columns become channels")},
-          .about = "How records are written where a logger wrote them (docs/record.md)."};
+          .about = "How records are written where a logger wrote them (docs/reference/record.md)."};
 }
 
 ColumnMap read_columns(const ConfigMap& in) {

@@ -244,7 +244,7 @@ schema::Map cyclograms_schema() {
           .others = {schema::optional(
               "cyclogram", Ways{schema::rows({quantity("s"), quantity("rpm")}), one_of({rows_map, csv, nc})},
               "rows of [duration, speed]; or a map with further columns, a record or an NC program")},
-          .about = "What drives the machine (docs/cyclograms.md)."};
+          .about = "What drives the machine (docs/how-to/cyclograms.md)."};
 }
 
 Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {

@@ -82,7 +82,7 @@ schema::Map schedule_schema() {
                schema::optional("parts", integer(1, 1000), 1, "made one after another by the program"),
                schema::optional("between", quantity("s", 0.0, 1e7), 0.0, "at rest between two of them"),
                schema::optional("drift_from", choice({"reference", "start"}), "reference", "what the drift counts from")},
-      .about = "Corrections written into an NC program (docs/schedule.md)."};
+      .about = "Corrections written into an NC program (docs/how-to/schedule.md)."};
   for (Key& key : nc_keys()) map.keys.push_back(std::move(key));
   return map;
 }

@@ -375,7 +375,7 @@ const std::vector<schema::Map>& sweep_schemas() {
                  schema::optional("collect", list(text(), 1), Said{"every displacement, tilt and thermometer"},
                                   "channels (for peak, time_of_peak and end) or `channel.scalar`")},
         .when_key = "design",
-        .about = "Many variants of one scenario (docs/sweep.md)."};
+        .about = "Many variants of one scenario (docs/how-to/sweep.md)."};
     schema::Map list = common, grid = common, hypercube = common;
     list.when_word = "list";
     grid.when_word = "grid";

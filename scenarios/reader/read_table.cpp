@@ -184,7 +184,7 @@ schema::Map table_schema() {
                    compulsory("control", schema::map(control), "the control's own compensation"),
                    compulsory("probe", schema::map(probe), "the touch probe"),
                    schema::optional("readings", schema::map(readings), "of others to compare with")},
-          .about = "A long table with scale, rings and probe; `run` is that study then (docs/table.md)."};
+          .about = "A long table with scale, rings and probe; `run` is that study then (docs/how-to/table.md)."};
 }
 
 std::vector<Eigen::Vector3d> table_points(const TableSettings& t) {

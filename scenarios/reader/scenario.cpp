@@ -214,7 +214,7 @@ schema::Map solver_schema() {
       .name = "solver",
       .keys =
           {schema::optional("model", choice({"full", "reduced"}), "full",
-                            "what cyclograms are run on; `reduced`: docs/reduced_model.md"),
+                            "what cyclograms are run on; `reduced`: docs/theory/reduced_model.md"),
            schema::optional("reduction_tolerance", quantity("K", 1e-5, 1.0), s.reduction_tolerance_K,
                             "of the reduced model against the full one"),
            schema::optional("relative_tolerance", quantity("1", 1e-10, 1e-1), s.transient.relative_tolerance,
@@ -225,7 +225,7 @@ schema::Map solver_schema() {
            schema::optional("fields_every", quantity("s", 1e-3, 1e9), s.fields_every_s,
                             "between two written fields; start and end are written in any case"),
            schema::optional("fields_at", list(quantity("s", 0.0), 1), "or: the times of fields"),
-           schema::optional("stresses", flag(), "false", "true: stresses beside the other fields (docs/outputs.md)"),
+           schema::optional("stresses", flag(), "false", "true: stresses beside the other fields (docs/reference/outputs.md)"),
            schema::optional(
                "fields_format", choice({"vtu", "xdmf", "none"}), "vtu",
                "`vtu`: open `fields.pvd`; `xdmf`: open `fields.xdmf`, for more than about 100 times; `none`: no fields, and "
@@ -268,7 +268,7 @@ schema::Key name_key() {
 }
 schema::Key columns_key() {
   return schema::optional("columns", schema::map(columns_schema()),
-                          "how the records that verbs are given are written where a logger wrote them (docs/record.md)");
+                          "how the records that verbs are given are written where a logger wrote them (docs/reference/record.md)");
 }
 
 schema::Map topics_schema() {
@@ -279,7 +279,7 @@ schema::Map topics_schema() {
 }
 schema::Key topics_key() {
   return schema::optional("topics", schema::map(topics_schema()),
-                          "where `follow` takes each channel's numbers from (docs/follow.md)");
+                          "where `follow` takes each channel's numbers from (docs/how-to/follow.md)");
 }
 
 schema::Map machine_scenario_schema() {
@@ -289,7 +289,7 @@ schema::Map machine_scenario_schema() {
       .keys =
           {name_key(),
            compulsory("machine", mesh_recipe_schema(),
-                      "the mesh: a generator and its dimensions, a file (docs/meshes.md), or none"),
+                      "the mesh: a generator and its dimensions, a file (docs/how-to/meshes.md), or none"),
            compulsory("reference_temperature", temperature(), "the machine is straight and free of stress at it"),
            schema::optional("start", Ways{choice({"reference", "ambient", "steady"}), temperature()}, Said{"reference"},
                             "state at t = 0: at the reference temperature, at the first ambient temperature, at standstill "

@@ -80,7 +80,7 @@ schema::Map validation_schema() {
            schema::optional("tolerance", quantity("um", 1e-3, 1e6), Said{"that of `study`"},
                             "that the drift is to be kept in"),
            schema::optional("seed", integer(0, 1000000), v.seed, "of noise, scatter and random cyclograms")},
-      .about = "What strategies of correction are judged on by `validate` (docs/validation.md)."};
+      .about = "What strategies of correction are judged on by `validate` (docs/how-to/validation.md)."};
 }
 
 Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known, double tolerance_um) {
