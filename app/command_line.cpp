@@ -230,7 +230,8 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
 
 void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "identify", "a network of bodies from records alone, as a scenario that every verb runs (docs/how-to/identification.md)");
+      "identify",
+      "a network of bodies from records alone, as a scenario that every verb runs (docs/how-to/identification.md)");
   verb->add_option("--record", options.records,
                    "record CSV or logger's file with what drives the machine (rpm, W, V, %), its ambient and readings "
                    "(degC, um); may be repeated")
@@ -258,7 +259,8 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
 
 void add_import(CLI::App& cli, app::ImportOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/reference/record.md)");
+      "import",
+      "a logger's file as a record CSV of the same name, with what was understood of it (docs/reference/record.md)");
   verb->add_option("file", options.scenario,
                    "of a logger or a control: text with cells, in any of the forms of docs/reference/record.md")
       ->required();
@@ -500,9 +502,10 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
   add_shards(verb, place, "the work");
   verb->callback([&] { app::place(place); });
-  verb = add_verb(cli, "plan-test",
-                  "before anything is measured: the test after which most faults would be named (docs/how-to/test_planning.md)",
-                  "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
+  verb =
+      add_verb(cli, "plan-test",
+               "before anything is measured: the test after which most faults would be named (docs/how-to/test_planning.md)",
+               "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
   verb->add_option("--interval", plan_test.interval,
@@ -557,9 +560,9 @@ int app::command_line(int argc, const char* const* argv) {
                    "a file models/NAME.json that `validate` has written, or modes; through the frame modes, observer, "
                    "regression")
       ->required();
-  verb->add_option(
-          "--through", compensate.through,
-          "injector (docs/how-to/injector.md), schedule, frame (docs/how-to/table.md), or none: the correction as `validate` judges it")
+  verb->add_option("--through", compensate.through,
+                   "injector (docs/how-to/injector.md), schedule, frame (docs/how-to/table.md), or none: the correction as "
+                   "`validate` judges it")
       ->required()
       ->check(CLI::IsMember({"none", "injector", "schedule", "frame"}));
   verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
@@ -613,8 +616,9 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("what", schema.what, "scenario; sweep: its study; diagnosis or calibration: their JSON")
       ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
-  verb->add_flag("--markdown", schema.markdown,
-                 "as tables, which docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md hold");
+  verb->add_flag(
+      "--markdown", schema.markdown,
+      "as tables, which docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 

@@ -108,9 +108,9 @@ void require_continues(const Scenario& scenario, const CompensateOptions& option
 /// What the injector wants, before any work.
 void require_axis(const Scenario& scenario, const std::string& target) {
   if (!scenario.axis_loop) {
-    throw InputError(
-        scenario.study->where,
-        "--through injector requires the block `axis_loop`, which describes encoder, injector and servo (docs/how-to/injector.md)");
+    throw InputError(scenario.study->where,
+                     "--through injector requires the block `axis_loop`, which describes encoder, injector and servo "
+                     "(docs/how-to/injector.md)");
   }
   if (target != scenario.axis_loop->displacement)
     throw InputError(

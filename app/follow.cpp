@@ -83,9 +83,10 @@ std::optional<ColumnMap> columns_of(const std::string& path) {
   if (path.empty()) return std::nullopt;
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
   if (!scenario.columns && scenario.topics.empty())
-    throw InputError(fmt::format(
-        "--columns {}: it has neither a key `columns` (docs/reference/record.md), which says what the columns are, nor `topics`",
-        path));
+    throw InputError(
+        fmt::format("--columns {}: it has neither a key `columns` (docs/reference/record.md), which says what the columns "
+                    "are, nor `topics`",
+                    path));
   return scenario.columns;
 }
 

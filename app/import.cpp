@@ -19,8 +19,9 @@ void import_file(const ImportOptions& options) {
   folder.write_text(file_name(stem, ".csv"), record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
   folder.write_text(
       "columns.yaml",
-      fmt::format("# How {} was read; the same key in a scenario makes every verb read such files (docs/reference/record.md).\n{}",
-                  stem, yaml_text(import.map)));
+      fmt::format(
+          "# How {} was read; the same key in a scenario makes every verb read such files (docs/reference/record.md).\n{}",
+          stem, yaml_text(import.map)));
   finish(findings::document_of(import, folder.made_by()), folder, progress, options);
 }
 

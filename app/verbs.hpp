@@ -167,7 +167,8 @@ void list(const ListOptions& options);
 
 struct SchemaOptions {
   std::string what = "scenario";  ///< or "sweep", "diagnosis", "calibration"
-  bool markdown = false;          ///< tables, as docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md have them
+  bool markdown =
+      false;  ///< tables, as docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md have them
 };
 /// Prints what a file may hold, as JSON Schema.
 void schema(const SchemaOptions& options);

@@ -29,9 +29,10 @@ Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
   if (is_known || path.extension() == ".csv" || !std::filesystem::is_regular_file(path))
     return studies::named_cyclogram(scenario, then);
   if (!scenario.schedule)
-    throw InputError(fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
-                                 "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
-                                 then));
+    throw InputError(
+        fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
+                    "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
+                    then));
   const scenarios::ScheduleSettings& settings = *scenario.schedule;
   Cyclogram job = scenarios::cyclogram_of(read_nc_program(then, settings.nc), path.stem().string(), settings.resolution_s,
                                           settings.cutting_power_W);

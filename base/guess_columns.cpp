@@ -275,7 +275,8 @@ void add_channels(const std::vector<NumberColumn>& columns, char decimal, Guesse
   }
   if (!speed)
     guessed.guesses.push_back(
-        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm (docs/reference/record.md)");
+        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm "
+        "(docs/reference/record.md)");
 }
 
 /// @throws InputError  for a second column of times in numbers that tells others than the first: which channels go by which?
@@ -287,11 +288,11 @@ void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::
     if (sheet.names[c] != sheet.names[first] || unit_of(c).unit != unit_of(first).unit) continue;
     for (const LoggerSheet::Row& row : sheet.rows) {
       if (row[c].empty() || row[c] == row[first]) continue;
-      throw InputError(
-          fmt::format("{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
-                      "channels to the right of it go by it. Split the "
-                      "file into one for each time, or name in `columns` what goes by one of them (docs/reference/record.md)",
-                      path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
+      throw InputError(fmt::format(
+          "{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
+          "channels to the right of it go by it. Split the "
+          "file into one for each time, or name in `columns` what goes by one of them (docs/reference/record.md)",
+          path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
     }
   }
 }
@@ -360,7 +361,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     guessed.guesses.push_back(fmt::format("'{}' are taken to be readings that are missing", fmt::join(missing, "', '")));
   if (guessed.map.channels.empty())
     throw InputError(fmt::format(
-        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/reference/record.md)", path));
+        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/reference/record.md)",
+        path));
   // Names find the header in the next file of the logger, too, however long its head is; numbers of columns need the line.
   const bool by_name = std::all_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                                    [](const auto& c) { return c.column.position == 0; }) &&

@@ -55,7 +55,8 @@ char find_separator(const std::string& path, const std::vector<std::string>& lin
     }
   }
   throw InputError(fmt::format(
-      "{}: no rows of cells were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)", path));
+      "{}: no rows of cells were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)",
+      path));
 }
 
 char find_decimal(const std::vector<std::string>& lines, char separator) {
@@ -144,7 +145,8 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
   }
   if (first >= lines.size())
     throw InputError(fmt::format(
-        "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)", path));
+        "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)",
+        path));
   std::vector<std::size_t> above;  // lines of cells over the rows, the nearest first
   for (std::size_t i = first; i-- > 0 && above.size() < 4;) {
     const Row row = cells_of(lines[i], sheet.separator);

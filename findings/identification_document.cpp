@@ -106,9 +106,9 @@ output::Table extension_table(const Identified& n) {
                   {.key = "kept", .title = "kept", .unit = "%", .digits = output::percent(0)},
                   {.key = "written", .title = "learned"}}};
   for (const IdentifiedChannel& c : n.channels)
-    table.rows.push_back({c.name, shown(c.unit), c.scenario_simulated, c.missed_simulated, c.scenario_kept_out, c.missed_kept_out,
-                          std::expm1(c.missed_more_without.mean), c.missed_more_without.standard_error, c.fit.kept,
-                          c.is_extended ? "yes" : "no"});
+    table.rows.push_back({c.name, shown(c.unit), c.scenario_simulated, c.missed_simulated, c.scenario_kept_out,
+                          c.missed_kept_out, std::expm1(c.missed_more_without.mean), c.missed_more_without.standard_error,
+                          c.fit.kept, c.is_extended ? "yes" : "no"});
   return table;
 }
 

@@ -67,13 +67,14 @@ const schema::Map& gantry_table_schema() {
                                           length("gauge", "between the middles of the two")}};
   static const schema::Map description = {
       .name = "machine (gantry_table)",
-      .keys = {compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/how-to/table.md)"),
-               compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
-               compulsory("bed", schema::map(bed), "the same"),
-               compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),
-               schema::optional("workpiece", schema::map(workpiece), "a block on the table"),
-               compulsory("mesh_size", quantity("m", 0.02, 10.0), "edges of the elements; half as long again in the bed"),
-               schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
+      .keys = {
+          compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/how-to/table.md)"),
+          compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
+          compulsory("bed", schema::map(bed), "the same"),
+          compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),
+          schema::optional("workpiece", schema::map(workpiece), "a block on the table"),
+          compulsory("mesh_size", quantity("m", 0.02, 10.0), "edges of the elements; half as long again in the bed"),
+          schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
   return description;
 }
 

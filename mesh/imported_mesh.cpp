@@ -109,8 +109,9 @@ const schema::Map& imported_mesh_schema() {
       .others = {schema::optional("region", schema::vector3("m"), "a point in the solid that it names")}};
   static const schema::Map description = {
       .name = "machine (imported mesh)",
-      .keys = {compulsory("mesh", text(),
-                          "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/how-to/meshes.md)"),
+      .keys = {compulsory(
+                   "mesh", text(),
+                   "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/how-to/meshes.md)"),
                schema::optional("units", choice({"mm", "cm", "m", "inch"}),
                                 "the lengths in the file; compulsory, save for STEP, which says its unit: there, what its "
                                 "numbers are in truth"),

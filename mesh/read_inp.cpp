@@ -337,7 +337,8 @@ class InpReader {
         if (other == sets.end()) fail(fmt::format("there is no set '{}' above this line", word));
         const std::vector<long> members = other->second;  // a copy: it may be the set itself
         if (set.size() + members.size() > kMostMembers)
-          fail(fmt::format("with the set '{}' the set has {} members; {} are the most", word, set.size() + members.size(), kMostMembers));
+          fail(fmt::format("with the set '{}' the set has {} members; {} are the most", word, set.size() + members.size(),
+                           kMostMembers));
         set.insert(set.end(), members.begin(), members.end());
       }
     }
@@ -440,7 +441,8 @@ class InpReader {
     }
   }
 
-  static constexpr std::size_t kMostMembers = 20'000'000;  // of a set, counted as often as they are listed: sets of sets double with each line
+  static constexpr std::size_t kMostMembers =
+      20'000'000;  // of a set, counted as often as they are listed: sets of sets double with each line
   RawMesh raw_;
   Keyword keyword_;
   std::string more_;

@@ -24,7 +24,8 @@ struct SpotRules {
 };
 
 /// Parts whose names have one of these words carry no thermometer unless they are asked for: they turn, flow or hang.
-inline constexpr const char* kNoPlace[] = {"spindle", "bearing", "shaft", "rotor", "tool", "coolant", "cooler", "oil", "air", "cable", "hose", "chip"};
+inline constexpr const char* kNoPlace[] = {"spindle", "bearing", "shaft", "rotor", "tool", "coolant",
+                                           "cooler",  "oil",     "air",   "cable", "hose", "chip"};
 
 struct Spots {
   std::vector<Spot> points;

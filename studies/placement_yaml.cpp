@@ -14,10 +14,12 @@ namespace driftwright::studies {
 std::string sensor_entry(const std::string& name, const Spot& spot) {
   if (spot.node < 0) return fmt::format("{{name: {}, node: {}}}", name, spot.region);
   const Eigen::Vector3d mm = 1e3 * spot.at_m;
-  return fmt::format("{{name: {}, region: {}, at: [{:.1f} mm, {:.1f} mm, {:.1f} mm]}}", name, spot.region, mm.x(), mm.y(), mm.z());
+  return fmt::format("{{name: {}, region: {}, at: [{:.1f} mm, {:.1f} mm, {:.1f} mm]}}", name, spot.region, mm.x(), mm.y(),
+                     mm.z());
 }
 
-std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries, const std::vector<std::string>& head) {
+std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries,
+                         const std::vector<std::string>& head) {
   YamlText yaml(scenario_path);
   const auto left = scenarios::give_absolute_paths(yaml, std::filesystem::absolute(scenario_path).parent_path());
   if (!left.empty())

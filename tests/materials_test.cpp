@@ -40,7 +40,8 @@ TEST(MaterialLibrary, IsTheTableInTheDocumentation) {
   const std::string page = text.str();
   const auto at = page.find("| name |");
   ASSERT_NE(at, std::string::npos);
-  EXPECT_EQ(page.substr(at, page.find("\n\n", at) + 1 - at), table()) << "the table that docs/reference/materials.md should hold";
+  EXPECT_EQ(page.substr(at, page.find("\n\n", at) + 1 - at), table())
+      << "the table that docs/reference/materials.md should hold";
 }
 
 TEST(MaterialLibrary, ValuesArePlausibleAndHaveASource) {

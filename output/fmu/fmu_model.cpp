@@ -121,7 +121,8 @@ void sum_up_constants(FmuModel& model) {
 void require_exportable(const Scenario& scenario) {
   const MachineModel& machine = *scenario.machine;
   const auto refuse = [](const effects::Effect& e, const std::string& why) {
-    throw InputError(e.where, fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
+    throw InputError(e.where,
+                     fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
   };
   for (const effects::Effect& e : machine.effects) {
     if (e.kind->change_readings) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");

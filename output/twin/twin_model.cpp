@@ -76,9 +76,10 @@ TwinTimedLaw timed_law(const Scenario& scenario, const solver::BoundLaw& bound, 
     if (!table)
       throw InputError(
           scenario.machine->where,
-          fmt::format("'{}' depends on temperatures, or on variables of the drive, together in a way that no "
-                      "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/how-to/view.md)",
-                      name));
+          fmt::format(
+              "'{}' depends on temperatures, or on variables of the drive, together in a way that no "
+              "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/how-to/view.md)",
+              name));
     auto known = std::find_if(timed.laws.begin(), timed.laws.end(), [&](const TwinLaw& l) { return is_equal(l, *table); });
     timed.of_stretch.push_back(static_cast<int>(known - timed.laws.begin()));
     if (known == timed.laws.end()) timed.laws.push_back(std::move(*table));
@@ -116,8 +117,9 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
                                    columns.front()));
   }
   if (system.change_times_s.size() > kMostTimes)
-    throw InputError(machine.where, fmt::format("laws change {} times on their own; the page holds up to {} (docs/how-to/view.md)",
-                                                system.change_times_s.size(), kMostTimes));
+    throw InputError(machine.where,
+                     fmt::format("laws change {} times on their own; the page holds up to {} (docs/how-to/view.md)",
+                                 system.change_times_s.size(), kMostTimes));
   TwinModel model{.drive = ranges_of(scenario),
                   .system = system,
                   .start = start,

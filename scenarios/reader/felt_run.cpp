@@ -114,9 +114,10 @@ FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& rec
 void require_nothing_before(const MachineModel& model, const std::string& verb) {
   for (const effects::Effect& e : model.effects) {
     if (effects::drive_change({e}, e.in).before.empty()) continue;
-    throw InputError(e.where, fmt::format("{} has the machine driven before cyclogram '{}'; `{}` begins every cyclogram at the "
-                                          "scenario's `start`: take it out (`simulate`, `diagnose`, `predict` and `view` know it)",
-                                          e.name(), e.in, verb));
+    throw InputError(e.where,
+                     fmt::format("{} has the machine driven before cyclogram '{}'; `{}` begins every cyclogram at the "
+                                 "scenario's `start`: take it out (`simulate`, `diagnose`, `predict` and `view` know it)",
+                                 e.name(), e.in, verb));
   }
 }
 

@@ -196,7 +196,8 @@ ColumnMap read_columns(const ConfigMap& in) {
   if (const auto tags = in.optional_map("tags")) map.tags = read_tags(*tags, has_header, map.time);
   const ConfigMap channels = in.map("channels");
   for (const std::string& name : channels.keys()) {
-    if (!is_name(name)) channels.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
+    if (!is_name(name))
+      channels.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
     map.channels.push_back(read_channel(channels.map(name), name, has_header, map.tags.has_value()));
   }
   if (map.channels.empty()) in.fail("channels", "there is no channel; at least one column is required");

@@ -16,9 +16,9 @@ schema::Map materials_schema() {
   const Key known_to = effects::known_to_key(kKnownRoughly);
   schema::Map like = solver::material_schema(false);
   like.name = "materials, like one of the library";
-  like.keys.insert(
-      like.keys.begin(),
-      compulsory("like", choice(names), "of the library (docs/reference/materials.md); what is written beside it replaces its value"));
+  like.keys.insert(like.keys.begin(),
+                   compulsory("like", choice(names),
+                              "of the library (docs/reference/materials.md); what is written beside it replaces its value"));
   like.keys.push_back(known_to);
   like.when_key = "like";
   schema::Map values = solver::material_schema();

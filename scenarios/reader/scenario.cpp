@@ -10,9 +10,9 @@
 #include "effects/effect_schema.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/former_words.hpp"
+#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
-#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -225,7 +225,8 @@ schema::Map solver_schema() {
            schema::optional("fields_every", quantity("s", 1e-3, 1e9), s.fields_every_s,
                             "between two written fields; start and end are written in any case"),
            schema::optional("fields_at", list(quantity("s", 0.0), 1), "or: the times of fields"),
-           schema::optional("stresses", flag(), "false", "true: stresses beside the other fields (docs/reference/outputs.md)"),
+           schema::optional("stresses", flag(), "false",
+                            "true: stresses beside the other fields (docs/reference/outputs.md)"),
            schema::optional(
                "fields_format", choice({"vtu", "xdmf", "none"}), "vtu",
                "`vtu`: open `fields.pvd`; `xdmf`: open `fields.xdmf`, for more than about 100 times; `none`: no fields, and "
@@ -267,8 +268,9 @@ schema::Key name_key() {
   return schema::compulsory("name", schema::name(), "of the scenario; names the folder of results");
 }
 schema::Key columns_key() {
-  return schema::optional("columns", schema::map(columns_schema()),
-                          "how the records that verbs are given are written where a logger wrote them (docs/reference/record.md)");
+  return schema::optional(
+      "columns", schema::map(columns_schema()),
+      "how the records that verbs are given are written where a logger wrote them (docs/reference/record.md)");
 }
 
 schema::Map topics_schema() {
@@ -334,7 +336,9 @@ schema::Map records_scenario_schema() {
 void reject_what_wants_a_machine(const ConfigMap& top) {
   if (top.has("machine")) return;
   if (top.has("vary"))
-    top.fail("vary", "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
+    top.fail(
+        "vary",
+        "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
   if (!top.has("study")) top.fail("machine", "neither a machine to simulate nor a study of records");
   const schema::Map& with = scenario_schemas()[0];
   const schema::Map& without = scenario_schemas()[1];
@@ -494,9 +498,8 @@ const MachineModel& require_machine(const Scenario& scenario, const std::string&
 
 const Study& require_study(const Scenario& scenario, const std::string& verb) {
   if (scenario.study) return *scenario.study;
-  throw InputError(
-      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit{}", scenario.path, verb,
-                  scenario.machine ? "; `simulate` and `predict` need none" : ""));
+  throw InputError(fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit{}", scenario.path,
+                               verb, scenario.machine ? "; `simulate` and `predict` need none" : ""));
 }
 
 }  // namespace driftwright::scenarios
