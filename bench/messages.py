@@ -33,7 +33,7 @@ DIALECT = {
     r"do(?:es)? without": "needs no",
     r"waited for": "waits for, with a subject",
 }
-WORDS = re.compile(rf"\b(?:{'|'.join(DIALECT)})\b")
+WORDS = re.compile(rf"\b(?:{'|'.join(DIALECT)})\b", re.I)
 
 # where such a word is the right one: file, and a part of the message
 ALLOWED = [

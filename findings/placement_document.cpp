@@ -86,7 +86,7 @@ Verdict verdict_of(const Placement& p) {
       n_words(n), n == 1 ? "leaves" : "leave", left.observer_um, p.drift_um, left.regression_um);
   const std::size_t n_enough = enough(p);
   if (n_enough < p.chosen.left.size()) {
-    text += fmt::format("Behind {} no more of them take off a tenth each: stop there.", n_words(n_enough));
+    text += fmt::format("After {} no more of them take off a tenth each: stop there.", n_words(n_enough));
   } else if (n_enough > 1) {
     text += fmt::format("Even the last of {} takes off a tenth.", n_enough);
   }

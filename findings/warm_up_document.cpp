@@ -79,7 +79,7 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
         "allowed are {}.",
         plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
     if (plan.by_jobs.is_enough)
-      text += fmt::format(" Behind {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
+      text += fmt::format(" After {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
                           plan.by_jobs.duration_s() / 60.0, plan.by_jobs.peak_um);
     return {.kind = Verdict::Kind::kBad,
             .title = "No warm-up was found that is enough",

@@ -214,7 +214,7 @@ TEST_F(MeasuredRunTest, CutsOffASensorInCoarseStepsFromWhereItNoLongerFollows) {
   // from the first reading that it repeats; a step of 0.5 K takes 3 min there
   EXPECT_TRUE(v.tail(130).array().isNaN().all());
   EXPECT_FALSE(v.head(106).array().isNaN().any());
-  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stands still at "), HasSubstr(" min on (stuck: as "),
+  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stays at "), HasSubstr(" min on (stuck: as "),
                                HasSubstr("these readings are left out")));
 }
 
