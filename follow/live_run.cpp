@@ -37,6 +37,8 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
   if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) ambient_K_ = ambient_C - reference_C_;
+  gives_ambient_ = !std::isnan(value(ambient_));
+  gives_speed_ = !std::isnan(value(speed_));
   before_ = drive_;
   if (const double rpm = value(speed_); !std::isnan(rpm)) {
     has_drive_ = true;

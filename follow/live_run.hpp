@@ -22,6 +22,9 @@ class LiveRun {
   [[nodiscard]] const compensation::ObservedRun& run() const { return run_; }
   /// Rows since the start of the run, those no longer kept among them.
   [[nodiscard]] std::size_t n_rows() const { return run_.n_forgotten + run_.readings.n_samples(); }
+  /// Whether the last row gave the spindle's speed, and the ambient.
+  [[nodiscard]] bool gives_speed() const { return gives_speed_; }
+  [[nodiscard]] bool gives_ambient() const { return gives_ambient_; }
   /// From the row before the last until the last.
   [[nodiscard]] const Drive& drive_before() const { return before_; }
   [[nodiscard]] double ambient_K() const { return ambient_K_; }  ///< at the last row, minus the reference temperature
@@ -42,7 +45,7 @@ class LiveRun {
 
   compensation::ObservedRun run_;
   double reference_C_, ambient_K_, top_rpm_ = 0.0, start_s_ = 0.0;
-  bool wants_drive_, has_drive_ = false;
+  bool wants_drive_, has_drive_ = false, gives_speed_ = true, gives_ambient_ = true;
   std::size_t speed_, cutting_, ambient_;  ///< channels; none where there is no such one
   std::array<std::size_t, 3> feed_{};
   Drive drive_, before_;

@@ -19,6 +19,11 @@ double OutputStage::take(double wanted_um, double step_s) {
   return move(step_s);
 }
 
+double OutputStage::take_without_drive(double wanted_um, double step_s) {
+  state_.wanted_um = wanted_um;
+  return wait(step_s);
+}
+
 double OutputStage::wait(double step_s) {
   const double faded_s =
       std::max(0.0, state_.silent_s + step_s - settings_.hold_s) - std::max(0.0, state_.silent_s - settings_.hold_s);

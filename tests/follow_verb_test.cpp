@@ -94,6 +94,31 @@ TEST(FollowVerb, TellsTheDriftThatPredictTells) {
   EXPECT_EQ(f.lines.back()["state"], "on");
 }
 
+// A control that no longer gives its speed, or a thermometer of the air that came off: nobody knows what the machine does now.
+TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
+  write_file("head.yaml", kHead);
+  for (const char* missing : {"speed", "ambient"}) {
+    std::string rows = "time_s,speed_rpm,ambient_degC\n";
+    for (int minute = 0; minute <= 180; ++minute) {
+      const bool is_blind = minute > 100;
+      const bool no_speed = is_blind && missing == std::string("speed");
+      rows += std::to_string(60 * minute) + (no_speed ? "," : ",2000") + (is_blind && !no_speed ? ",\n" : ",21\n");
+    }
+    write_file("rows.csv", rows);
+    const Followed f = follow("head.yaml --slew '100 um/s' --hold '10 min' --fade '20 min'", "cat rows.csv |");
+    ASSERT_EQ(f.exit_code, 0) << f.words;
+    const auto correction_um = [&](std::size_t minute) {
+      return f.lines[minute]["axes"]["nose_z"]["correction_um"].get<double>();
+    };
+    EXPECT_EQ(f.lines[110]["state"], "on") << missing;
+    EXPECT_GT(correction_um(110), correction_um(100)) << missing;  // it warms on
+    EXPECT_NEAR(correction_um(150), std::exp(-2.0) * f.lines[150]["axes"]["nose_z"]["predicted_um"].get<double>(), 1e-3)
+        << missing;
+    EXPECT_EQ(f.lines[150]["state"], "reduced") << missing;
+    EXPECT_THAT(f.lines[150]["why"].get<std::string>(), HasSubstr(missing));
+  }
+}
+
 // What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one simulation does.
 TEST(FollowVerb, LeavesARecordThatJobsStartFrom) {
   (void)predicted_day();

@@ -37,6 +37,15 @@ TEST(OutputStage, HoldsThenFadesAsAnExponential) {
   EXPECT_NEAR(stage.take(50.0, 100.0), 50.0 * (1.0 - (1.0 - left) * std::exp(-1.0)), 1e-12);  // and comes back the same way
 }
 
+TEST(OutputStage, GoesOnWithoutADriveForAsLongAsItHolds) {
+  OutputStage stage({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0});
+  (void)stage.take(50.0, 60.0);
+  EXPECT_EQ(stage.take_without_drive(55.0, 30.0), 55.0);
+  EXPECT_NEAR(stage.take_without_drive(60.0, 40.0), 60.0 * std::exp(-0.4), 1e-12);
+  EXPECT_NEAR(stage.take_without_drive(60.0, 60.0), 60.0 * std::exp(-1.0), 1e-12);
+  EXPECT_GT(stage.take(60.0, 100.0), 60.0 * std::exp(-1.0));
+}
+
 TEST(OutputStage, OneLongWaitIsManyShortOnes) {
   OutputStage once({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0}), often = once;
   (void)once.take(50.0, 60.0);
