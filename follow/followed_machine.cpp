@@ -85,10 +85,8 @@ class FollowedMachine final : public Followed {
     const Eigen::VectorXd outputs = observed();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       axes_[a].predicted_um = 1e6 * outputs[output_[a]];
-      if (run_->gives_speed() && run_->gives_ambient())
-        stages_[a].take(axes_[a].predicted_um, step_s);
-      else
-        stages_[a].take_without_drive(axes_[a].predicted_um, step_s);
+      stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
+      axes_[a].doubted = run_->older_than(stages_[a].most_age_s(step_s));
     }
     return true;
   }
@@ -108,8 +106,6 @@ class FollowedMachine final : public Followed {
     for (std::size_t a = 0; a < axes.size(); ++a) {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
-      if (has_begun() && !run_->gives_speed()) axes[a].doubted.emplace_back("speed");
-      if (has_begun() && !run_->gives_ambient()) axes[a].doubted.push_back(ambient_);
     }
     return axes;
   }

@@ -37,8 +37,9 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
   if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) ambient_K_ = ambient_C - reference_C_;
-  gives_ambient_ = !std::isnan(value(ambient_));
-  gives_speed_ = !std::isnan(value(speed_));
+  now_s_ = run_s;
+  if (!std::isnan(value(ambient_))) ambient_at_s_ = run_s;
+  if (!std::isnan(value(speed_))) speed_at_s_ = run_s;
   before_ = drive_;
   if (const double rpm = value(speed_); !std::isnan(rpm)) {
     has_drive_ = true;
@@ -67,6 +68,17 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   return true;
 }
 
+double LiveRun::drive_age_s() const {
+  return std::max(wants_drive_ ? now_s_ - speed_at_s_ : 0.0, ambient_ == kNone ? 0.0 : now_s_ - ambient_at_s_);
+}
+
+std::vector<std::string> LiveRun::older_than(double age_s) const {
+  std::vector<std::string> names;
+  if (wants_drive_ && now_s_ - speed_at_s_ > age_s) names.emplace_back("speed");
+  if (ambient_ != kNone && now_s_ - ambient_at_s_ > age_s) names.push_back(run_.readings.channels[ambient_].name);
+  return names;
+}
+
 void LiveRun::forget() {
   Record& readings = run_.readings;
   if (readings.n_samples() < kMostKept) return;
@@ -87,6 +99,8 @@ LiveRun::State LiveRun::state() const {
           .time_s = run_.readings.time_s.back(),
           .ambient_K = ambient_K_,
           .top_rpm = top_rpm_,
+          .speed_age_s = now_s_ - speed_at_s_,
+          .ambient_age_s = now_s_ - ambient_at_s_,
           .values = {},
           .drive = drive_};
   for (const Channel& c : run_.readings.channels) s.values.push_back(c.values.back());
@@ -95,6 +109,9 @@ LiveRun::State LiveRun::state() const {
 
 void LiveRun::recall(const State& s) {
   start_s_ = s.start_s;
+  now_s_ = s.start_s + s.time_s;
+  speed_at_s_ = now_s_ - s.speed_age_s;
+  ambient_at_s_ = now_s_ - s.ambient_age_s;
   ambient_K_ = s.ambient_K;
   top_rpm_ = s.top_rpm;
   drive_ = s.drive;

@@ -6,24 +6,25 @@ namespace driftwright::follow {
 
 struct OutputSettings {
   double most_rate_um_s = 1.0;  ///< slew limit
-  double hold_s = 300.0;        ///< so long without a row that is taken, or without a drive, the correction keeps its authority
-  double fade_s = 600.0;        ///< time constant with which authority is lost then, and won again
+  double hold_s = 300.0;  ///< so long without a row that is taken, or without a speed or an ambient, the correction holds
+  double fade_s = 600.0;  ///< time constant with which authority is lost then, and won again
 };
 
 class OutputStage {
  public:
+  static constexpr double kMissingSteps = 2.5;  ///< as a RowGuard has it
   struct State {
     double correction_um = 0.0;  ///< in force
     double wanted_um = 0.0;      ///< as the predictor gave it last
     double authority = 1.0;      ///< 0 to 1, that it is multiplied by
-    double silent_s = 0.0;       ///< since the last row that was taken and gave the drive
+    double silent_s = 0.0;       ///< since the last row that was taken
   };
   explicit OutputStage(const OutputSettings& settings) : settings_(settings) {}
 
-  /// A row was taken. @param step_s  since the last call of any
-  double take(double wanted_um, double step_s);
-  /// A row was taken that does not give the drive: the prediction goes on with the last one, for as long as a correction holds.
-  double take_without_drive(double wanted_um, double step_s);
+  /// A row was taken. @param step_s  since the last call of any. @param drive_age_s  since what drives the machine was last given: beyond most_age_s() authority is lost
+  double take(double wanted_um, double step_s, double drive_age_s = 0.0);
+  /// So long the model may go on with the last speed and ambient: a hold, and as many steps of rows as count as missing ones.
+  [[nodiscard]] double most_age_s(double step_s) const { return settings_.hold_s + kMissingSteps * step_s; }
   /// No row was taken for so long. @return the correction in force
   double wait(double step_s);
   [[nodiscard]] const State& state() const { return state_; }

@@ -112,11 +112,23 @@ TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
     };
     EXPECT_EQ(f.lines[110]["state"], "on") << missing;
     EXPECT_GT(correction_um(110), correction_um(100)) << missing;  // it warms on
-    EXPECT_NEAR(correction_um(150), std::exp(-2.0) * f.lines[150]["axes"]["nose_z"]["predicted_um"].get<double>(), 1e-3)
-        << missing;
+    // 50 min old, of which a hold and two and a half rows are allowed
+    const double predicted_um = f.lines[150]["axes"]["nose_z"]["predicted_um"].get<double>();
+    EXPECT_NEAR(correction_um(150), std::exp(-37.5 / 20.0) * predicted_um, 1e-3) << missing;
     EXPECT_EQ(f.lines[150]["state"], "reduced") << missing;
     EXPECT_THAT(f.lines[150]["why"].get<std::string>(), HasSubstr(missing));
   }
+}
+
+TEST(FollowVerb, TakesSpeedAndAmbientThatComeInRowsOfTheirOwn) {
+  write_file("head.yaml", kHead);
+  std::string rows = "time_s,speed_rpm,ambient_degC\n0,2000,21\n";
+  for (int i = 1; i <= 720; ++i) rows += std::to_string(10 * i) + (i % 2 == 0 ? ",2000,\n" : ",,21\n");
+  write_file("rows.csv", rows);
+  const Followed f = follow("head.yaml", "cat rows.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  EXPECT_EQ(f.lines.back()["state"], "on");
+  EXPECT_EQ(f.lines.back()["axes"]["nose_z"]["trust"], 1.0);
 }
 
 // What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one simulation does.

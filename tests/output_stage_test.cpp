@@ -37,13 +37,15 @@ TEST(OutputStage, HoldsThenFadesAsAnExponential) {
   EXPECT_NEAR(stage.take(50.0, 100.0), 50.0 * (1.0 - (1.0 - left) * std::exp(-1.0)), 1e-12);  // and comes back the same way
 }
 
-TEST(OutputStage, GoesOnWithoutADriveForAsLongAsItHolds) {
+TEST(OutputStage, FadesByTheAgeOfWhatDrivesTheMachine) {
   OutputStage stage({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0});
   (void)stage.take(50.0, 60.0);
-  EXPECT_EQ(stage.take_without_drive(55.0, 30.0), 55.0);
-  EXPECT_NEAR(stage.take_without_drive(60.0, 40.0), 60.0 * std::exp(-0.4), 1e-12);
-  EXPECT_NEAR(stage.take_without_drive(60.0, 60.0), 60.0 * std::exp(-1.0), 1e-12);
-  EXPECT_GT(stage.take(60.0, 100.0), 60.0 * std::exp(-1.0));
+  ASSERT_EQ(stage.most_age_s(10.0), 55.0);
+  for (double age_s = 10.0; age_s < 55.0; age_s += 10.0) EXPECT_EQ(stage.take(60.0, 10.0, age_s), 60.0);
+  EXPECT_NEAR(stage.take(60.0, 10.0, 60.0), 60.0 * std::exp(-0.05), 1e-12);
+  EXPECT_NEAR(stage.take(60.0, 10.0, 70.0), 60.0 * std::exp(-0.15), 1e-12);
+  const double left = std::exp(-0.15);
+  EXPECT_NEAR(stage.take(60.0, 10.0, 0.0), 60.0 * (1.0 - (1.0 - left) * std::exp(-0.1)), 1e-12);
 }
 
 TEST(OutputStage, OneLongWaitIsManyShortOnes) {
