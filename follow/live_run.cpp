@@ -36,13 +36,15 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   const auto value = [&](std::size_t channel) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
-  if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) ambient_K_ = ambient_C - reference_C_;
   now_s_ = run_s;
-  if (!std::isnan(value(ambient_))) ambient_at_s_ = run_s;
-  if (!std::isnan(value(speed_))) speed_at_s_ = run_s;
+  if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) {
+    ambient_K_ = ambient_C - reference_C_;
+    ambient_at_s_ = run_s;
+  }
   before_ = drive_;
   if (const double rpm = value(speed_); !std::isnan(rpm)) {
     has_drive_ = true;
+    speed_at_s_ = run_s;
     top_rpm_ = std::max(top_rpm_, rpm);
     const bool is_jitter = drive_.speed_rpm > 0.0 && rpm > 0.0 && std::abs(rpm - drive_.speed_rpm) <= kJitter * top_rpm_;
     if (!is_jitter) drive_.speed_rpm = rpm;

@@ -15,7 +15,8 @@ double OutputStage::move(double step_s) {
 double OutputStage::take(double wanted_um, double step_s, double drive_age_s) {
   state_.wanted_um = wanted_um;
   state_.silent_s = 0.0;
-  const double faded_s = std::clamp(drive_age_s - most_age_s(step_s), 0.0, step_s);
+  state_.step_s = step_s;
+  const double faded_s = std::clamp(drive_age_s - most_age_s(), 0.0, step_s);
   if (faded_s > 0.0)
     state_.authority *= std::exp(-faded_s / settings_.fade_s);
   else

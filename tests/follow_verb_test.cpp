@@ -105,8 +105,17 @@ TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
       rows += std::to_string(60 * minute) + (no_speed ? "," : ",2000") + (is_blind && !no_speed ? ",\n" : ",21\n");
     }
     write_file("rows.csv", rows);
-    const Followed f = follow("head.yaml --slew '100 um/s' --hold '10 min' --fade '20 min'", "cat rows.csv |");
+    const std::string arguments = "head.yaml --slew '100 um/s' --hold '10 min' --fade '20 min'";
+    const Followed f = follow(arguments, "cat rows.csv |");
     ASSERT_EQ(f.exit_code, 0) << f.words;
+    // a restart in between changes nothing, be it that its first row is doubled
+    const std::string state = std::string(" --state ") + missing + ".state";
+    std::filesystem::remove(temporary_folder() / (std::string(missing) + ".state"));
+    const Followed first = follow(arguments + state, "head -n 132 rows.csv |");
+    const Followed second = follow(arguments + state, "sed '2,132d' rows.csv |");
+    EXPECT_EQ(first.text + second.text, f.text) << missing;
+    const Followed doubled = follow(arguments + state, "sed '2,181d' rows.csv |");
+    EXPECT_THAT(doubled.text, HasSubstr("\"doubted\":[\"" + std::string(missing) + "\"]")) << missing;
     const auto correction_um = [&](std::size_t minute) {
       return f.lines[minute]["axes"]["nose_z"]["correction_um"].get<double>();
     };

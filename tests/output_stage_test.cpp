@@ -40,8 +40,8 @@ TEST(OutputStage, HoldsThenFadesAsAnExponential) {
 TEST(OutputStage, FadesByTheAgeOfWhatDrivesTheMachine) {
   OutputStage stage({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0});
   (void)stage.take(50.0, 60.0);
-  ASSERT_EQ(stage.most_age_s(10.0), 55.0);
   for (double age_s = 10.0; age_s < 55.0; age_s += 10.0) EXPECT_EQ(stage.take(60.0, 10.0, age_s), 60.0);
+  ASSERT_EQ(stage.most_age_s(), 55.0);  // a hold and two and a half rows
   EXPECT_NEAR(stage.take(60.0, 10.0, 60.0), 60.0 * std::exp(-0.05), 1e-12);
   EXPECT_NEAR(stage.take(60.0, 10.0, 70.0), 60.0 * std::exp(-0.15), 1e-12);
   const double left = std::exp(-0.15);
