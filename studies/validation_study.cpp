@@ -214,6 +214,34 @@ std::optional<Record> as_judged(const Validation& v, const std::string& cyclogra
   return std::nullopt;
 }
 
+/// For strategies that are judged in simulation. The reduced model of a network costs nothing: it is opened though the scenario asks for the full one.
+RecordedPhysics physics_for_simulation(const Scenario& scenario, const scenarios::Model& model) {
+  const Validation& v = *scenario.validation;
+  try {
+    std::optional<scenarios::Model> own;
+    if (!model.reduced() && std::holds_alternative<scenarios::LumpedMachine>(scenario.machine->mesh)) {
+      Scenario reduced = scenario;
+      reduced.solver.model = scenarios::ModelKind::kReduced;
+      std::vector<const Cyclogram*> cyclograms;
+      for (const Cyclogram& c : v.train) cyclograms.push_back(&c);
+      own.emplace(scenarios::open_model(reduced, cyclograms, {}, false));
+    }
+    const scenarios::Model& used = own ? *own : model;
+    if (!used.reduced())
+      return {std::nullopt,
+              "they need the reduced model, and the scenario asks for the full one; `solver: {model: reduced}` is required"};
+    std::optional<compensation::Physics> physics = physics_of(scenario, used, v.model_scatter, v.seed);
+    if (!physics)
+      return {std::nullopt,
+              "they need a linear model, and in the scenario's machine films, heat or thermostats follow temperatures"};
+    return {std::move(physics), ""};
+  } catch (const InputError& e) {
+    return {std::nullopt, e.what()};
+  } catch (const SolveError& e) {
+    return {std::nullopt, e.what()};
+  }
+}
+
 Record read_in_validation(const Validation& v, Record exact, std::size_t run) {
   return as_read(std::move(exact), instrument_of(v), seed_of(v, run));
 }
@@ -244,7 +272,9 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
   how.ambient = ambient_channel(scenario, runs.front().readings);
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
   how.drift_um = std::max(0.1, v.drift_noise_um);
-  how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
+  RecordedPhysics physics = physics_for_simulation(scenario, model);
+  how.physics = std::move(physics.physics);
+  how.without_physics = std::move(physics.why_none);
   return {std::move(runs), std::move(how)};
 }
 
