@@ -317,6 +317,33 @@ TEST(NcLanguages, MakeTheSameMovesOfOnePart) {
   }
 }
 
+// Numbers that are rounded to 0.01 mm or 0.001 in: radii at start and end differ by 0.028 mm and 0.0028 in, which is just what rounding may come to.
+TEST(NcLanguages, AllowTheRoundingOfArcsAlike) {
+  const auto inch = [](const std::string& blocks) { return "BEGIN PGM T INCH\n" + blocks + "END PGM T INCH\n"; };
+  const std::vector<std::pair<NcControl, std::string>> programs = {{kS, "G71 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+                                                                   {kS, "G71 G90\nG2 X4.0# I=AC(2) J=AC(0) F600\nM30\n"},
+                                                                   {kS, "G700 G90\nG2 X0.40# I0.2 J0 F60\nM30\n"},
+                                                                   {kS, "G291\nG21 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+                                                                   {kH, din("N1 G90 I+2 J+0 *\nN2 G02 X+4.0# Y+0 F600 *\n")},
+                                                                   {kH, klartext("CC X+2 Y+0\nC X+4.0# Y+0 DR- F600\n")},
+                                                                   {kH, klartext("CC X+2 Y+0\nCP PR+2.0# PA+0 DR- F600\n")},
+                                                                   {kH, inch("CC X+0,2 Y+0\nC X+0,40# Y+0 DR- F600\n")}};
+  for (const auto& [control, text] : programs) {
+    const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
+    EXPECT_GT(read(with("28"), control).duration_s(), 0.0) << text;
+    EXPECT_THAT([&] { (void)read(with("29"), control); }, ThrowsMessage<InputError>(HasSubstr("is allowed"))) << text;
+  }
+  // Half of the chord is longer than the radius by 0.012 mm.
+  const std::vector<std::pair<NcControl, std::string>> radii = {{kS, "G71 G90\nG2 X4.02# CR=2 F600\nM30\n"},
+                                                                {kH, din("N1 G90 G02 X+4.02# Y+0 R+2 F600 *\n")},
+                                                                {kH, klartext("CR X+4.02# Y+0 R+2 DR- F600\n")}};
+  for (const auto& [control, text] : radii) {
+    const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
+    EXPECT_NEAR(read(with("4"), control).duration_s(), kPi * 2.012 / 10, 1e-9) << text;
+    EXPECT_THAT([&] { (void)read(with("5"), control); }, ThrowsMessage<InputError>(HasSubstr("cannot reach"))) << text;
+  }
+}
+
 struct Mistaken {
   const char* name;
   NcControl control;
