@@ -344,6 +344,27 @@ TEST(NcLanguages, AllowTheRoundingOfArcsAlike) {
   }
 }
 
+// First blocks as posts write them.
+TEST(NcLanguages, ReadTheUsualFirstBlocks) {
+  for (const char* first : {"G17 G40 G54 G60 G64 G71 G90 G94", "G0 G40 G90 G17 G54 G64 G71 SOFT FFWON",
+                            "G90 G94 G710 G40 G17 G500 CFC", "N10 G64 G40 G17 G71 G94 G97", "G290\nG17 G90 G71 G40 G601"}) {
+    EXPECT_NEAR(read(std::string(first) + "\nG71 G0 X25\nG4 F1\nM30\n", kS).duration_s(), 0.1 + 1, 1e-12) << first;
+  }
+  for (const char* first :
+       {"G17 G21 G40 G49 G80 G90", "G0 G17 G20 G40 G49 G50 G69 G80 G90 G94 G98", "G80 G0 G40 G49 G15 G67 G97"}) {
+    EXPECT_NEAR(read(std::string("G291\n") + first + "\nG21 G0 X25\nG4 P1\nM30\n", kS).duration_s(), 0.1 + 1, 1e-12)
+        << first;
+  }
+  for (const char* first : {"N10 G40 G90 *", "N10 G00 G17 G40 G90 G71 *", "N10 G90 G80 G40 *"}) {
+    const std::string text = din(std::string(first) + "\nN20 G00 X+25 *\nN30 G04 F1 *\n");
+    if (std::string(first).find("G80") != std::string::npos) {  // no word of this control
+      EXPECT_THROW((void)read(text, kH), InputError) << first;
+    } else {
+      EXPECT_NEAR(read(text, kH).duration_s(), 0.1 + 1, 1e-12) << first;
+    }
+  }
+}
+
 struct Mistaken {
   const char* name;
   NcControl control;

@@ -267,6 +267,33 @@ TEST(NcArc, OfTwoDecimalsEndsWhereItIsWritten) {
   EXPECT_NEAR(program.moves[1].duration_s, 1.0, 1e-12);
 }
 
+/// First blocks of programs as posts write them: what is off beforehand may be cancelled beside a motion word.
+class NcSafeStart : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(NcSafeStart, IsRead) {
+  const NcProgram program = read(std::string(GetParam()) + "\nG21 G0 X25\nG4 P1\nM30\n");
+  EXPECT_NEAR(program.duration_s(), 0.1 + 1, 1e-12) << GetParam();
+  EXPECT_TRUE(program.notes.empty()) << GetParam();
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, NcSafeStart,
+                         ::testing::Values("G00 G17 G21 G40 G49 G80 G90", "N10G0G17G40G49G80G90",
+                                           "G0 G17 G20 G40 G49 G80 G90 G94 G98", "G90 G94 G17 G49 G40 G80",
+                                           "G21 G0 G40 G49 G80 G99", "G80 G40 G49 G0 G90 G54 G21", "G17 G54 G40 G49 G80 G90",
+                                           "G90 G80 G40 G17 G49 G69 G15", "G0 G40 G49 G50 G67 G69 G80 G90",
+                                           "G15 G17 G40 G49 G50.1 G69 G80 G94 G97 G98",
+                                           "G90 G94 G91.1 G40 G49 G17 G64 P0.05", "G1 G40 G80 F100", "G80 M5 M9",
+                                           "G91 G80 G90.1 G61"));
+
+TEST(NcProgram, G80BesideAMotionWordEndsTheCycleAndTheOtherIsTheMotion) {
+  // Three holes of 2 s in and 0.04 s out, and between them a rapid, a line at 5 mm/s and a half circle, which do not drill.
+  const std::string hole = " Z-10 R0 F300\n";
+  const NcProgram program =
+      read("G81 X0" + hole + "G80 G0 X20\nG81 X20" + hole + "G1 G80 X30\nG81 X30" + hole + "G80 G2 X40 I5\nG4 P1\nM2\n");
+  EXPECT_NEAR(program.duration_s(), 3 * (2 + 10.0 / 250) + 20.0 / 250 + 2 + kPi + 1, 1e-9);
+  EXPECT_NEAR(travel_mm(program)[2], 60, 1e-9);
+}
+
 TEST(NcProgram, DwellsInMillisecondsWhereTheSettingsSaySo) {
   NcSettings fanuc = kSettings;
   fanuc.dwell_P_s = 1e-3;
@@ -323,6 +350,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"no_machine_zero", "G28\nM2\n", {"G28 needs the machine's zero"}},
         Wrong{"no_end", "G4 P1\n", {"the program has no end"}},
         Wrong{"contradiction", "G0 G1 X1\nM2\n", {":1:4: G1: it contradicts G0"}},
+        Wrong{"cycle_and_its_end", "G80 G81 X1 Z-5 R1 F100\nM2\n", {":1:5: G81: it contradicts G80 in the same block"}},
+        Wrong{"cycle_end_and_cycle", "G83 G80 X1\nM2\n", {":1:5: G80: it contradicts G83 in the same block"}},
+        Wrong{"contradiction_beside_g80", "G0 G80 G1 X1\nM2\n", {":1:8: G1: it contradicts G0"}},
+        Wrong{"axis_words_in_the_block_of_g80", "G80 X5\nM2\n", {":1:1: axis words come after G80"}},
+        Wrong{"scaling_off_with_axis_words", "G0 G50 X5\nM2\n", {"G50: with other words in its block", "without S, X"}},
+        Wrong{"limit_of_speed", "G50 S2000\nM2\n", {"G50: with other words in its block"}},
+        Wrong{"mirror_off_with_axis_words", "G50.1 X0 Y0\nM2\n", {"G50.1: with other words in its block"}},
         Wrong{"twice", "G0 X1 X2\nM2\n", {":1:7: X2: a second X"}},
         Wrong{"unused", "G0 X1 Q3\nM2\n", {":1:7: Q3: this word has no use"}},
         Wrong{"rotary", "G0 A90\nM2\n", {"A90: rotary"}},
