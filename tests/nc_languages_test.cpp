@@ -395,6 +395,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"siemens_open_loop", kS, "G71\nWHILE 1\nM30\n", {":2:1: WHILE is not closed"}},
         Mistaken{"siemens_unknown_r", kS, "G71\nG1 X=R5 F100\nM30\n", {":2:", "R5 is what the operator"}},
         Mistaken{"siemens_no_label", kS, "G71\nGOTOF AWAY\nM30\n", {":2:7: no label AWAY"}},
+        Mistaken{
+            "siemens_turns", kS, "G71\nG2 I3 J0 TURN=3000000000 F600\nM30\n", {":2:15: TURN=3000000000", "0 to 100000"}},
+        Mistaken{"siemens_part_of_a_turn", kS, "G71\nG2 I3 J0 TURN=0.5 F600\nM30\n", {"TURN=0.5", "whole number"}},
         Mistaken{"siemens_scale", kS, "G71\nSCALE X2\nM30\n", {"scaling is not computed"}},
         Mistaken{"siemens_no_end", kS, "G71\n", {"the program has no end"}},
         Mistaken{"iso_no_unit", kH, "%T\nN1 G00 X+1 *\n", {":1:1: the first line has no unit"}},
@@ -406,6 +409,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"klartext_unset_q", kH, klartext("L X+Q8 F100\n"), {":2:1: Q8 is what the operator"}},
         Mistaken{"klartext_no_feed", kH, klartext("L X+8\n"), {"the feed move has no feed"}},
         Mistaken{"klartext_endless", kH, klartext("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1\n"), {"has run 500004 blocks"}},
+        Mistaken{"klartext_turns",
+                 kH,
+                 klartext("CC X+3 Y+0\nCP IPA+1000000000000 DR+ F600\n"),
+                 {":3:", "1e+12 degrees", "36000000"}},
+        Mistaken{"iso_turns", kH, din("N1 I+3 J+0 *\nN2 G13 G91 H+1000000000000 F600 *\n"), {":3:", "1e+12 degrees"}},
         Mistaken{"klartext_recursion", kH, klartext("LBL 1\nCALL LBL 1\nLBL 0\n"), {"nested more than 8 deep"}}),
     [](const auto& each) { return each.param.name; });
 
