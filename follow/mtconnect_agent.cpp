@@ -15,6 +15,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr std::size_t kMostBytes = 16u << 20;  // of an answer
+constexpr long kMostRedirections = 5;
 constexpr const char* kUnavailable = "UNAVAILABLE";
 
 struct FreeDocument {
@@ -106,11 +107,16 @@ MtconnectStreams read_mtconnect_streams(const std::string& xml) {
 
 struct MtconnectAgent::Connection {
   CURL* curl = curl_easy_init();
+  // Some agents show people a page unless they are asked for XML.
+  curl_slist* headers = curl_slist_append(nullptr, "Accept: application/xml, text/xml;q=0.9");
   char error[CURL_ERROR_SIZE] = "";
   Connection() {
-    if (!curl) throw std::bad_alloc();
+    if (!curl || !headers) throw std::bad_alloc();
   }
-  ~Connection() { curl_easy_cleanup(curl); }
+  ~Connection() {
+    curl_easy_cleanup(curl);
+    curl_slist_free_all(headers);
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 };
@@ -140,6 +146,10 @@ MtconnectStreams MtconnectAgent::ask(const std::string& request, double most_s) 
   connection_->error[0] = '\0';
   curl_easy_setopt(curl, CURLOPT_URL, address.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 1L);
+  curl_easy_setopt(curl, CURLOPT_MAXREDIRS, kMostRedirections);
+  curl_easy_setopt(curl, CURLOPT_REDIR_PROTOCOLS_STR, url_.starts_with("https") ? "https" : "http,https");
+  curl_easy_setopt(curl, CURLOPT_HTTPHEADER, connection_->headers);
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // an agent says what is wrong in the answer
   curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, std::max(100L, static_cast<long>(1e3 * most_s)));
