@@ -148,8 +148,11 @@ def main():
         nobody.send_signal(signal.SIGTERM)
         assert nobody.wait(30) == 0
         again.leave()
-        # agents that answer with a page unless they are asked for XML, and that have moved
-        for feed, mode, expected, said in [*(("MILLIMETER/SECOND", mode, 50.0, "") for mode in ("html", 301, 302, 307, 308))]:
+        # units of the probe, else of the standard; agents that answer with a page unless they are asked for XML, and that have moved
+        for feed, mode, expected, said in [("MILLIMETER/SECOND", "", 3000.0, ""), ("MILLIMETER/MINUTE", "", 50.0, ""), ("INCH/MINUTE", "", 1270.0, ""),
+                                           ("", "", 3000.0, "its probe gives no units for them, so the standard's units are taken: Xfrt (AxisFeedrate) in MILLIMETER/SECOND"),
+                                           (None, "", 3000.0, "it gives no probe (it answers: Could not find the device turn), so the standard's units are taken: S1speed (RotaryVelocity)"),
+                                           *(("MILLIMETER/SECOND", mode, 3000.0, "") for mode in ("html", 301, 302, 307, 308))]:
             moved = Agent({"speed": "1000", "ambient": "20"}, feed=feed, mode=mode)
             for device in ("", "/mill") if not mode else ("",):
                 pathlib.Path(folder, "units.csv").unlink(missing_ok=True)
@@ -164,7 +167,13 @@ def main():
                 rows = list(csv.DictReader(line for line in pathlib.Path(folder, "units.csv").open() if not line.startswith("#")))
                 assert rows and all(abs(float(row["feed_x_mm_min"]) - expected) < 1e-9 and float(row["speed_rpm"]) == 1000.0 for row in rows), (feed, mode, rows)
             moved.leave()
-        # a redirection without end
+        # a unit of another quantity, a redirection without end
+        other = Agent({"speed": "1000", "ambient": "20"}, feed="MILLIMETER")
+        wrong = follow(program, folder, f"http://127.0.0.1:{other.port}", "speed_rpm=S1speed", "ambient_degC=e2", "feed_x_mm_min=Xfrt")
+        assert wrong.wait(60) == 2
+        words = wrong.stderr.read()
+        assert "--topic feed_x_mm_min=Xfrt: the numbers of this data item are in MILLIMETER (by its probe)" in words and "must convert to the channel's unit 'mm/min'" in words, words
+        other.leave()
         endless = Agent({"speed": "1000", "ambient": "20"}, mode="loop")
         lost = follow(program, folder, f"http://127.0.0.1:{endless.port}", "speed_rpm=S1speed", "ambient_degC=e2")
         first = lost.stderr.readline()
