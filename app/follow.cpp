@@ -157,6 +157,10 @@ class Following {
         throw InputError(
             "--mtconnect requires --topic CHANNEL=ITEM for each channel, with a data item's id or name, or `topics` in the "
             "scenario");
+      std::vector<std::string> headers = {"time_s"};
+      for (const follow::ChannelOrigin& o : origins) headers.push_back(o.header);
+      const std::vector<follow::ColumnUnit> units = follow::column_units(headers, columns_of(options_.columns));
+      for (std::size_t k = 0; k < origins.size(); ++k) origins[k].numbers = units[k + 1];
       const auto say = [where = options_.mtconnect](const std::string& words) {
         (void)std::fputs(fmt::format("{}: {}\n", where, words).c_str(), stderr);
       };

@@ -70,6 +70,9 @@ struct ColumnMap {
 /// @throws RangeError  for an unknown unit, and for one that records have no room for
 [[nodiscard]] std::string record_unit(const std::string& written_unit);
 
+/// The unit of a record's header as UDUNITS reads it: "mm/min" of "mm_min", "%" of "percent".
+[[nodiscard]] std::string in_udunits(const std::string& record_unit);
+
 /// What the map says, a line each, for people.
 [[nodiscard]] std::vector<std::string> words(const ColumnMap& columns);
 

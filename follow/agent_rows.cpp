@@ -18,6 +18,7 @@ namespace {
 constexpr double kLongestAnswer_s = 2.0;
 // Of an observation before the agent's own time: no more than clocks of its adapters differ.
 constexpr double kClockAhead_s = 60.0;
+constexpr int kProbeTries = 3;
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
 
 void require_items(const HeardValues& values, const MtconnectStreams& told) {
@@ -42,6 +43,46 @@ void require_items(const HeardValues& values, const MtconnectStreams& told) {
   }
 }
 
+/// "Xfrt (AxisFeedrate)".
+std::string words_of(const ChannelOrigin& c, const Observation& o) {
+  return fmt::format("{} ({})", c.from, o.type);
+}
+
+/// In which unit the numbers of each channel come: as the probe says, else as the standard does for the type. What is not the agent's own word is said.
+/// @throws InputError  where an item's unit is not one of its channel's quantity
+void set_units(HeardValues& values, const MtconnectProbe& probe, const MtconnectStreams& told, const Say& say) {
+  std::vector<std::string> standard, unknown;
+  for (std::size_t k = 0; k < values.origins().size(); ++k) {
+    const ChannelOrigin& c = values.origins()[k];
+    const auto o = std::find_if(told.observations.begin(), told.observations.end(),
+                                [&](const Observation& at) { return at.id == c.from || at.name == c.from; });
+    if (o == told.observations.end()) continue;  // since the agent was started anew: it is missing until it is there again
+    const auto item =
+        std::find_if(probe.items.begin(), probe.items.end(), [&](const DataItem& at) { return at.id == o->id; });
+    const bool has_units = item != probe.items.end() && !item->units.empty();
+    const std::string units = has_units ? item->units : standard_units(o->type, o->sub_type);
+    if (units.empty())
+      unknown.push_back(fmt::format("{} in {}", words_of(c, *o), c.numbers.unit));
+    else if (!has_units)
+      standard.push_back(fmt::format("{} in {}", words_of(c, *o), units));
+    if (units.empty()) continue;
+    try {
+      values.set_unit(k, unit_of_mtconnect(units));
+    } catch (const RangeError& e) {
+      throw InputError(
+          fmt::format("--topic {}={}: the numbers of this data item are in {} ({}) and must "
+                      "convert to the channel's unit '{}': {}",
+                      c.header, c.from, units, has_units ? "by its probe" : "by the standard", c.numbers.unit, e.what()));
+    }
+  }
+  const std::string why =
+      probe.why_none.empty() ? "its probe gives no units for them" : fmt::format("it gives no probe ({})", probe.why_none);
+  if (!standard.empty()) say(fmt::format("{}, so the standard's units are taken: {}", why, fmt::join(standard, ", ")));
+  if (!unknown.empty())
+    say(fmt::format("{}, and the standard has none for their types; their numbers are taken in the channels' units: {}", why,
+                    fmt::join(unknown, ", ")));
+}
+
 void hear_in(HeardValues& values, const Observation& o) {
   for (const std::string& from : {o.id, o.name}) {
     if (from.empty()) continue;
@@ -64,6 +105,20 @@ void wait_for(double seconds) {
 
 }  // namespace
 
+void ItemUnits::learn(HeardValues& values, MtconnectAgent& agent, const MtconnectStreams& told, const Say& say) {
+  if (instance_ == told.instance) return;
+  MtconnectProbe probe;
+  try {
+    probe = agent.probe(kLongestAnswer_s);
+  } catch (const RangeError& e) {
+    if (++n_failed_ < kProbeTries) throw;
+    probe.why_none = e.what();
+  }
+  n_failed_ = 0;
+  set_units(values, probe, told, say);
+  instance_ = told.instance;
+}
+
 CurrentRows::CurrentRows(const std::string& url, HeardValues values, double every_s, Say say)
     : agent_(url), values_(std::move(values)), every_s_(every_s), ticks_(every_s), say_(std::move(say)) {}
 
@@ -78,6 +133,7 @@ RowSource::Got CurrentRows::next(std::string& line, double wait_s) {
   try {
     const MtconnectStreams told = agent_.current(std::min(every_s_, kLongestAnswer_s));
     if (!has_answered_) require_items(values_, told);
+    units_.learn(values_, agent_, told, say_);
     values_.forget_all();
     for (const Observation& o : told.observations) hear_in(values_, o);
     if (is_away_) say_("answers again");
@@ -150,6 +206,7 @@ void SampleRows::ask() {
 
 void SampleRows::begin(const MtconnectStreams& now) {
   if (!instance_) require_items(values_, now);
+  units_.learn(values_, agent_, now, say_);
   instance_ = now.instance;
   next_ = now.next;
   values_.forget_all();

@@ -13,11 +13,24 @@ namespace driftwright::follow {
 
 using Say = std::function<void(const std::string&)>;  ///< a sentence to whoever runs it
 
+/// In which units an agent's numbers come: by its probe, which is read once, and again where the agent has been started anew.
+class ItemUnits {
+ public:
+  /// Where it gives none after three questions, the standard's units are taken, which is said.
+  /// @throws RangeError  where it has not answered, and is to be asked again
+  /// @throws InputError  for an item whose unit is not one of its channel's quantity
+  void learn(HeardValues& values, MtconnectAgent& agent, const MtconnectStreams& told, const Say& say);
+
+ private:
+  std::optional<std::string> instance_;  // whose units are known
+  int n_failed_ = 0;
+};
+
 /// `/current`, by this computer's clock. While the agent does not answer, what it said last holds until it is stale.
 class CurrentRows final : public RowSource {
  public:
   CurrentRows(const std::string& url, HeardValues values, double every_s, Say say);
-  /// @throws InputError  for an item that the agent does not have
+  /// @throws InputError  for an item that the agent does not have, or whose unit is not one of its channel's quantity
   [[nodiscard]] Got next(std::string& line, double wait_s) override;
 
  private:
@@ -26,6 +39,7 @@ class CurrentRows final : public RowSource {
   double every_s_;
   Ticks ticks_;
   Say say_;
+  ItemUnits units_;
   bool has_header_ = false, has_answered_ = false, is_away_ = false;
 };
 
@@ -49,6 +63,7 @@ class SampleRows final : public RowSource {
   Ticks ticks_;
   Say say_;
   std::deque<std::string> rows_;
+  ItemUnits units_;
   std::optional<std::string> instance_;
   std::uint64_t next_ = 0;
   double last_s_ = 0.0;  // time of the last row

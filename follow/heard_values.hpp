@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "follow/stream_row.hpp"
+
 namespace driftwright::follow {
 
 /// A channel and where its numbers come from, as --topic says it: "t01_degC=shop/mill/t01".
 struct ChannelOrigin {
   std::string header, from;
+  ColumnUnit numbers = {};
 };
 /// @throws InputError  for text that is none
 [[nodiscard]] std::vector<ChannelOrigin> read_origins(const std::vector<std::string>& topics);
@@ -22,6 +25,9 @@ class HeardValues {
   HeardValues(std::vector<ChannelOrigin> origins, double stale_s);
 
   [[nodiscard]] const std::vector<ChannelOrigin>& origins() const { return origins_; }
+  /// Numbers of origin k come in that unit, and are converted to the channel's; "": they are the channel's.
+  /// @throws RangeError  where the two are no units of one quantity, or a map multiplies the numbers in another unit
+  void set_unit(std::size_t k, const std::string& unit);
   /// A value of all channels that come from there; text that is no number is an unreadable cell.
   void hear(const std::string& from, const std::string& text);
   /// It is missing by now.
@@ -38,7 +44,8 @@ class HeardValues {
     std::optional<Clock::time_point> at = {};
   };
   std::vector<ChannelOrigin> origins_;
-  std::vector<Value> values_;  // of each
+  std::vector<Value> values_;       // of each
+  std::vector<std::string> units_;  // in which they come; "": that of the channel
   double stale_s_;
 };
 

@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "follow/item_units.hpp"
+
 namespace driftwright::follow {
 
 struct Observation {
-  std::string id, name;        ///< of its data item; "" where it has no name
-  std::string value;           ///< what the agent calls UNAVAILABLE is ""
-  std::uint64_t sequence = 0;  ///< number in the agent's buffer
-  double time_s = 0.0;         ///< since 1970
+  std::string id, name;                  ///< of its data item; "" where it has no name
+  std::string value;                     ///< what the agent calls UNAVAILABLE is ""
+  std::uint64_t sequence = 0;            ///< number in the agent's buffer
+  double time_s = 0.0;                   ///< since 1970
+  std::string type = {}, sub_type = {};  ///< "AxisFeedrate", "ACTUAL"
 };
 
 /// A document of MTConnectStreams.
@@ -26,7 +29,14 @@ struct MtconnectStreams {
   std::vector<Observation> observations;
 };
 
+/// What an agent's probe says; a document of MTConnectDevices.
+struct MtconnectProbe {
+  std::vector<DataItem> items;
+  std::string why_none = {};  ///< where the agent has no such document
+};
+
 /// @throws RangeError  for a document that is none, with what the agent says where it answers with an error
+[[nodiscard]] std::vector<DataItem> read_mtconnect_devices(const std::string& xml);
 [[nodiscard]] MtconnectStreams read_mtconnect_streams(const std::string& xml);
 
 class MtconnectAgent {
@@ -40,11 +50,18 @@ class MtconnectAgent {
 
   /// What it tells now. @throws RangeError  where it does not answer within `most_s`, or not with MTConnectStreams
   [[nodiscard]] MtconnectStreams current(double most_s);
+  /// Its data items. @throws RangeError  where it does not answer within `most_s`, or is busy (HTTP 503)
+  [[nodiscard]] MtconnectProbe probe(double most_s);
   /// Observations from a number on, up to a thousand. @throws RangeError  as current()
   [[nodiscard]] MtconnectStreams sample(std::uint64_t from, double most_s);
 
  private:
-  [[nodiscard]] MtconnectStreams ask(const std::string& request, double most_s);
+  struct Answer {
+    std::string text;
+    long status = 0;  ///< of HTTP
+  };
+  /// Redirections are followed. @throws RangeError  where there is no answer within `most_s`
+  [[nodiscard]] Answer ask(const std::string& request, double most_s);
   struct Connection;
   std::unique_ptr<Connection> connection_;
   std::string url_;

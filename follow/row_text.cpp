@@ -59,6 +59,28 @@ double stream_number(const std::string& text, char decimal) {
   return parse_number(text, decimal);
 }
 
+std::vector<ColumnUnit> column_units(const std::vector<std::string>& headers, const std::optional<ColumnMap>& columns) {
+  std::vector<ColumnUnit> list(headers.size());
+  if (!columns) {
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+      for (const std::string& unit : known_units()) {
+        if (!headers[i].ends_with("_" + unit)) continue;
+        list[i] = {in_udunits(unit), unit == "K", false};
+        break;
+      }
+    }
+    return list;
+  }
+  for (const MappedChannel& c : columns->channels) {
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+      const bool is_it = c.column.position > 0 ? c.column.position == static_cast<int>(i) + 1
+                                               : plain_name(c.column.name) == plain_name(headers[i]);
+      if (is_it) list[i] = {c.written_unit, c.unit == "K", c.factor != 1.0 || c.offset != 0.0};
+    }
+  }
+  return list;
+}
+
 struct RowText::State {
   std::optional<ColumnMap> map;
   std::string source;

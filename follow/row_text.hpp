@@ -32,6 +32,11 @@ class RowText {
   std::unique_ptr<State> state_;
 };
 
+/// What the numbers in each column are, by the headers of records or by the map. A column that nobody reads has no unit.
+/// @param headers  of all columns, the time's first
+[[nodiscard]] std::vector<ColumnUnit> column_units(const std::vector<std::string>& headers,
+                                                   const std::optional<ColumnMap>& columns);
+
 /// The text of a number: as record CSVs have it, "" and any writing of NaN for a missing one. @throws RangeError  for other words
 [[nodiscard]] double stream_number(const std::string& text, char decimal);
 

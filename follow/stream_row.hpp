@@ -18,6 +18,13 @@ struct StreamRow {
 /// Of usual steps: rows that come later than this miss some between them, and so long a value may be missing from rows that come.
 inline constexpr double kMissingSteps = 2.5;
 
+/// What the numbers in a column of a stream are, for sources that say in which unit theirs are.
+struct ColumnUnit {
+  std::string unit;            ///< as UDUNITS reads it; "": nothing says
+  bool is_difference = false;  ///< of two temperatures
+  bool is_scaled = false;      ///< a map multiplies them or adds to them: they are in `unit` already
+};
+
 /// A channel that a stream must have.
 struct WantedChannel {
   std::string name, unit;

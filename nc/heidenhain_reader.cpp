@@ -429,7 +429,7 @@ class HeidenhainReader {
     if (has(b, 'H')) {
       const IsoWord& h = b.words.at('H');
       angle = h.incremental ? from + h.value * kDegree : h.value * kDegree;
-      if (h.incremental) turns = std::max(1, static_cast<int>(std::ceil(std::abs(h.value) / 360.0 - 1e-9)));
+      if (h.incremental) turns = tnc_.turns_of(h.value);
     }
     const double radius_m = has(b, 'R') ? (b.words.at('R').incremental ? distance_m : 0.0) + length_m(b, 'R') : distance_m;
     target_m[u] = tnc_.pole_m[u] + radius_m * std::cos(angle);

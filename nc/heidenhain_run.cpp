@@ -236,6 +236,13 @@ void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::
   direction = clockwise ? std::array<double, 2>{rv / r, -ru / r} : std::array<double, 2>{-rv / r, ru / r};
 }
 
+int HeidenhainRun::turns_of(double angle_deg) const {
+  constexpr double kMostTurns = 1e5;
+  if (!(std::abs(angle_deg) <= 360.0 * kMostTurns))
+    run_.fail(fmt::format("the polar angle is {:g} degrees; at most {:.0f} are allowed", angle_deg, 360.0 * kMostTurns));
+  return std::max(1, static_cast<int>(std::ceil(std::abs(angle_deg) / 360.0 - 1e-9)));
+}
+
 void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
   if (!direction) run_.fail("the tangential arc has no motion before it");
   const auto [u, v] = plane_axes(run_.normal);

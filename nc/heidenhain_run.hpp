@@ -69,6 +69,8 @@ class HeidenhainRun {
   /// Moves; `rapid` is FMAX.
   void line_to(const std::array<double, 3>& target_m, bool rapid);
   void circle_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise, int turns);
+  /// Turns of a helix through that incremental polar angle, the last one begun. @throws InputError  for more than 100000
+  [[nodiscard]] int turns_of(double angle_deg) const;
   /// An arc that leaves tangentially.
   void tangent_arc_to(const std::array<double, 3>& target_m);
 

@@ -24,7 +24,7 @@ int number_of(NcCode system) {
 }
 
 bool is_drilling(std::optional<NcCode> motion) {
-  return motion && *motion >= 730 && *motion != 800;
+  return motion && is_canned_cycle(*motion);
 }
 
 class IsoReader {
@@ -84,6 +84,13 @@ class IsoReader {
         language && (*language != 2910 || run_.settings().control != NcControl::kSiemens))
       run_.fail(fmt::format("{}: Siemens programs are in ISO code (G291) as a whole or not at all here",
                             nc_word_name('G', *language)));
+    for (const NcCode cancel : {500, 501}) {  // alone they end scaling and mirroring, which do not begin here
+      if (contains(g, cancel) && words.has_any("SXYZIJKPR"))
+        run_.fail(
+            fmt::format("{}: with other words in its block it does more than end scaling or mirroring, which is not "
+                        "followed here; write it in a block without S, X, Y, Z, I, J, K, P and R",
+                        nc_word_name('G', cancel)));
+    }
     if (contains(g, 200)) run_.unit_m = run_.feed_unit_m = kInch_m;
     if (contains(g, 210)) run_.unit_m = run_.feed_unit_m = kMillimetre_m;
     set_feed(g, words);
@@ -97,7 +104,7 @@ class IsoReader {
     if (motion_.feed_mode == NcFeedMode::InverseTime) motion_.feed = 0.0;  // an F holds for its own block
     words.reject_unused();
     NcStep& step = run_.step();
-    step.motion_word = of_group(g, "motion").has_value();
+    step.motion_word = of_group(g, "motion").has_value() || contains(g, 800);
     step.unit_word = contains(g, 200) || contains(g, 210);
     step.system = of_group(g, "coordinate system");
     if (step.system && run_.settings().control == NcControl::kSiemens) step.resets = {true, true, true};
@@ -272,6 +279,8 @@ class IsoReader {
     if (named) {
       if (!is_drilling(named) || !is_drilling(modal)) drilling_ = {};
       modal = named;
+    } else if (contains(g, 800)) {
+      modal = 800;
     }
     const bool arc = modal == 20 || modal == 30, probe = modal && *modal >= 382 && *modal <= 385;
     if (!words.has_any("XYZ") && !(arc && (named || words.has_any("IJKR"))) && !(named && is_drilling(modal))) {

@@ -306,7 +306,7 @@ class KlartextReader {
     step.named[u] = step.named[v] = true;
     step.absolute = step.absolute && !p.ipa && !p.ipr;
     if (p.ipa) {
-      turns = std::max(1, static_cast<int>(std::ceil(std::abs(*p.ipa) / 360.0 - 1e-9)));
+      turns = tnc_.turns_of(*p.ipa);
       if (!clockwise) clockwise = *p.ipa < 0.0;
     }
     return target_m;

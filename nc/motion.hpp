@@ -38,9 +38,9 @@ class NcMotion {
   void rapid_to(const std::array<double, 3>& target_m);
   /// A straight line at the feed. @throws InputError  without a feed, or per revolution of a spindle at rest
   void feed_to(const std::array<double, 3>& target_m);
-  /// An arc at the feed (see nc_arc.hpp). @throws InputError  as feed_to, and for an impossible arc
+  /// An arc at the feed (see nc/arc.hpp). @throws InputError  as feed_to, and for an impossible arc
   void arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, int normal, bool clockwise,
-              int turns);
+              int turns, double rounding_m);
   void wait(double duration_s);
 
   /// How far corners may be cut from here on: < 0 as far as speed asks for (G64), 0 not at all (G61), else the tolerance (G64 P).

@@ -456,6 +456,13 @@ class SiemensReader {
       fail(*b.line, b.words.at(name)->column, fmt::format("{}: the value must be zero or above", b.words.at(name)->text));
     return x;
   }
+  int count(const Block& b, const char* name) {
+    const double x = number(b, name);
+    if (!(x >= 0.0 && x <= 1e5 && x == std::floor(x)))
+      fail(*b.line, b.words.at(name)->column,
+           fmt::format("{}: the value must be a whole number from 0 to 100000", b.words.at(name)->text));
+    return static_cast<int>(x);
+  }
   static bool contains(const std::vector<int>& codes, int code) {
     return std::find(codes.begin(), codes.end(), code) != codes.end();
   }
@@ -704,7 +711,7 @@ class SiemensReader {
     const bool clockwise = run_.motion_word == 20;
     const auto [u, v] = plane_axes(run_.normal);
     const std::array<double, 3> target_m = target(b);
-    const int turns = has(b, "TURN") ? 1 + static_cast<int>(not_negative(b, "TURN")) : 1;
+    const int turns = has(b, "TURN") ? 1 + count(b, "TURN") : 1;
     std::array<double, 3> centre_m = run_.motion.position_m;
     if (has(b, "CR")) {
       centre_m = run_.centre_of(target_m, number(b, "CR") * run_.unit_m, clockwise);

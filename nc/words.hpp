@@ -19,6 +19,9 @@ using NcCode = int;
 /// The code of that group of G words (such as "motion") among `codes`.
 [[nodiscard]] std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group);
 
+/// G73, G81 to G89.
+[[nodiscard]] bool is_canned_cycle(NcCode g);
+
 [[nodiscard]] bool contains(const std::vector<NcCode>& codes, NcCode code);
 
 /// The words of a block, and which of them have been used. The block must outlive it.
@@ -41,7 +44,7 @@ class NcWords {
   int take_count(char letter);
   /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E. So are M codes that
   /// are not known here: unknown() has them.
-  /// @throws InputError  for a G code that is not known here, with a hint, and for two of one group
+  /// @throws InputError  for a G code that is not known here, with a hint, for two of one group, and for G80 beside a canned cycle
   std::vector<NcCode> take_codes(char letter, const std::set<std::string>& ignored);
   [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
   /// @throws InputError  for the first word that nobody has used
