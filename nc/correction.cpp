@@ -9,12 +9,11 @@
 
 #include "base/characters.hpp"
 #include "nc/places.hpp"
+#include "nc/units.hpp"
 #include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kMillimetre_m = 1e-3;
 
 /// Lines of a text with their ends.
 std::vector<std::string> lines_of(const std::string& bytes) {

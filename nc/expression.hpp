@@ -2,13 +2,11 @@
 // Expressions of NC programs: LinuxCNC's [#1 + 2], Siemens' R1+2*SIN(30), Heidenhain's Q1 = Q2 * 2.
 
 #include <functional>
-#include <numbers>
 #include <string>
 
-namespace driftwright {
+#include "nc/units.hpp"
 
-/// One degree [rad].
-inline constexpr double kDegree = std::numbers::pi / 180.0;
+namespace driftwright {
 
 /// A number of a program, and whether it is known before the program runs (not what a probe finds, or an offset of the machine).
 struct NcValue {

@@ -11,11 +11,10 @@
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
 
 std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector<std::string>& lines) {
   std::vector<HeidenhainLine> blocks;

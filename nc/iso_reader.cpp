@@ -11,12 +11,11 @@
 #include "nc/drilling.hpp"
 #include "nc/iso_origin.hpp"
 #include "nc/iso_source.hpp"
+#include "nc/units.hpp"
 #include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kMillimetre_m = 1e-3;
 
 /// The work offset's number P: 1 for G54 ... 9 for G59.3.
 int number_of(NcCode system) {

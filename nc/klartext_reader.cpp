@@ -10,11 +10,10 @@
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
 
 /// Upper case but for texts in quotation marks, without block number and comment, blanks one by one. @param number  whether there was one
 std::string plain(const std::string& line, bool& deletable) {

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "nc/units.hpp"
+
 namespace driftwright {
 namespace {
 
-constexpr double kMillimetre_m = 1e-3;
 constexpr const char* kLetters = "XYZ";
 
 /// "0.0125", "-3", "10": no trailing zeros, no exponent.

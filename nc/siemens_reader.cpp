@@ -11,11 +11,10 @@
 #include "nc/expression.hpp"
 #include "nc/siemens_lines.hpp"
 #include "nc/tapping.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kMillimetre_m = 1e-3;
 
 const std::set<std::string>& keywords_without_effect() {
   static const std::set<std::string> kWords = {
