@@ -54,7 +54,7 @@ std::string in_udunits(const std::string& record_unit) {
 }
 
 std::string record_unit(const std::string& written_unit) {
-  (void)unit_factor(written_unit, written_unit);  // is it a unit at all?
+  (void)unit_factor(written_unit, written_unit);  // throws if it is not a unit
   if (has_offset(written_unit)) return "degC";
   if (written_unit == "%" || written_unit == "percent") return "percent";
   if (written_unit == "count" || written_unit == "counts") return "count";

@@ -18,7 +18,7 @@ namespace driftwright {
 namespace {
 
 constexpr std::size_t kMostUnderHeader = 5;         // lines of units and the like between header and rows
-constexpr double kHour_s = 3600.0, kAnHour = 0.01;  // a step of an hour and a row, as clocks are set; so far off at most
+constexpr double kHour_s = 3600.0, kAnHour = 0.01;  // a jump of one hour plus a row means a clock change; tolerance
 
 /// The rows of a file, read one after another.
 class Rows {
@@ -31,7 +31,7 @@ class Rows {
     }
     read_.record.source = path;
     for (const MappedChannel& c :
-         map.channels) {  // all units are linear; converting each number for itself takes longer than reading it
+         map.channels) {  // all units are linear; converting each number separately takes longer than reading it
       MappedChannel plain = c;
       plain.magnitude = false;
       zero_.push_back(plain.value(0.0));
@@ -88,7 +88,7 @@ class Rows {
   void note(std::string sentence) { read_.notes.push_back(std::move(sentence)); }
 
  private:
-  /// @throws InputError  for a time that does not follow the one before
+  /// @throws InputError  for a time that does not increase
   void must_follow(const std::vector<Cell>& cells, int line, double time_s) {
     const std::vector<double>& t = read_.record.time_s;
     const double step_s = time_s - t.back(), usual_s = t.size() > 1 ? t[1] - t[0] : std::abs(step_s);
@@ -118,14 +118,14 @@ class Rows {
   const ColumnMap& map_;
   RowClock clock_;
   std::vector<std::size_t> channel_;
-  std::vector<double> zero_, slope_;  // of each channel: what 0 is in its unit, and what 1 adds
+  std::vector<double> zero_, slope_;  // of each channel: value of 0 in its unit, and increment per 1
   int last_line_ = 0;
   std::vector<int> left_out_;               // lines of rows without a reading
   std::size_t n_left_out_since_first_ = 0;  // after the first row of the record
   ReadRecord read_;
 };
 
-/// What was left unread of the columns, once for the file.
+/// Notes which columns were not read, once per file.
 void note_ignored(const std::string& path, const ColumnMap& map, const LoggerHeader& header, Rows& rows) {
   std::vector<bool> is_used(header.names.size());
   for (const ColumnPlace& p : places_of(map)) {

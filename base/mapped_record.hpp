@@ -1,5 +1,5 @@
 #pragma once
-// Records from files of loggers, by a map of their columns.
+// Reads records from files of loggers, by a map of their columns.
 
 #include <optional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace driftwright {
 
-/// A record and what is worth knowing of how it was read.
+/// A record, and remarks on how it was read.
 struct ReadRecord {
   Record record;
   std::vector<std::string>

@@ -47,7 +47,7 @@ ArcPath arc_path(const std::array<double, 3>& start, const std::array<double, 3>
   }
   const double sense = clockwise ? -1.0 : 1.0;
   const double from = std::atan2(start[v] - centre[v], start[u] - centre[u]);
-  double sweep = 2.0 * kPi;  // counted positive in the sense of the arc
+  double sweep = 2.0 * kPi;  // positive in the direction of the arc
   if (std::hypot(end[u] - start[u], end[v] - start[v]) > kSamePoint_m) {
     sweep = sense * (std::atan2(end[v] - centre[v], end[u] - centre[u]) - from);
     if (sweep <= kSameAngle) sweep += 2.0 * kPi;
@@ -91,7 +91,7 @@ std::array<double, 3> arc_centre(const std::array<double, 3>& start, const std::
                     1e3 * radius_abs_m, 2e3 * half_chord_m, 1e3 * (half_chord_m - allowed_m)));
   }
   const double height_m = std::sqrt(std::max(0.0, radius_abs_m * radius_abs_m - half_chord_m * half_chord_m));
-  // Left of the chord lies the centre of a short counterclockwise arc and of a long clockwise one.
+  // The centre of a short counterclockwise arc and of a long clockwise one is to the left of the chord.
   const double left = clockwise == (radius_m < 0.0) ? height_m : -height_m;
   std::array<double, 3> centre = start;
   centre[u] = start[u] + 0.5 * du - left * dv / (2.0 * half_chord_m);

@@ -59,8 +59,8 @@ std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector
 struct IsoWord {
   char letter = ' ';
   double value = 0.0;
-  bool incremental = false;  ///< behind G91
-  bool computed = false;     ///< of a Q parameter
+  bool incremental = false;  ///< after G91
+  bool computed = false;     ///< contains a Q parameter
   int number = 0;            ///< of Q200=, P01
   std::string text = {};
 };
@@ -76,7 +76,7 @@ class HeidenhainReader {
       run_.count(line.where);
       run_.begin(line.where, line.deletable);
       if (run_.motion_word && *run_.motion_word > 30)
-        run_.step().before.motion = 20;  // as after an arc: a line of ours wants a word behind it
+        run_.step().before.motion = 20;  // as after an arc: an inserted line requires a motion word in the next block
       const bool ends = line.text[0] == '%'   ? percent(line)
                         : line.text[0] == 'D' ? function(line)
                         : line.text[0] == 'Q' ? formula(line)
@@ -487,7 +487,7 @@ class HeidenhainReader {
     } else {
       fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
     }
-    run_.motion_word = word;  // it goes on
+    run_.motion_word = word;  // it stays in force
     if (code >= 10) run_.step().plain = false;
   }
 

@@ -49,7 +49,7 @@ void NcRun::end() {
     if (step.kind == NcStepKind::kMachine || ((step.deletable || !step.certain) && step.named[axis])) {
       known_[axis] = false;
     } else if (step.named[axis] && step.absolute && !(step.kind == NcStepKind::kDrilling && axis == normal)) {
-      known_[axis] = true;  // the level at the end of a drilling series is that of its start or R: no news
+      known_[axis] = true;  // a drilling series ends at its start level or R, so it changes nothing here
     }
   }
 }

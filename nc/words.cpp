@@ -9,7 +9,7 @@
 namespace driftwright {
 namespace {
 
-const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may name one
+const std::map<NcCode, const char*>& g_groups() {  // a block may contain one word of each group
   static const std::map<NcCode, const char*> groups = [] {
     std::map<NcCode, const char*> g;
     const auto add = [&](const char* group, std::initializer_list<NcCode> codes) {
