@@ -100,7 +100,7 @@ void validate(const RecordOptions& options) {
     if (scenario.study)
       throw InputError("--target: it is for a scenario without `study`, which would name the target itself");
     scenario.study.emplace().target = options.target;
-    scenario.study->count_from_start = scenario.machine.has_value();  // a model knows drift since the start
+    scenario.study->count_from_start = scenario.machine.has_value();  // a model predicts drift since the start
   }
   if (on_records && !scenario.study)
     throw InputError(fmt::format(

@@ -16,7 +16,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kLongestAnswer_s = 2.0;
-// Of an observation before the agent's own time: no more than clocks of its adapters differ.
+// Most that an observation's time may be after the agent's own time; the clocks of its adapters differ by less.
 constexpr double kClockAhead_s = 60.0;
 constexpr int kProbeTries = 3;
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
@@ -100,7 +100,7 @@ double in_milliseconds(double time_s) {
 void wait_for(double seconds) {
   const timespec time{.tv_sec = static_cast<time_t>(seconds),
                       .tv_nsec = static_cast<long>(1e9 * (seconds - std::floor(seconds)))};
-  (void)nanosleep(&time, nullptr);  // a signal ends it
+  (void)nanosleep(&time, nullptr);  // a signal ends the wait
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ void SampleRows::ask() {
     const double most_s = std::max(every_s_, kLongestAnswer_s);
     if (!instance_) begin(agent_.current(most_s));
     using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + std::chrono::duration<double>(most_s);  // the rest at the next question
+    const auto until = Clock::now() + std::chrono::duration<double>(most_s);  // the rest follows with the next request
     for (int answers = 0; answers < kMostAnswers && Clock::now() < until; ++answers) {
       const MtconnectStreams streams = agent_.sample(next_, most_s);
       if (!streams.instance.empty() && streams.instance != *instance_) {
@@ -215,7 +215,8 @@ void SampleRows::begin(const MtconnectStreams& now) {
   rows_.push_back(values_.row(last_s_));
 }
 
-/// Observations of one time make one row, a millisecond after the last one if they come late; those of channels that nobody follows make none.
+/// Observations of one time make one row. A late row gets the last time plus a millisecond; channels that are not
+/// followed make none.
 void SampleRows::take(const MtconnectStreams& streams) {
   std::vector<Observation> list;
   for (const Observation& o : streams.observations) {
@@ -227,7 +228,7 @@ void SampleRows::take(const MtconnectStreams& streams) {
     if (streams.created_s > 0.0 && o.time_s > streams.created_s + kClockAhead_s) o.time_s = streams.created_s;
   }
   if (streams.created_s > 0.0 &&
-      streams.created_s < last_s_ - kClockAhead_s) {  // its clock was set: rows go on in front of all that is told by it
+      streams.created_s < last_s_ - kClockAhead_s) {  // the agent's clock was set back: rows continue before its new times
     last_s_ = streams.created_s;
     for (const Observation& o : list) last_s_ = std::min(last_s_, o.time_s);
     last_s_ -= 1e-3;

@@ -1,5 +1,6 @@
 #pragma once
-// Rows of an MTConnect agent: what it tells now, asked so often, or all that it has observed, row by row of its own time.
+// Rows from an MTConnect agent: its current values, read at an interval, or all of its observations, with the agent's own
+// times.
 
 #include <deque>
 #include <functional>
@@ -11,7 +12,7 @@
 
 namespace driftwright::follow {
 
-using Say = std::function<void(const std::string&)>;  ///< a sentence to whoever runs it
+using Say = std::function<void(const std::string&)>;  ///< prints a sentence for the user
 
 /// In which units an agent's numbers come: by its probe, which is read once, and again where the agent has been started anew.
 class ItemUnits {
@@ -43,10 +44,11 @@ class CurrentRows final : public RowSource {
   bool has_header_ = false, has_answered_ = false, is_away_ = false;
 };
 
-/// `/sample?from=`: a row at the time of each observation of a channel, and one at the agent's present time each time that it is asked. No observation
-/// is lost between two questions: the agent keeps them, and says where the next question goes on. What came while it was away comes then. Where it
-/// has forgotten some (its buffer is too short for that), or has been started anew (another instanceId), that is said, and what it tells now is taken.
-/// An observation that comes behind a row of a later time has a row right behind that one.
+/// Rows of `/sample?from=`: one at the time of each observation of a channel, and one at the agent's present time for
+/// each request. No observation is lost between two requests: the agent buffers them and says where the next request
+/// continues, also after the agent was unreachable. If the agent no longer has some of them (its buffer is too short), or
+/// was restarted (another instanceId), a message says so and the current values are taken instead. An observation that
+/// arrives after a row of a later time gets a row directly after that one.
 class SampleRows final : public RowSource {
  public:
   SampleRows(const std::string& url, HeardValues values, double every_s, Say say);

@@ -56,7 +56,7 @@ double time_of(xmlNode* element, const char* name) {
   return std::chrono::duration<double>(since_1970).count();
 }
 
-/// Elements below one another, in their order.
+/// Collects the elements and their children, in document order.
 void gather(xmlNode* first, MtconnectStreams& found, std::string& error) {
   for (xmlNode* node = first; node; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
@@ -82,7 +82,7 @@ void gather(xmlNode* first, MtconnectStreams& found, std::string& error) {
       found.is_out_of_range = found.is_out_of_range || attribute(node, "errorCode") == "OUT_OF_RANGE";
       if (error.empty()) error = content(node);
     }
-    if (name_of(node) == "OutOfRange") found.is_out_of_range = true;  // as version 2.0 and later write it
+    if (name_of(node) == "OutOfRange") found.is_out_of_range = true;  // as in version 2.0 and later
     gather(node->children, found, error);
   }
 }
@@ -200,7 +200,7 @@ MtconnectAgent::Answer MtconnectAgent::ask(const std::string& request, double mo
   curl_easy_setopt(curl, CURLOPT_REDIR_PROTOCOLS_STR, url_.starts_with("https") ? "https" : "http,https");
   curl_easy_setopt(curl, CURLOPT_HTTPHEADER, connection_->headers);
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // an agent says what is wrong in the answer
+  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // the agent explains an error in its answer
   curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, std::max(100L, static_cast<long>(1e3 * most_s)));
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, connection_->error);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, &append);

@@ -1,6 +1,6 @@
 #pragma once
-// What an MTConnect agent tells, by HTTP: the last observation of each data item, or all from one of them on (MTConnect Standard, part 1, "Current
-// Request", "Sample Request").
+// Reads an MTConnect agent by HTTP: the last observation of each data item, or all observations from a number on
+// (MTConnect Standard, part 1, "Current Request", "Sample Request").
 
 #include <cstdint>
 #include <memory>
@@ -21,11 +21,10 @@ struct Observation {
 
 /// A document of MTConnectStreams.
 struct MtconnectStreams {
-  std::string instance;              ///< changes where the agent is started anew
+  std::string instance;              ///< changes when the agent is restarted
   double created_s = 0.0;            ///< since 1970, by the agent's clock
-  std::uint64_t next = 0, last = 0;  ///< number that the next question goes on from; that of the last observation
-  bool is_out_of_range =
-      false;  ///< there is no observation of the number that was asked for; nothing else is told but `instance`
+  std::uint64_t next = 0, last = 0;  ///< number where the next request continues; number of the last observation
+  bool is_out_of_range = false;      ///< the requested observation does not exist; only `instance` is set then
   std::vector<Observation> observations;
 };
 
@@ -42,13 +41,13 @@ struct MtconnectProbe {
 class MtconnectAgent {
  public:
   /// @param url  of the agent or of one of its devices: "http://10.0.0.7:5000", ".../mill"
-  /// @throws InputError  for an address that is no http
+  /// @throws InputError  for an address that is not http
   explicit MtconnectAgent(const std::string& url);
   ~MtconnectAgent();
   MtconnectAgent(const MtconnectAgent&) = delete;
   MtconnectAgent& operator=(const MtconnectAgent&) = delete;
 
-  /// What it tells now. @throws RangeError  where it does not answer within `most_s`, or not with MTConnectStreams
+  /// The current values. @throws RangeError  if it does not answer within `most_s`, or not with MTConnectStreams
   [[nodiscard]] MtconnectStreams current(double most_s);
   /// Its data items. @throws RangeError  where it does not answer within `most_s`, or is busy (HTTP 503)
   [[nodiscard]] MtconnectProbe probe(double most_s);

@@ -1,4 +1,5 @@
-// Rows of MTConnect agents whose clocks are set or whose answers do not go on. The agent is a server whose answers the test writes.
+// Rows of MTConnect agents whose clocks are set or whose answers do not go on. The agent is a server whose answers the
+// test writes.
 
 #include "follow/agent_rows.hpp"
 
@@ -25,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-/// Seconds behind noon of 2026-11-23, as agents and as rows write them.
+/// Seconds after noon of 2026-11-23, as agents and rows write them.
 std::string stamp(int seconds) {
   return fmt::format("2026-11-23T{:02d}:{:02d}:{:02d}Z", 12 + seconds / 3600, seconds / 60 % 60, seconds % 60);
 }
@@ -93,7 +94,7 @@ HeardValues speed() {
   return {{{"speed_rpm", "speed"}}, std::numeric_limits<double>::infinity()};
 }
 
-/// Rows behind the header, as seconds behind noon and the speed, until there are so many or the time is over.
+/// Rows after the header, as seconds after noon and the speed, until there are enough or the time is over.
 std::vector<std::pair<double, double>> rows(RowSource& source, std::size_t n, std::chrono::milliseconds within = 10s) {
   std::vector<std::pair<double, double>> list;
   std::string line;

@@ -1,8 +1,8 @@
 // Files as loggers write them, read by a map of their columns. The samples in tests/data/loggers mimic:
-//   keysight_34972a    the USB files of a Keysight 34972A (User's Guide, "Mass Memory Subsystem"): a fraction behind a colon, 9.9E+37 for overload
+//   keysight_34972a    USB files of a Keysight 34972A (User's Guide): a fraction after a colon, 9.9E+37 for overload
 //   benchlink_utf16    BenchLink Data Logger 3: UTF-16, lines before the header, an alarm column beside each channel
 //   hioki_lr8431       a HIOKI LR8431 (manual, appendix "Text File (CSV) Internal Format"): everything quoted, a table of channels in front
-//   graphtec_gl840     a Graphtec GL840: units under the header, milliseconds in a column of their own, BURNOUT, blanks behind the sign
+//   graphtec_gl840     a Graphtec GL840: units under the header, a column of milliseconds, BURNOUT, blanks after the sign
 //   labview            NI LabVIEW's .lvm ("Specification for the LabVIEW Measurement File"): tabs, decimal commas, two header blocks, comments
 //   german_latin1      a spreadsheet's export in Germany: Latin-1, semicolons, decimal commas, the night in which clocks are set back
 //   simatic_data_log   a data log of a SIMATIC S7-1200: date and time in two columns, //END before rows of an earlier log
@@ -137,7 +137,8 @@ channels:
   expect_values(read.record, "tip_z_um", {12.5, -25.0, 37.5});
 }
 
-// On 27 October 2024 clocks in Germany were set back from 3:00 to 2:00: 2:00 follows 2:59, and without the zone it would go back.
+// On 27 October 2024 clocks in Germany were set back from 3:00 to 2:00: 2:00 follows 2:59, and without the zone it would
+// go back.
 TEST(MappedRecord, GermanSpreadsheetOverAClockChange) {
   const std::string yaml = R"yaml(
 separator: ";"

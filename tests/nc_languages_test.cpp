@@ -1,4 +1,5 @@
-// Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes by their line.
+// Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes
+// by their line.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -428,7 +429,8 @@ TEST(NcLanguages, KeepUnknownMWordsAndSaySoOnce) {
   }
 }
 
-// --- corrections in each control's own way ----------------------------------------------------------------------------------------
+// --- corrections in each control's own way
+// ----------------------------------------------------------------------------------------
 
 std::size_t on_line(const NcProgram& program, int line) {
   for (std::size_t i = 0; i < program.steps.size(); ++i) {
@@ -506,7 +508,7 @@ TEST(CorrectionsOfKlartext, AreIncrementsOfTheDatumShiftInNumberedBlocks) {
   EXPECT_NEAR(again.duration_s(), program.duration_s() + std::hypot(0.003, 0.0125) / (100.0 / 60.0),
               1e-4);  // the step in feed, at F100
   EXPECT_NEAR(again.steps.back().end_m[0], program.steps.back().end_m[0] - 8e-6,
-              1e-12);  // it stands where the correction has put it
+              1e-12);  // it is where the correction has put it
 }
 
 TEST(CorrectionsOfHeidenhain, AreAbsoluteWhereThatIsAsked) {
@@ -528,7 +530,7 @@ TEST(CorrectionsOfHeidenhain, RefuseAResetThatIsRunUnderSeveralCorrections) {
       ThrowsMessage<InputError>(AllOf(HasSubstr(":7:"), HasSubstr("run again"))));
 }
 
-// While a mirror is on, a modal cycle waits or a part is run more than once, no line of ours stands.
+// While a mirror is on, a modal cycle waits or a part is run more than once, no line of ours is inserted.
 TEST(NcLanguages, KnowWhereNoLineMayStand) {
   const NcProgram mirrored = read(din("N1 G00 G90 X+0 *\nN2 G28 X *\nN3 X+5 *\nN4 G28 *\nN5 X+0 *\nN6 Z+5 *\n"), kH);
   EXPECT_EQ(nc_entries(mirrored.steps, on_line(mirrored, 4))[0], NcEntry::kNever);

@@ -1,4 +1,4 @@
-// The paper's programme on the shipped scenario: what each predictor must reach, and what a user is told.
+// The paper's programme on the shipped scenario: what each predictor must reach, and what the user sees.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
