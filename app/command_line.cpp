@@ -192,7 +192,10 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
                    "time constant with which it fades afterwards [as the model was fitted, else 10 min]");
   CLI::Option* watch = verb->add_option(
       "--watch", options.watch,
-      "limits of a watch, which reports during the run that the machine is not as modelled; for an observer");
+      "limits of the watch, which reports during the run that the machine is not as modelled; for an observer [those in "
+      "its file, which validate makes]");
+  verb->add_flag("--no-watch", options.no_watch, "watch nothing: half of the time for each row of an observer")
+      ->excludes(watch);
   CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
                                             "compute such limits by simulation and write them; nothing is followed")
                                ->excludes(watch)
