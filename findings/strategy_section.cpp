@@ -30,6 +30,12 @@ bool has_failures(const StrategyMatrix& m) {
   return m.settings.fails_at.has_value();
 }
 
+/// What the model of the strategies with physics lost when it was made linear; null if nothing.
+const LinearisedModel* linearised_of(const StrategyMatrix& m) {
+  const std::optional<Physics>& physics = m.settings.strategies.physics;
+  return physics && physics->linearised ? &*physics->linearised : nullptr;
+}
+
 /// One column of the matrix, with the cases whose worst it shows.
 struct StrategyColumn {
   std::string title;
@@ -328,7 +334,10 @@ output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen
   return {.kind = chosen.safety == Safety::kUnsafe ? Kind::kBad
                   : chosen.safety == Safety::kSafe ? Kind::kGood
                                                    : Kind::kNeutral,
-          .title = fmt::format("chosen: {}, {}", chosen.fitted.name, word(chosen.safety)),
+          .title = fmt::format("chosen: {}, {}{}", chosen.fitted.name, word(chosen.safety),
+                               chosen.safety == Safety::kWithinLimits
+                                   ? fmt::format(" ({} of {} cells)", chosen.cells.n_kept(), chosen.cells.n())
+                                   : ""),
           .text = fmt::format("Chosen by the training runs alone: {}. On the runs it is judged by it leaves {:.3g} µm RMS, "
                               "{:.0f} % of the peak in its "
                               "worst run{}{}. Why: {}.",
@@ -381,6 +390,13 @@ Section conditions_of(const StrategyMatrix& m) {
   put("sensors_fail_at", m.settings.fails_at);
   put("reading_K", how.reading_K);
   put("drift_um", how.drift_um);
+  const LinearisedModel* linearised = linearised_of(m);
+  put("linearised_error_um", linearised ? Datum(linearised->error_um) : Datum());
+  if (linearised) {
+    Table laws{.key = "linearised_laws", .columns = {{.key = "law"}, {.key = "at_degC"}, {.key = "spread_K"}}};
+    for (const solver::LinearisedLaw& l : linearised->laws) laws.rows.push_back({l.name, l.at_K - 273.15, l.spread_K});
+    add(section, std::move(laws));
+  }
   std::vector<std::string> simulated;
   Table records{.key = "trained_on", .columns = {{.key = "file"}, {.key = "from_s"}, {.key = "until_s"}}};
   for (const ObservedRun& r : m.training) {
@@ -411,12 +427,19 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                           um_column("interval_95_um", "95 %"),
                           percent_column("covered_percent", "covered"),
                           {.key = "verdict", .title = "verdict"},
+                          {.key = "cells_kept", .title = "cells kept"},
+                          {.key = "cells", .title = "of cells"},
+                          {.key = "model", .title = linearised_of(m) ? "model" : ""},
                           {.key = "beaten_by", .title = "beaten by"},
                           um_column("largest_rms_um", ""),
                           {.key = "baseline"},
                           {.key = "worse_than_nothing"},
                           {.key = "why"},
                           {.key = "keeps_tolerance_in"},
+                          {.key = "cells_kept_intact"},
+                          {.key = "cells_intact"},
+                          {.key = "not_kept"},
+                          {.key = "n_not_kept"},
                           {.key = "sensors"},
                           {.key = "decided"}}};
   for (const JudgedStrategy* judged : strategies) {
@@ -433,12 +456,19 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                               s.fitted.interval_um,
                               covers ? Datum(100.0 * intact.mean_covered) : Datum(),
                               base ? Datum("baseline") : Datum(word(s.safety)),
+                              s.cells.n_kept(),
+                              s.cells.n(),
+                              s.fitted.model,
                               base ? Datum("") : Datum(s.beaten_by),
                               intact.rms_um,
                               base,
                               base ? Datum() : Datum(s.is_worse_than_nothing),
                               base ? Datum() : Datum(s.why),
                               base ? Datum() : Datum(s.limits),
+                              s.cells.n_kept_intact,
+                              s.cells.n_intact,
+                              s.cells.not_kept,
+                              s.cells.n_not_kept,
                               s.fitted.sensors,
                               s.fitted.reason};
     table.rows.push_back(std::move(row));
@@ -478,6 +508,12 @@ Section strategy_section(const StrategyMatrix& m) {
   std::vector<const JudgedStrategy*> all;
   for (const JudgedStrategy& s : m.strategies) all.push_back(&s);
   add(section, strategies_table(m, all));
+  if (const LinearisedModel* linearised = linearised_of(m))
+    add(section, output::Text{fmt::format(
+                     "Films or heat of this machine follow temperatures. Strategies with physics use a model that is {}, "
+                     "about the training runs. In these its drift differs from that of the nonlinear model by at most "
+                     "{:.2g} µm; the largest drift is {:.3g} µm.",
+                     words_of(*linearised), linearised->error_um, linearised->drift_um)});
   std::vector<std::string> harmful;
   for (const JudgedStrategy& s : m.strategies) {
     if (s.is_worse_than_nothing && !s.fitted.is_baseline) harmful.push_back(s.fitted.name);

@@ -171,6 +171,11 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
               observer = observer.with_sensors(selection.sensors).calibrated(without_others_readings(histories, s));
             }
+            if (p.linearised) {
+              f.model = words_of(*p.linearised);
+              f.reason += fmt::format("{}model {}, in the training runs at most {:.2g} um from the nonlinear one",
+                                      f.reason.empty() ? "" : "; ", f.model, p.linearised->error_um);
+            }
             f.target = s.target;
             f.from_start = true;
             f.predictor = std::make_shared<Observer>(std::move(observer));
@@ -369,6 +374,15 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
 }
 
 }  // namespace
+
+std::string words_of(const LinearisedModel& model) {
+  const auto [low, high] = std::minmax_element(model.laws.begin(), model.laws.end(),
+                                               [](const auto& a, const auto& b) { return a.at_K < b.at_K; });
+  const std::string coldest = fmt::format("{:.0f}", low->at_K - 273.15),
+                    hottest = fmt::format("{:.0f}", high->at_K - 273.15);
+  return coldest == hottest ? fmt::format("linearised at {} °C", coldest)
+                            : fmt::format("linearised at {} to {} °C", coldest, hottest);
+}
 
 FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
   const std::vector<Strategy> list = strategies(settings);
