@@ -98,17 +98,20 @@ Verdict verdict_of(const Placement& p) {
 }
 
 /// Where to mount them, which test to run, and with which commands.
-std::vector<std::string> steps_after_placement(const Placement& p) {
+std::vector<std::string> steps_after_placement(const Placement& p, const scenarios::Scenario& scenario) {
   const std::size_t n_new = p.names.size();
-  std::vector<std::string> steps = {
-      fmt::format("Mount {} at the points of the table below; placed.yaml is the scenario with {}, sensors.yaml holds {} "
-                  "alone.",
-                  n_words(n_new), n_new == 1 ? "it" : "them", n_new == 1 ? "its entry" : "the entries")};
+  std::vector<std::string> steps;
+  if (n_new > 0)
+    steps.push_back(
+        fmt::format("Mount {} at the points of the table below; placed.yaml is the scenario with {}, sensors.yaml "
+                    "holds {} alone.",
+                    n_words(n_new), n_new == 1 ? "it" : "them", n_new == 1 ? "its entry" : "the entries"));
   const int least = studies::least_test(
       p.tests, p.options.placed_for == PlacedFor::kObserver ? &Residual::observer_um : &Residual::regression_um);
   if (least >= 0) steps.push_back(fmt::format("Record a test: {}.", p.tests[static_cast<std::size_t>(least)].programme));
-  steps.emplace_back(
-      "Then judge strategies on it: `driftwright validate placed.yaml --train TEST.csv --test ANOTHER_DAY.csv`.");
+  const std::string target = scenario.study || p.channels.empty() ? "" : " --target " + p.channels.front();
+  steps.push_back(fmt::format(
+      "Then judge strategies on it: `driftwright validate placed.yaml --train TEST.csv --test ANOTHER_DAY.csv{}`.", target));
   return steps;
 }
 
@@ -310,7 +313,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(picture, curve_plot(p, &Residual::observer_um, "observer"));
   add(picture, curve_plot(p, &Residual::regression_um, "regression"));
   body.sections.push_back(std::move(picture));
-  body.sections.push_back(output::next_section(steps_after_placement(p)));
+  body.sections.push_back(output::next_section(steps_after_placement(p, scenario)));
 
   output::Section numbers{.title = "The numbers"};
   add(numbers, places_table(p, entries));

@@ -363,7 +363,7 @@ std::string choice_text(const StrategyMatrix& m, const JudgedStrategy& chosen) {
 }
 
 /// What to do with the chosen strategy. @param chosen  null: none
-std::vector<std::string> steps_with(const JudgedStrategy* chosen) {
+std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrategy* chosen) {
   if (!chosen)
     return {
         "Add training runs, at least two with different cyclograms (`--train`, or `train` under `validation`): parts of "
@@ -375,11 +375,15 @@ std::vector<std::string> steps_with(const JudgedStrategy* chosen) {
         "such runs to the training runs and run `driftwright validate` again.",
         "`driftwright plan-test SCENARIO` plans the test that is still missing, `driftwright place SCENARIO` the "
         "thermometers."};
-  return {fmt::format("{} holds it. `driftwright compensate SCENARIO --model {} --through injector` shows its correction on "
-                      "another record before it goes on the machine.",
-                      file, file),
-          fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
-                      chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
+  const bool is_of_records =
+      std::any_of(m.training.begin(), m.training.end(), [](const ObservedRun& r) { return !r.rows.file.empty(); });
+  return {
+      fmt::format("{} holds it. `driftwright compensate SCENARIO --model {} --through {}` shows its correction on another "
+                  "{} before it goes on the machine.",
+                  file, file, is_of_records ? "none --measured ANOTHER_DAY.csv" : "injector",
+                  is_of_records ? "record" : "cyclogram"),
+      fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
+                  chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
 }
 
 /// The matrix in few columns, for people.
@@ -599,7 +603,7 @@ Section strategy_section(const StrategyMatrix& m) {
   }
   add(section, intact_map(m));
   add_course(section, m);
-  section.sections.push_back(output::next_section(steps_with(chosen)));
+  section.sections.push_back(output::next_section(steps_with(m, chosen)));
   section.sections.push_back(strategy_numbers(m, chosen));
   section.sections.push_back(strategy_details(m));
   return section;
