@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "diagnosis/naming.hpp"
 #include "effects/effect.hpp"
@@ -71,24 +72,73 @@ std::string places_text(const std::string& where) {
   return names.empty() ? last : fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
+/// The kind of an effect; null for a key that is not in the catalogue.
+const effects::EffectKind* kind_called(const std::string& effect) {
+  const auto& kinds = effects::catalogue();
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.key == effect; });
+  return kind == kinds.end() ? nullptr : &*kind;
+}
+
+/// A share in per cent, with what it is a share of: "84 % of air in the reading".
+std::string share_words(const std::string& effect, double share) {
+  const std::string percent = fmt::format("{:.0f} %", 100.0 * share);
+  if (const effects::EffectKind* kind = kind_called(effect)) {
+    for (const auto& parameter : kind->parameters) {
+      if (parameter.name == "share" && parameter.meaning.starts_with("of "))
+        return fmt::format("{} {}", percent, parameter.meaning);
+    }
+  }
+  return "share " + percent;
+}
+
 /// A number as people say it: a factor as times, a share in per cent.
-std::string number_words(const diagnosis::Estimate& e) {
+std::string number_words(const std::string& effect, const diagnosis::Estimate& e) {
   if (e.unit == "1" && e.name == "factor") return fmt::format("{:.3g} times", e.value);
-  if (e.unit == "1" && e.name == "share") return fmt::format("share {:.0f} %", 100.0 * e.value);
+  if (e.unit == "1" && e.name == "share") return share_words(effect, e.value);
   return fmt::format("{} {:.3g}{}", e.name, e.value,
                      e.unit == "1" || e.unit.empty() ? "" : " " + output::shown_unit(e.unit));
 }
 
+/// What a cause does and when, with the numbers that these words contain.
+struct LawWords {
+  std::string text;
+  std::set<std::string> numbers;
+};
+
+/// Times in place of "from a time on" and "for a while".
+void say_times(const diagnosis::Cause& c, LawWords& law) {
+  const auto number = [&](const char* name) -> const diagnosis::Estimate* {
+    const auto p = std::find_if(c.parameters.begin(), c.parameters.end(), [&](const auto& e) { return e.name == name; });
+    return p == c.parameters.end() || p->unit != "min" ? nullptr : &*p;
+  };
+  const auto replace = [&](const std::string& words, const std::string& by) {
+    const std::size_t at = law.text.find(words);
+    if (at == std::string::npos) return false;
+    law.text.replace(at, words.size(), by);
+    return true;
+  };
+  const diagnosis::Estimate *time = number("time"), *begin = number("begin"), *length = number("length");
+  if (time && replace("from a time on", fmt::format("from {:.0f} min on", time->value))) law.numbers.insert("time");
+  if (begin && length &&
+      replace("for a while", fmt::format("from {:.0f} to {:.0f} min", begin->value, begin->value + length->value)))
+    law.numbers.insert({"begin", "length"});
+}
+
 /// The law of a cause. One that only says when ("from a time on", "in monday") gets the effect's title in front.
-std::string law_words(const diagnosis::Diagnosis& d, std::size_t cause) {
+LawWords law_words(const diagnosis::Diagnosis& d, std::size_t cause) {
   const diagnosis::Cause& c = d.causes[cause];
-  if (is_moved_number(d, cause)) return c.law.substr(0, c.law.rfind(", "));  // without its sigmas
-  const bool says_when_only = c.law.empty() || c.law.starts_with("from ") || c.law.starts_with("in ");
-  if (!says_when_only) return c.law;
-  const auto& kinds = effects::catalogue();
-  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.key == c.effect; });
-  const std::string title = kind == kinds.end() ? c.effect : kind->title;
-  return c.law.empty() ? title : fmt::format("{}, {}", title, c.law);
+  LawWords law{.text = c.law, .numbers = {"at_speed"}};  // the law states this speed
+  if (is_moved_number(d, cause)) {
+    law.text = c.law.substr(0, c.law.rfind(", "));  // without its sigmas
+    return law;
+  }
+  if (c.law.empty() || c.law.starts_with("from ") || c.law.starts_with("in ")) {
+    const effects::EffectKind* kind = kind_called(c.effect);
+    const std::string title = kind ? kind->title : c.effect;
+    law.text = c.law.empty() ? title : fmt::format("{}, {}", title, c.law);
+  }
+  say_times(c, law);
+  return law;
 }
 
 }  // namespace
@@ -123,17 +173,18 @@ std::string look_text(std::optional<StatedQuantity> quantity, const std::string&
 
 std::string cause_sentence(const diagnosis::Diagnosis& d, std::size_t cause) {
   const diagnosis::Cause& c = d.causes[cause];
+  const LawWords law = law_words(d, cause);
   std::vector<std::string> numbers;
   std::size_t n_left_out = 0;
   for (const diagnosis::Estimate& p : c.parameters) {
-    if (p.name == "at_speed") continue;  // the law already states it
+    if (law.numbers.contains(p.name)) continue;
     if (numbers.size() < kMostNumbers)
-      numbers.push_back(number_words(p));
+      numbers.push_back(number_words(c.effect, p));
     else
       ++n_left_out;
   }
   if (n_left_out > 0) numbers.push_back(counted(n_left_out, "more number", "more numbers"));
-  return fmt::format("{}: {}{}{}.", difference_text(quantity_of_cause(d, cause), c.where), law_words(d, cause),
+  return fmt::format("{}: {}{}{}.", difference_text(quantity_of_cause(d, cause), c.where), law.text,
                      numbers.empty() ? "" : "; ", fmt::join(numbers, ", "));
 }
 

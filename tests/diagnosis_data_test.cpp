@@ -241,6 +241,24 @@ TEST(Reports, SayFirstThatFewChannelsWereCompared) {
   EXPECT_THAT(answer.text, StartsWith("1 of 6 channels of the records is compared"));
 }
 
+TEST(CauseWords, SayTimesAndSharesInTheSentence) {
+  diagnosis::Diagnosis d;
+  d.search.findings.resize(2);
+  d.causes.resize(2);
+  d.causes[0].effect = "sensor_detached";
+  d.causes[0].where = "t_column";
+  d.causes[0].law = "from a time on, in tuesday";
+  d.causes[0].parameters = {{"share", "1", 0.844}, {"time", "min", 95.0}};
+  d.causes[1].effect = "heat_window";
+  d.causes[1].where = "drum";
+  d.causes[1].law = "heat for a while";
+  d.causes[1].parameters = {{"power", "W", 71.5}, {"begin", "min", 117.0}, {"length", "min", 65.0}};
+  EXPECT_EQ(cause_sentence(d, 0),
+            "The reading of thermometer t_column is wrong: sensor that comes off its body, from 95 min on, in tuesday; 84 % "
+            "of air in the reading.");
+  EXPECT_EQ(cause_sentence(d, 1), "The heat in drum is not what the scenario says: heat from 117 to 182 min; power 71.5 W.");
+}
+
 TEST(CauseWords, NameWhatToLookAtForEachQuantity) {
   using enum diagnosis::StatedQuantity;
   EXPECT_THAT(look_text(kHeat, "spindle"), AllOf(HasSubstr("spindle"), HasSubstr("lubrication")));
