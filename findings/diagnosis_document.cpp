@@ -112,12 +112,19 @@ Section all_statements(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// Causes that were found and are not in the written file, with the reason.
+/// Causes that were found and are not in the written file, one sentence a reason.
 void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason;  // in the order of the causes
   for (const diagnosis::Cause& c : d.causes) {
-    if (!c.is_written)
-      add(body, Text{fmt::format("{} at {} is not written into extended.yaml: {}.", c.effect, c.where, c.why_not_written)});
+    if (c.is_written) continue;
+    auto known =
+        std::find_if(by_reason.begin(), by_reason.end(), [&](const auto& r) { return r.first == c.why_not_written; });
+    if (known == by_reason.end()) known = by_reason.insert(by_reason.end(), {c.why_not_written, {}});
+    known->second.push_back(fmt::format("{} at {}", c.effect, c.where));
   }
+  for (const auto& [why, causes] : by_reason)
+    add(body, Text{fmt::format("{} {} not written into extended.yaml: {}.", fmt::join(causes, ", "),
+                               causes.size() == 1 ? "is" : "are", why)});
 }
 
 Section experiment_section(const diagnosis::Experiment& e) {
