@@ -560,12 +560,45 @@ std::string model_file_name(const std::string& strategy) {
 
 namespace {
 
+/// What is left with probings beside each correction; without rows where nothing was probed.
+Table probing_table(const StrategyMatrix& m) {
+  Table table{.key = "probing"};
+  const std::optional<Probing>& probing = m.settings.strategies.probing;
+  if (!probing) return table;
+  table.title = fmt::format("With a probing every {:.4g} min, noise {:.3g} µm", probing->every_s / 60.0, probing->noise_um);
+  table.caption =
+      "Sensors intact, rows of all judged runs. The residual is taken for a random process that fades; its deviation and "
+      "time constant are those of the parts of the training runs that were left out. 'no correction' is the last probing "
+      "alone.";
+  table.columns = {
+      {.key = "name", .title = "strategy"},
+      um_column("overall_rms_um", "RMS without", 2),
+      um_column("probed_rms_um", "RMS with", 2),
+      um_column("probed_worst_peak_um", "largest residual with"),
+      um_column("residual_deviation_um", "deviation", 2),
+      {.key = "residual_time_constant_min", .title = "time constant", .unit = "min", .digits = output::significant(3)}};
+  for (const JudgedStrategy& s : m.strategies) {
+    double squares = 0.0, n = 0.0, peak_um = 0.0;
+    for (const Case& c : s.cases) {
+      if (!c.failed.empty() || !c.probed) continue;
+      squares += c.probed->n * c.probed->rmse * c.probed->rmse;
+      n += c.probed->n;
+      peak_um = std::max(peak_um, c.probed->peak_abs);
+    }
+    if (n == 0.0) continue;
+    table.rows.push_back({s.fitted.name, overall_rms(s), std::sqrt(squares / n), peak_um, s.fitted.residual->deviation_um,
+                          s.fitted.residual->time_constant_s / 60.0});
+  }
+  return table;
+}
+
 Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) {
   Section section{.title = "The numbers"};
   if (chosen) add(section, output::Text{choice_text(m, *chosen)});
   if (const std::string axis = axis_text(m); !axis.empty()) add(section, output::Text{axis});
   if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
   add(section, short_table(m));
+  if (Table probing = probing_table(m); !probing.rows.empty()) add(section, std::move(probing));
   if (const LinearisedModel* linearised = linearised_of(m))
     add(section, output::Text{fmt::format(
                      "Films or heat of this machine follow temperatures. Strategies with physics use a model that is {}, "

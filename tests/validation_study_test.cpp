@@ -212,6 +212,28 @@ TEST_F(ValidationStudy, AModelGoesThroughInjectorAndSchedule) {
   }
 }
 
+// With a probing every half hour each correction leaves less, and the last probing alone much less than nothing.
+TEST(ValidationByDefault, SaysWhatProbingsLeave) {
+  const auto out = temporary_folder() / "probed";
+  const CommandOutcome run =
+      run_program("validate scenarios/lumped_spindle.yaml --probe '30 min' -o " + out.string() + " --force");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("With a probing every 30 min, noise 1 µm"));
+  const Json rows = Json::parse(read_text(out / "summary.json"))["validation"]["probing"];
+  ASSERT_GT(rows.size(), 10u);
+  for (const Json& row : rows) {
+    const double without = row["overall_rms_um"], with = row["probed_rms_um"];
+    EXPECT_LT(with, std::max(1.02 * without, 1.0)) << row;
+    if (row["name"] == "no correction") {
+      EXPECT_LT(with, 0.75 * without) << row;
+    }
+  }
+  const CommandOutcome wrong =
+      run_program("validate scenarios/lumped_spindle.yaml --probe 0min -o " + out.string() + " --force");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.output, HasSubstr("must be above 0"));
+}
+
 TEST_F(ValidationStudy, WhatCannotBeCorrectedIsRefused) {
   const auto outcome = [](const std::string& arguments) {
     return run_program("compensate " + arguments + " -o " + (fresh_folder("refused") / "o").string());

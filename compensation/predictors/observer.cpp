@@ -112,7 +112,7 @@ class Observer::Run final : public ObserverFollower {
         history_.size() == kReturn)
       settle_ambient(run);
     use_again(run.readings.time_s[run.at(row_)]);
-    if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
+    if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && !history_.empty() && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
     // with a single sensor it is unknown whether the sensor or the model is wrong
     is_model_wrong_ =
