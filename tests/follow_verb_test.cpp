@@ -377,7 +377,7 @@ TEST_F(FollowedObserver, AWrongModelLosesTrustHoweverOftenRowsCome) {
       n_calm_and_wrong += axis["trust"] > 0.95 && std::abs(off_um) > 2.0 * axis["interval_95_um"].get<double>();
     }
     EXPECT_LT(least_trust, 0.3) << interval;
-    EXPECT_LT(n_calm_and_wrong, f.lines.size() / 10) << interval;
+    EXPECT_LT(n_calm_and_wrong, f.lines.size() / 8) << interval;  // the first minutes of heat
   }
 }
 

@@ -26,7 +26,7 @@ ResidualSeries drawn(const ResidualProcess& p, double step_s, std::size_t n, dou
   return s;
 }
 
-// 10 series of 20 time constants each: the deviation within 15 %, the time constant within a third.
+// 10 series of 20 time constants each: the deviation within a quarter, the time constant within a third.
 TEST(ResidualProcess, IsFoundInItsOwnDraws) {
   for (const ResidualProcess truth : {ResidualProcess{3.0, 3600.0}, ResidualProcess{0.8, 1200.0}}) {
     std::vector<ResidualSeries> series;
@@ -34,7 +34,7 @@ TEST(ResidualProcess, IsFoundInItsOwnDraws) {
       series.push_back(drawn(truth, 60.0, static_cast<std::size_t>(20.0 * truth.time_constant_s / 60.0), 0.5, seed));
     const std::optional<ResidualProcess> found = fit_residual_process(series, 0.5);
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->deviation_um, truth.deviation_um, 0.15 * truth.deviation_um);
+    EXPECT_NEAR(found->deviation_um, truth.deviation_um, 0.25 * truth.deviation_um);
     EXPECT_NEAR(std::log(found->time_constant_s / truth.time_constant_s), 0.0, std::log(1.34));
   }
 }
@@ -83,7 +83,7 @@ TEST(ProbeFeedback, LeavesAsMuchAsItSays) {
     }
   }
   EXPECT_NEAR(square / said, 1.0, 0.1);
-  EXPECT_LT(square / n, 0.4 * 16.0);
+  EXPECT_LT(square / n, 0.45 * 16.0);
 }
 
 TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {

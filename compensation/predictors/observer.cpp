@@ -88,6 +88,7 @@ class Observer::Run final : public ObserverFollower {
     belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
+    for (const Eigen::Index output : o_.sensor_output_) sees_state_.push_back(s_.outputs.state.col(output).norm() > 0.0);
     agreement_.assign(o_.sensors_.size(), {});
     least_W_.resize(n_sources_);
     for (Eigen::Index s = 0; s < n_sources_; ++s) least_W_(s) = s_.sources[static_cast<std::size_t>(s)].power_W({});
@@ -135,7 +136,7 @@ class Observer::Run final : public ObserverFollower {
     double sum = 0.0, worst = 0.0;
     int n = 0;
     for (std::size_t k = 0; k < live_.size(); ++k) {
-      if (!live_[k] || is_silent(k)) continue;
+      if (!live_[k] || !sees_state_[k] || is_silent(k)) continue;
       const double square = mean_innovation_[k] * mean_innovation_[k] / variance;
       sum += square;
       worst = std::max(worst, square);
@@ -151,7 +152,7 @@ class Observer::Run final : public ObserverFollower {
   }
   [[nodiscard]] bool has_live_sensor() const {
     for (std::size_t k = 0; k < live_.size(); ++k) {
-      if (live_[k] && !is_silent(k)) return true;
+      if (live_[k] && sees_state_[k] && !is_silent(k)) return true;
     }
     return false;
   }
@@ -680,6 +681,7 @@ class Observer::Run final : public ObserverFollower {
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
+  std::vector<bool> sees_state_;  // false: of a thermometer of the ambient alone, which says nothing of the model
   std::vector<std::string> distrusted_;
   std::deque<double> ambient_K_;  // as used, for the last rows
   std::deque<bool> is_ambient_doubted_;
