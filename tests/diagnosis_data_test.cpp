@@ -202,11 +202,13 @@ TEST(Reports, OfStrategiesAreReadFromTheTop) {
   m.strategies = {strategy};
   m.choice = {.name = strategy.fitted.name, .why = "the smallest error"};
   output::Document document{.title = "mill"};
-  document.body.sections.push_back(strategy_section(m));
+  document.body.sections.push_back(strategy_section(m, {}, {}));
   expect_read_from_the_top(document);
   const std::string terminal = output::document_text(document);
-  EXPECT_THAT(terminal,
-              StartsWith("mill\n  Safe to use on the machine: ridge, all sensors: At worst it leaves 2.0 µm of nose"));
+  EXPECT_THAT(
+      terminal,
+      StartsWith(
+          "mill\n  Safe to use on the machine: ridge, all sensors: In the judged runs it leaves at most 2.0 µm of nose"));
   EXPECT_THAT(terminal, HasSubstr("--model models/ridge_all_sensors.json"));
 }
 
