@@ -84,7 +84,7 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
     const compensation::StrategyMatrix matrix =
         studies::validate_strategies(scenario, model, probing_of(options), progress.listener());
     write_strategies(matrix, scenario, folder, progress.listener());
-    document.body.sections.push_back(findings::strategy_section(matrix));
+    document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
     if (!note.empty())
       document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
   }
@@ -143,7 +143,7 @@ void validate(const RecordOptions& options) {
   write_strategies(matrix, scenario, folder, progress.listener());
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + ": strategies judged on records they were not fitted on"};
-  document.body.sections.push_back(findings::strategy_section(matrix));
+  document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
   document.body.sections.push_back({.blocks = {output::Notes{.key = "warnings", .sort = "warning", .lines = warnings}}});
   finish(document, folder, progress, options);
 }

@@ -197,13 +197,12 @@ std::string words_of_cut(const RecordPart& part, const ReadFile& file, const std
     at.push_back(fmt::format("{:.2f} h", hours(file, runs[r].first)));
     if (runs[r].history < runs[r].first) going_on.push_back(at.back());
   }
-  return fmt::format(
-      "{} is cut into {} runs where the drive starts anew after a rest, at {}{}", part.words, runs.size(),
-      fmt::join(at, ", "),
-      going_on.empty()
-          ? ""
-          : fmt::format("; the machine is not back in balance at {}: what follows goes on from what came before",
-                        fmt::join(going_on, ", ")));
+  return fmt::format("{} is cut into {} runs where the drive starts anew after a rest, at {}{}", part.words, runs.size(),
+                     fmt::join(at, ", "),
+                     going_on.empty()
+                         ? ""
+                         : fmt::format("; at {} the machine is still warm, so the later run continues the earlier one",
+                                       fmt::join(going_on, ", ")));
 }
 
 }  // namespace

@@ -29,13 +29,13 @@ struct Physics {
   std::optional<LinearisedModel> linearised = {};  ///< none: the machine's own laws are linear
 };
 
-/// Settings of all strategies.
 /// The corrected axis is probed again and again, and the correction takes up what is found (residual_process.hpp).
 struct Probing {
   double every_s = 3600.0;
   double noise_um = 1.0;  ///< of a probing, 1 sigma
 };
 
+/// Settings of all strategies.
 struct StrategySettings {
   std::string target;                   ///< channel in um
   std::vector<std::string> candidates;  ///< thermometers to choose from

@@ -213,7 +213,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format("{}never more than {:.1f} µm left of the drift; the most {}{}",
+    s.why = fmt::format("{}it leaves at most {:.1f} µm of the drift, {}{}",
                         worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
                         all.peak->after.peak_abs, where_of(m, *all.peak),
                         m.runs.size() > 2
