@@ -115,7 +115,7 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
         .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
     for (std::size_t k = 0; k < files.size(); ++k) {
       if (as_read[k].time_s == file.record.time_s && as_read[k].at(target).values == file.record.at(target).values)
-        throw InputError(fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once",
+        throw InputError(fmt::format("{} and {} contain the same run; one run can be trained on or judged by, once",
                                      files[k].path, file.path));
     }
     if (!scenario.study->count_from_start && part.is_whole()) {
