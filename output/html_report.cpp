@@ -123,7 +123,7 @@ std::string html(const Preformatted& text) {
 }
 
 std::string html(const FoldBegin& fold) {
-  return fmt::format("<details class=\"part\"><summary>{}</summary>\n", escaped(fold.title));
+  return fmt::format("<details class=\"part\"><summary>{}</summary>\n", prose(fold.title));
 }
 std::string html(const FoldEnd&) {
   return "</details>\n";
@@ -152,7 +152,7 @@ std::string html(const Table& table) {
   std::string out;
   const std::string& fold = table.title.empty() ? table.caption : table.title;
   const bool folds = table.folded && !fold.empty(), has_caption = !table.caption.empty() && !(folds && table.title.empty());
-  if (folds) out += fmt::format("<details><summary>{}</summary>\n", escaped(fold));
+  if (folds) out += fmt::format("<details><summary>{}</summary>\n", prose(fold));
   out += fmt::format("<div class=\"table{}\"><table>\n", n_columns > kWide ? " wide" : "");
   if (has_caption) out += fmt::format("<caption>{}</caption>\n", prose(table.caption));
   if (has_headers) out += "<thead><tr>";
