@@ -235,8 +235,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       "--watch", options.watch,
       "file of limits written by --calibrate-watch; `follow` raises an alarm if the machine no longer behaves like the "
       "model (observer only) [the limits in the model's file, which `validate` computes]");
-  verb->add_flag("--no-watch", options.no_watch, "raises no alarms; a row of an observer then takes half of the time")
-      ->excludes(watch);
+  verb->add_flag("--no-watch", options.no_watch, "raises no alarms; an observer is not watched")->excludes(watch);
   CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
                                             "file to write: limits for --watch, computed by simulation; no rows are read")
                                ->excludes(watch)
