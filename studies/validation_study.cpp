@@ -331,7 +331,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   listener.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
   compensation::StrategyMatrix matrix =
       compensation::judge_strategies(settings, std::move(records.train), std::move(judged));
-  matrix.findings = std::move(records.findings);
+  matrix.findings.insert(matrix.findings.begin(), records.findings.begin(), records.findings.end());
   return matrix;
 }
 

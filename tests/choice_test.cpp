@@ -165,10 +165,13 @@ TEST(Choice, IsAModelOfTheMachineWhereItIsAlike) {
   const DeployedPredictor blend = with_errors(kBlend, {1.0, 1.0, 1.0, 1.0});
   EXPECT_EQ(chosen_of({model_with_errors("model", {1.3, 1.4, 1.4, 1.4}), blend}), "model");
   EXPECT_EQ(chosen_of({model_with_errors("model", {1.6, 1.7, 1.6, 1.6}), blend}), kBlend);
-  // of two, the simpler one within a standard error of the better
-  EXPECT_EQ(chosen_of({model_with_errors("modes", {1.0, 1.3, 1.1, 1.1}), model_with_errors("observer", {1.1, 1.0, 1.2, 1.1}),
+  // of two that are alike the simpler one, which depends on fewer sensors
+  EXPECT_EQ(chosen_of({model_with_errors("modes", {1.3, 1.3, 1.3, 1.3}), model_with_errors("observer", {1.0, 1.0, 1.0, 1.0}),
                        blend}),
             "modes");
+  EXPECT_EQ(chosen_of({model_with_errors("modes", {1.6, 1.6, 1.6, 1.6}), model_with_errors("observer", {1.0, 1.0, 1.0, 1.0}),
+                       blend}),
+            "observer");
 }
 
 TEST(Choice, TakesTheSimplestWithinOneStandardErrorOfTheBest) {

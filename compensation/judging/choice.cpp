@@ -54,12 +54,11 @@ double left_out_um(const DeployedPredictor& strategy) {
 }
 
 Choice choose(std::span<const DeployedPredictor> strategies) {
-  const DeployedPredictor *best = nullptr, *mean = nullptr, *physics = nullptr;
+  const DeployedPredictor *best = nullptr, *mean = nullptr;
   for (const DeployedPredictor& d : strategies) {
     if (d.fold_errors.empty()) continue;
     if (!best || left_out_um(d) < left_out_um(*best)) best = &d;
     if (d.name == kBlend) mean = &d;
-    if (d.predictor && d.predictor->is_driven() && (!physics || left_out_um(d) < left_out_um(*physics))) physics = &d;
   }
   if (!best) return {};
   const auto is_alike = [&](const DeployedPredictor& d) { return left_out_um(d) <= kAlike * left_out_um(*best); };
@@ -71,12 +70,14 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
   const auto rest = [&](const DeployedPredictor& d) {
     return &d == best ? std::string("the least of all") : said(*best) + ", with too small a difference to distinguish them";
   };
-  if (physics && is_alike(*physics)) {
-    const DeployedPredictor& simplest = simplest_near(
-        strategies, *physics, [](const DeployedPredictor& d) { return d.predictor && d.predictor->is_driven(); });
-    return because(
-        simplest, rest(simplest) + "; it was preferred because a model of the machine also holds outside the training runs");
-  }
+  const auto model = std::find_if(strategies.begin(), strategies.end(), [&](const DeployedPredictor& d) {
+    return d.predictor && d.predictor->is_driven() && !d.fold_errors.empty() && is_alike(d);
+  });
+  if (model != strategies.end())
+    return because(*model,
+                   rest(*model) +
+                       "; it was preferred because a model of the machine also holds outside the training runs, and a "
+                       "simpler one depends on fewer sensors");
   if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return because(*mean, rest(*mean));
   const DeployedPredictor& simplest = simplest_near(strategies, *best, is_alike);
   return because(simplest, (&simplest == best ? "the least of all"

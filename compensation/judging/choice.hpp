@@ -25,12 +25,11 @@ struct Choice {
 };
 
 /// Chooses in this order:
-/// - a model of the machine, if the best one leaves at most kAlike times the smallest error of all, because its laws apply
-///   beyond the training data;
+/// - the simplest model of the machine that leaves at most kAlike times the smallest error of all, because its laws apply
+///   beyond the training data; a model without thermometers goes before an observer as good, because no sensor of it fails;
 /// - else the blend, unless another strategy leaves less than 1 / kAlike of the blend's error and the difference is
 ///   significant: two standard errors of the mean square, fold by fold;
-/// - else the simplest strategy whose mean square is within one standard error of the best one's. The choice among models
-///   also uses this rule.
+/// - else the simplest strategy whose mean square is within one standard error of the best one's.
 /// @param strategies  from the simplest to the most elaborate
 /// Source: the rule of one standard error: Breiman et al., Classification and Regression Trees (1984), 3.4.3; the mean of
 /// different predictions compared with the best of them: Stock & Watson, J. Forecasting 23 (2004) 405.

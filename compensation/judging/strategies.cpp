@@ -12,6 +12,7 @@
 #include "base/median.hpp"
 #include "base/parallel.hpp"
 #include "compensation/judging/folds.hpp"
+#include "compensation/judging/left_out.hpp"
 #include "compensation/predictors/blended_formula.hpp"
 #include "compensation/predictors/fitted_formulas.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
@@ -27,12 +28,6 @@ namespace driftwright::compensation {
 namespace {
 
 using namespace compensation;
-
-constexpr double kInterval = 0.95;
-constexpr std::size_t kMostRows = 500;  // of a left-out part that a residual's process is fitted to
-// Share of the drift of a left-out part. A prediction that leaves more is not valid there; applying only a quarter of it
-// would leave less.
-constexpr double kHolds = 0.5;
 
 /// A strategy before it is fitted.
 struct Strategy {
@@ -254,128 +249,11 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   return list;
 }
 
-/// The predictions of a strategy for each fold, fitted to the rest; empty if it cannot be fitted to one of the rests.
-using LeftOutPredictions = std::vector<std::vector<double>>;
-LeftOutPredictions left_out_predictions(const Strategy& strategy, const FoldedRuns& f) {
-  LeftOutPredictions predictions;
-  try {
-    for (std::size_t k = 0; k < f.folds.size(); ++k)
-      predictions.push_back(f.predicted_um(*strategy.fit(f.rest[k]).predictor, k));
-  } catch (const InputError&) {  // too little data remains
-    return {};
-  } catch (const SolveError&) {
-    return {};
-  }
-  return predictions;
-}
-
-/// Measured minus predicted of each run, or block of a single run, that was left out. Of long ones, rows at equal distances.
-std::vector<ResidualSeries> residuals_of(const LeftOutPredictions& predictions, const FoldedRuns& f) {
-  std::vector<ResidualSeries> all;
-  for (std::size_t k = 0; k < predictions.size(); ++k) {
-    if (f.folds[k].kind != "run" && f.folds[k].kind != "block") continue;
-    ResidualSeries series;
-    std::size_t at = 0;
-    for (std::size_t r = 0; r < f.runs.size(); ++r) {
-      for (std::size_t i = 0; i < f.folds[k].hidden[r].size(); ++i) {
-        if (!f.folds[k].hidden[r][i]) continue;
-        const double off_um = f.measured_um[k][at] - predictions[k][at];
-        ++at;
-        if (!std::isfinite(off_um)) continue;
-        series.time_s.push_back(f.runs[r].readings.time_s[i]);
-        series.off_um.push_back(off_um);
-      }
-    }
-    const std::size_t step = series.time_s.size() / kMostRows + 1;
-    ResidualSeries thinned;
-    for (std::size_t i = 0; i < series.time_s.size(); i += step) {
-      thinned.time_s.push_back(series.time_s[i]);
-      thinned.off_um.push_back(series.off_um[i]);
-    }
-    all.push_back(std::move(thinned));
-  }
-  return all;
-}
-
-/// White noise of the target, at most as stated: half of the mean square from row to row is the most that it can be.
-double noise_in(std::span<const ResidualSeries> series, double stated_um) {
-  double square = 0.0, n = 0.0;
-  for (const ResidualSeries& s : series) {
-    for (std::size_t i = 1; i < s.off_um.size(); ++i) {
-      square += 0.5 * std::pow(s.off_um[i] - s.off_um[i - 1], 2);
-      n += 1.0;
-    }
-  }
-  return n > 0.0 ? std::min(stated_um, std::sqrt(square / n)) : stated_um;
-}
-
-/// Sets the errors and the interval.
-void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f,
-                  const StrategySettings& s) {
-  if (s.probing) {
-    const std::vector<ResidualSeries> series = residuals_of(predictions, f);
-    d.residual = fit_residual_process(series, noise_in(series, s.drift_um));
-  }
-  for (std::size_t k = 0; k < predictions.size(); ++k) {
-    std::vector<double> off;
-    for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured_um[k][i] - predictions[k][i]));
-    d.fold_errors.push_back({f.folds[k].kind, f.folds[k].name, score(off).rmse, quantile(off, kInterval)});
-    d.interval_um = std::max(d.interval_um.value_or(0.0), d.fold_errors.back().within_um);
-  }
-}
-
-/// The range beyond its training range in which each input may be used, because the predictor was accurate there: over the
-/// folds in which it left less than kHolds of the drift, the largest excess of the hidden rows over the others.
-std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& s, const FoldedRuns& folds) {
-  std::vector<Record> readings;
-  for (const ObservedRun& run : folds.runs) readings.push_back(scored_readings(run, s.target, s.count_from_start));
-  std::vector<Reach> reach;
-  for (const Input& input : f.predictor->inputs()) {
-    Reach r{.input = input.name};
-    for (std::size_t k = 0; k < f.fold_errors.size(); ++k) {
-      // about its mean, because an offset of the target is not a drift
-      std::vector<double> drift_um = folds.measured_um[k];
-      const double mean_um = score(drift_um).mean;
-      for (double& um : drift_um) um -= mean_um;
-      if (!(f.fold_errors[k].rms_um <= kHolds * score(drift_um).rmse)) continue;
-      constexpr double kFar = std::numeric_limits<double>::infinity();
-      double low = kFar, high = -kFar, hidden_low = kFar, hidden_high = -kFar;
-      for (std::size_t n = 0; n < folds.runs.size(); ++n) {
-        const std::vector<double>&x = readings[n].at(input.name).values, &drift = readings[n].at(s.target).values;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          if (!std::isfinite(x[i]) || !std::isfinite(drift[i])) continue;
-          double &least = folds.folds[k].hidden[n][i] ? hidden_low : low,
-                 &most = folds.folds[k].hidden[n][i] ? hidden_high : high;
-          least = std::min(least, x[i]);
-          most = std::max(most, x[i]);
-        }
-      }
-      if (!std::isfinite(low - hidden_low)) continue;  // nothing was read on one side of the fold
-      r.below = std::max(r.below, low - hidden_low);
-      r.above = std::max(r.above, hidden_high - high);
-    }
-    reach.push_back(std::move(r));
-  }
-  return reach;
-}
-
-/// Learns the fail-safe of a predictor.
-void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const FoldedRuns& folds) {
-  std::vector<std::vector<double>> predicted;
-  // an observer checks its sensors itself
-  std::vector<std::string> guarded;
-  if (!f.predictor->looks_after_inputs()) {
-    for (const Input& input : f.predictor->inputs()) guarded.push_back(input.name);
-  }
-  std::vector<Record> readings;
-  // the lead-in of a run is followed, but sets no limits: its rows may belong to judged runs
-  for (const ObservedRun& run : training) {
-    const std::vector<double> drift_um = live(*f.predictor, run);
-    predicted.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
-    readings.push_back(own_rows(s.count_from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
-  }
-  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true, reach_of(f, s, folds));
-  limit(*f.fail_safe, s.limits);
+LeftOutSettings left_out_settings(const StrategySettings& s) {
+  return {.target = s.target,
+          .from_start = s.count_from_start,
+          .limits = s.limits,
+          .drift_um = s.probing ? std::optional(s.drift_um) : std::nullopt};
 }
 
 /// Fits a strategy, without its errors on left-out rows and without fail-safe.
@@ -387,11 +265,39 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   return f;
 }
 
+/// The thermometers that the others contradict, in the rows of the runs alone: what lies before may belong to judged ones.
+std::vector<DoubtedThermometer> doubted_in(std::span<const ObservedRun> training, const StrategySettings& s) {
+  std::vector<Record> records;
+  for (const ObservedRun& run : joined_histories(training, s.target)) {
+    Record own = own_rows(run.readings, run.n_before);
+    const std::vector<double> drift = own.at(s.target).values;
+    if (!run.history.empty()) {  // rows between runs of one record
+      for (Channel& c : own.channels) {
+        for (std::size_t i = 0; i < drift.size(); ++i) c.values[i] = std::isfinite(drift[i]) ? c.values[i] : drift[i];
+      }
+    }
+    records.push_back(std::move(own));
+  }
+  std::vector<std::string> thermometers = s.candidates, beside;
+  std::erase(thermometers, s.ambient);
+  for (const std::string& channel : {s.speed, s.ambient}) {
+    if (!channel.empty()) beside.push_back(channel);
+  }
+  return doubted_thermometers(records, thermometers, beside, s.reading_K);
+}
+
 /// A member of a blend.
 struct Member {
   DeployedPredictor deployed;
-  LeftOutPredictions predictions;
+  FoldPredictors in_folds;
 };
+
+/// The mean of formulas.
+std::shared_ptr<const Predictor> mean_predictor(std::span<const std::shared_ptr<const Predictor>> members) {
+  std::vector<DriftModel> models;
+  for (const std::shared_ptr<const Predictor>& p : members) models.push_back(*as_formula(*p));
+  return std::make_shared<FormulaPredictor>(mean_of(models, kBlend));
+}
 
 /// The mean of the members whose error on left-out rows is about equal to the smallest; none if only one qualifies.
 std::optional<DeployedPredictor> blend(std::vector<Member> members, const FoldedRuns& folds, const StrategySettings& s,
@@ -400,23 +306,23 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   for (const Member& m : members) least = std::min(least, left_out_um(m.deployed));
   std::erase_if(members, [&](const Member& m) { return !(left_out_um(m.deployed) <= kAlike * least); });
   if (members.size() < 2) return std::nullopt;
-  const double share = 1.0 / static_cast<double>(members.size());
-  LeftOutPredictions mean = members.front().predictions;
   std::vector<DriftModel> models;
   std::vector<std::string> names;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    for (std::size_t k = 0; k < mean.size(); ++k) {
-      for (std::size_t i = 0; i < mean[k].size(); ++i)
-        mean[k][i] = (m == 0 ? 0.0 : mean[k][i]) + share * members[m].predictions[k][i];
-    }
-    models.push_back(*as_formula(*members[m].deployed.predictor));
-    names.push_back(members[m].deployed.name);
+  for (const Member& m : members) {
+    models.push_back(*as_formula(*m.deployed.predictor));
+    names.push_back(m.deployed.name);
+  }
+  FoldPredictors in_folds;
+  for (std::size_t k = 0; k < folds.folds.size(); ++k) {
+    std::vector<std::shared_ptr<const Predictor>> of_fold;
+    for (const Member& m : members) of_fold.push_back(m.in_folds[k]);
+    in_folds.push_back(mean_predictor(of_fold));
   }
   DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
   d.name = kBlend;
   d.ambient = s.ambient;
-  set_left_out(d, mean, folds, s);
-  guard(d, s, training, folds);
+  const double room = set_left_out(d, in_folds, folds, left_out_settings(s));
+  d.fail_safe = fail_safe_of(*d.predictor, training, left_out_settings(s), room);
   return d;
 }
 
@@ -431,35 +337,38 @@ std::string words_of(const LinearisedModel& model) {
                             : fmt::format("linearised at {} to {} °C", coldest, hottest);
 }
 
-FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
+FittedStrategies fit_strategies(const StrategySettings& given, std::span<const ObservedRun> training) {
+  FittedStrategies result{.strategies = {}, .left_out = {}, .doubted = doubted_in(training, given), .choice = {}};
+  StrategySettings settings = given;
+  for (const DoubtedThermometer& d : result.doubted) std::erase(settings.candidates, d.name);
   const std::vector<Strategy> list = strategies(settings);
   const FoldedRuns folds = folded(training, {.target = settings.target,
                                              .from_start = settings.count_from_start,
                                              .thermometers = thermometers_of(settings),
                                              .speed = settings.speed});
   std::vector<std::optional<DeployedPredictor>> fitted(list.size());
-  std::vector<LeftOutPredictions> predictions(list.size());
+  std::vector<FoldPredictors> in_folds(list.size());
   std::vector<std::string> why(list.size());
   parallel_for(list.size(), [&](std::size_t i) {
     try {
       fitted[i] = fit_one(list[i], settings, training);
-      predictions[i] = left_out_predictions(list[i], folds);
-      set_left_out(*fitted[i], predictions[i], folds, settings);
-      if (!fitted[i]->is_baseline) guard(*fitted[i], settings, training, folds);
+      in_folds[i] = fold_predictors([&](std::span<const ObservedRun> rest) { return list[i].fit(rest).predictor; }, folds);
+      const double room = set_left_out(*fitted[i], in_folds[i], folds, left_out_settings(settings));
+      if (!fitted[i]->is_baseline)
+        fitted[i]->fail_safe = fail_safe_of(*fitted[i]->predictor, training, left_out_settings(settings), room);
     } catch (const InputError& e) {
       why[i] = e.what();
     } catch (const SolveError& e) {  // the model has no solution there
       why[i] = e.what();
     }
   });
-  FittedStrategies result;
   std::vector<Member> members;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!fitted[i]) {
       result.left_out.push_back({list[i].name, why[i]});
       continue;
     }
-    if (list[i].is_blended && !predictions[i].empty()) members.push_back({*fitted[i], predictions[i]});
+    if (list[i].is_blended && !in_folds[i].empty()) members.push_back({*fitted[i], in_folds[i]});
     result.strategies.push_back(std::move(*fitted[i]));
   }
   if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training))

@@ -8,6 +8,7 @@
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/sensors/grey_relational.hpp"
+#include "compensation/sensors/redundancy.hpp"
 #include "solver/linearise.hpp"
 
 namespace driftwright::compensation {
@@ -59,7 +60,8 @@ struct LeftOut {
 struct FittedStrategies {
   std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first, the blend last
   std::vector<LeftOut> left_out;
-  Choice choice;  ///< by choose()
+  std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads them
+  Choice choice;                            ///< by choose()
 };
 
 /// Fits all of them. @param training  with the target among the readings

@@ -376,6 +376,13 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
   matrix.left_out = std::move(fitted.left_out);
   matrix.choice = std::move(fitted.choice);
+  for (const DoubtedThermometer& d : fitted.doubted) {
+    matrix.findings.push_back(fmt::format(
+        "Thermometer '{}' is left out: in {} from {:.0f} min on it differs by up to {:.2g} K from what the other "
+        "thermometers lead to; on other parts of the training runs the difference is usually {:.2g} K. Check "
+        "whether it is broken or has come off.",
+        d.name, d.record, d.from_s / 60.0, d.off_K, d.usual_K));
+  }
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
     const std::string& target = settings.strategies.target;

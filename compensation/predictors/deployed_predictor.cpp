@@ -10,18 +10,22 @@ std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, do
   return trust > 0.0 ? std::optional(*deployed.interval_um / trust) : std::nullopt;
 }
 
+PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run) {
+  PredictedRun p{.readings = repaired(safe, run.readings), .drift_um = {}};
+  ObservedRun mended = run;
+  mended.readings = p.readings.readings;
+  const std::unique_ptr<Follower> follower = predictor.follow();
+  for (double& deserved : p.readings.deserved) {
+    p.drift_um.push_back(follower->next(mended));
+    deserved = std::min(deserved, follower->deserved_trust());
+  }
+  return p;
+}
+
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
   if (deployed.fail_safe) {
-    Repaired repair = repaired(*deployed.fail_safe, run.readings);
-    ObservedRun mended = run;
-    mended.readings = repair.readings;
-    const std::unique_ptr<Follower> follower = deployed.predictor->follow();
-    std::vector<double> predicted_um;
-    for (double& deserved : repair.deserved) {
-      predicted_um.push_back(follower->next(mended));
-      deserved = std::min(deserved, follower->deserved_trust());
-    }
-    return guarded(*deployed.fail_safe, repair, predicted_um);
+    const PredictedRun p = predict(*deployed.predictor, *deployed.fail_safe, run);
+    return guarded(*deployed.fail_safe, p.readings, p.drift_um);
   }
   GuardedCorrection c{.correction_um = live(*deployed.predictor, run),
                       .trust = std::vector<double>(run.readings.n_samples(), 1.0),

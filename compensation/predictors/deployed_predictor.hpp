@@ -42,6 +42,13 @@ struct DeployedPredictor {
 ///         no interval
 [[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);
 
+/// The drift of a run as predicted from repaired readings, before clamp and slew limit.
+struct PredictedRun {
+  Repaired readings;             ///< with the trust that readings and predictor deserve
+  std::vector<double> drift_um;  ///< per row; NaN without a prediction
+};
+[[nodiscard]] PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run);
+
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
 /// prediction, or 0 without one.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "base/errors.hpp"
 #include "compensation/predictors/control_tables.hpp"
 #include "compensation/predictors/drift_model.hpp"
-#include "compensation/sensors/product_sums.hpp"
+#include "compensation/sensors/redundancy.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -20,14 +19,13 @@ namespace {
 constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
 constexpr double kClampRoom = 0.5;  // of the drift's
 constexpr double kJumpRoom = 2.0;   // times the largest
-constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
+constexpr double kSlewRoom = 1.0;   // of the largest rate of the prediction, over ten rows
 constexpr double kApartRoom = 2.0;  // times the largest distance on a left-out run
 // Lower limits of the margins, because instruments have such errors.
 constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;
 constexpr double kLeastRoomOfDrive = 0.02;  // of the largest speed or power, for a drive that never changed
 // Smaller changes are too small to learn a relation from; distance that is never exceeded.
 constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;
-constexpr double kRidge = 0.03;  // penalty of a relation, columns of unit deviation
 constexpr std::size_t kSlewRows = 10;
 
 struct Range {
@@ -40,41 +38,28 @@ struct Range {
   [[nodiscard]] double width() const { return high - low; }
 };
 
-/// The prediction of an input from the others. Ridge regression, because the common part of similar thermometers also holds
-/// in another ambient, and their small differences do not.
-struct Relation {
-  double intercept = 0.0;
-  std::vector<double> coefficient;  // of the others
-  [[nodiscard]] std::vector<double> predict(const Record& record, const std::vector<std::string>& others) const {
-    std::vector<double> predicted(record.n_samples(), intercept);
-    for (std::size_t j = 0; j < others.size(); ++j) {
-      const std::vector<double>& x = record.at(others[j]).values;
-      for (std::size_t i = 0; i < x.size(); ++i) predicted[i] += coefficient[j] * x[i];
-    }
-    return predicted;
-  }
-};
-Relation relation(std::span<const Record> records, const std::string& input, const std::vector<std::string>& others) {
-  const ProductSums sums = product_sums(records, others, input);
-  std::vector<int> columns(others.size());
-  std::iota(columns.begin(), columns.end(), 0);
-  const ScaledFit fit = fit_columns(sums.total(), columns, kRidge);
-  const double unit = sums.deviation(sums.n_inputs());
-  Relation r{.intercept = sums.mean(sums.n_inputs()) + unit * fit.intercept, .coefficient = {}};
-  for (std::size_t j = 0; j < others.size(); ++j) {
-    const auto k = static_cast<Eigen::Index>(j);
-    r.coefficient.push_back(unit * fit.slope(k) / sums.deviation(k));
-    r.intercept -= r.coefficient.back() * sums.mean(k);
-  }
-  return r;
-}
-
-bool moved(std::span<const Record> training, const std::string& input) {
+Range range_of(std::span<const Record> training, const std::string& input) {
   Range range;
   for (const Record& record : training) {
     for (double x : record.at(input).values) range.take(x);
   }
-  return range.width() > kMoved_K;
+  return range;
+}
+
+bool moved(std::span<const Record> training, const std::string& input) {
+  return range_of(training, input).width() > kMoved_K;
+}
+
+double middle_of(std::span<const Record> training, const std::string& input) {
+  const Range range = range_of(training, input);
+  return 0.5 * (range.low + range.high);
+}
+
+std::vector<Record> counted(std::span<const Record> training, bool from_start) {
+  std::vector<Record> result(training.begin(), training.end());
+  if (!from_start) return result;
+  for (Record& record : result) record = counted_from_start(std::move(record), {});
+  return result;
 }
 
 /// The largest difference between an input and its value from the others, on left-out records if there are two or more.
@@ -114,13 +99,9 @@ double step_s(const std::vector<double>& time_s, std::size_t row) {
 
 }  // namespace
 
-FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
-                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted,
-                         const std::vector<Reach>& reach) {
-  std::vector<Record> training(as_given.begin(), as_given.end());
-  if (from_start && !is_counted) {
-    for (Record& record : training) record = counted_from_start(std::move(record), {});
-  }
+FailSafe learn_limits(std::span<const Record> as_given, const std::vector<std::string>& inputs,
+                      const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted, double room) {
+  const std::vector<Record> training = counted(as_given, from_start && !is_counted);
   FailSafe safe;
   safe.from_start = from_start;
   Range drift;
@@ -144,15 +125,14 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   safe.stale_s = 5.0 * safe.period_s;
   safe.fade_s = 10.0 * safe.period_s;
   drift.take(0.0);  // zero correction is always allowed
-  safe.lowest_um = drift.low - kClampRoom * drift.width();
-  safe.highest_um = drift.high + kClampRoom * drift.width();
-  safe.most_rate_um_s = kSlewRoom * rate;
-
+  safe.lowest_um = drift.low - room * kClampRoom * drift.width();
+  safe.highest_um = drift.high + room * kClampRoom * drift.width();
+  safe.most_rate_um_s = (1.0 + room * kSlewRoom) * rate;
   for (const std::string& input : inputs) {
-    const bool is_speed = is_drive(training.front().at(input).unit);
     FailSafe::Guard g;
     g.input = input;
     g.unit = training.front().at(input).unit;
+    const bool is_speed = is_drive(g.unit);
     Range range;
     double jump = 0.0;
     for (const Record& record : training) {
@@ -163,30 +143,37 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
       }
     }
     const double largest = std::max(std::abs(range.low), std::abs(range.high));
-    const double room = std::max(kRangeRoom * range.width(), is_speed ? kLeastRoomOfDrive * largest : kLeastRoom_K);
-    const auto seen = std::find_if(reach.begin(), reach.end(), [&](const Reach& r) { return r.input == input; });
-    g.low = range.low - (seen == reach.end() ? room : std::max(room, seen->below));
-    g.high = range.high + (seen == reach.end() ? room : std::max(room, seen->above));
+    const double beyond = std::max(room * kRangeRoom * range.width(), is_speed ? kLeastRoomOfDrive * largest : kLeastRoom_K);
+    g.low = range.low - beyond;
+    g.high = range.high + beyond;
     g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
+    safe.guards.push_back(std::move(g));
+  }
+  return safe;
+}
+
+FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
+                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted, double room) {
+  const std::vector<Record> training = counted(as_given, from_start && !is_counted);
+  FailSafe safe = learn_limits(training, inputs, predicted, from_start, true, room);
+  for (FailSafe::Guard& g : safe.guards) {
+    if (is_drive(g.unit)) continue;
     std::vector<std::string> others;
     for (const std::string& other : inputs) {
-      if (other != input && !is_drive(training.front().at(other).unit) && moved(training, other)) others.push_back(other);
+      if (other != g.input && !is_drive(training.front().at(other).unit) && moved(training, other)) others.push_back(other);
     }
-    if (!is_speed && !others.empty()) {
-      // an input that hardly changed in the training runs is estimated by its mean, and doubted only if it is missing or
-      // jumps
-      const bool has_moved = moved(training, input);
-      const Relation r = has_moved ? relation(training, input, others)
-                                   : Relation{0.5 * (range.low + range.high), std::vector<double>(others.size(), 0.0)};
-      g.others_intercept = r.intercept;
-      for (const std::string& other : inputs) {
-        const auto at = std::find(others.begin(), others.end(), other);
-        g.others_coefficient.push_back(at == others.end() ? 0.0
-                                                          : r.coefficient[static_cast<std::size_t>(at - others.begin())]);
-      }
-      g.most_apart = has_moved ? std::max(kApartRoom * most_apart(training, input, others), kLeastApart_K) : kNeverApart_K;
+    if (others.empty()) continue;
+    // an input that hardly changed in the training runs is estimated by its mean, and doubted only if it is missing or jumps
+    const bool has_moved = moved(training, g.input);
+    const Relation r = has_moved ? relation(training, g.input, others)
+                                 : Relation{middle_of(training, g.input), std::vector<double>(others.size(), 0.0)};
+    g.others_intercept = r.intercept;
+    for (const std::string& other : inputs) {
+      const auto at = std::find(others.begin(), others.end(), other);
+      g.others_coefficient.push_back(at == others.end() ? 0.0
+                                                        : r.coefficient[static_cast<std::size_t>(at - others.begin())]);
     }
-    safe.guards.push_back(std::move(g));
+    g.most_apart = has_moved ? std::max(kApartRoom * most_apart(training, g.input, others), kLeastApart_K) : kNeverApart_K;
   }
   return safe;
 }

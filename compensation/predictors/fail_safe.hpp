@@ -38,22 +38,22 @@ struct FailSafe {
   double stale_s = 300.0;  ///< an input without a reading for this long is doubted; until then its last reading applies
 };
 
-/// How far a reading may go beyond its range in the training records, because a prediction was still correct there.
-struct Reach {
-  std::string input;
-  double below = 0.0, above = 0.0;  ///< unit of the input, >= 0
-};
-
 /// @param training    as recorded
 /// @param inputs      channels of the model; drives (rpm) get a range only
 /// @param predicted   the model's values on each training record, per row
 /// @param from_start  temperatures count from the first row of each record
 /// @param is_counted  they already do so in `training`, whose first rows may have been cut off since
-/// @param reach       of some inputs; without it the margin of the range is a fifth of its width
+/// @param room        factor on the usual margins beyond the training records, which are a fifth of the width of an input's
+///                    range, half of the width of the drift's, and once more its rate
 /// @throws InputError  as complete_rows() and fit_regression(), and for training records of one row
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
                                        const std::vector<std::vector<double>>& predicted, bool from_start,
-                                       bool is_counted = false, const std::vector<Reach>& reach = {});
+                                       bool is_counted = false, double room = 1.0);
+
+/// The same without relations between the inputs: nothing replaces a reading that is missing or jumps.
+[[nodiscard]] FailSafe learn_limits(std::span<const Record> training, const std::vector<std::string>& inputs,
+                                    const std::vector<std::vector<double>>& predicted, bool from_start,
+                                    bool is_counted = false, double room = 1.0);
 
 /// Narrows clamp and slew limit: no correction larger than `most_um`, and none that changes by more than `most_step_um` from
 /// one reading to the next, which are `period_s` apart.
