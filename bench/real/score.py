@@ -134,7 +134,7 @@ def main():
             score_program(scores, options, folder)
         print_row(scores, methods)
     print_figures(rows, methods)
-    print("\n" + "\n".join(f"{s.case.id}: {note}" for s in rows for note in s.notes))
+    print("".join(f"\n{s.case.id}: {note}" for s in rows for note in s.notes))
 
 
 if __name__ == "__main__":
