@@ -1,24 +1,10 @@
 #!/usr/bin/env bash
-# The scoreboard of measured records: bench/real.sh [-d DATA] [-o DIR] [-t SECONDS] [RECORD...]
-# Strategies, diagnosed models and plain baselines side by side, each by its error on data kept out. DATA is ../shared/data; the records are
-# no part of the project. RECORD keeps the records whose names begin so (bench/real/records.py). A diagnosis that takes more than SECONDS (1800) counts as none, and
-# the notes say so. About 30 min on two cores, half of it the diagnosis of the lathe's days.
+# The scoreboard of measured records: builds the program and scores it beside plain baselines, and the entries of others if given, in one table.
+#   bench/real.sh [-s SET] [-d DATA] [-o OUT] [--enter NAME FOLDER] [--diagnosis] [RECORD...]     all options: bench/real/score.py --help
+# Some 10 min a set on two cores; with --diagnosis half an hour.
 set -eu
-data=../shared/data out=/tmp/driftwright_real cap=1800
-while getopts d:o:t: option; do
-  case $option in
-    d) data=$OPTARG ;;
-    o) out=$OPTARG ;;
-    t) cap=$OPTARG ;;
-    *) exit 2 ;;
-  esac
-done
-shift $((OPTIND - 1))
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
-[ -d "$data" ] || { echo "bench/real.sh: no measured records in $data (-d DATA)" >&2; exit 2; }
-[ -f build/release/build.ninja ] || cmake --preset release >/dev/null
-ninja -C build/release driftwright >/dev/null
-. cmake/threads.sh
-mkdir -p "$out"
-export cap
-python3 bench/real/score.py build/release/app/driftwright "$data" "$out" "$@"
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+[ -f "$top/build/release/build.ninja" ] || (cd "$top" && cmake --preset release >/dev/null)
+ninja -C "$top/build/release" driftwright >/dev/null
+. "$top/cmake/threads.sh"
+exec python3 "$top/bench/real/score.py" --program "$top/build/release/app/driftwright" "$@"

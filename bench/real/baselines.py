@@ -1,11 +1,17 @@
-"""Simple predictors with which the strategies of the program are compared. They share no code with it and need only the standard library.
+#!/usr/bin/env python3
+"""Simple predictors with which the strategies of the program are compared: baselines.py INPUTS OUT
 
-Each takes a Case (records.py) and returns, for each judged run, one prediction per row, in the target's unit; or None if the record lacks a
+They enter the scoreboard as others do (entry.py): of each folder of INPUTS, OUT/<name of the baseline>/<id>.csv. They share no code with the program and need only the
+standard library. Each takes a Case (entry.read_inputs) and returns, for each judged run, one prediction per row, in the target's unit; or None if the record lacks a
 column that it needs. Settings of a fit are chosen by leaving out training runs, or eighths of the training rows of a single record.
 """
 
 import bisect
 import math
+import os
+import sys
+
+import entry
 
 PENALTIES = [1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0]
 DRIVE_LAGS_MIN = [2, 5, 10, 20, 40, 80, 160]
@@ -42,8 +48,8 @@ class Runs:
         self.case = case
         self.folds, self.judged = [], []
         for table in case.fit:
-            x, y = columns(case, table), target(case, table)
-            rows = [(x[i], y[i]) for i in range(len(y)) if y[i] is not None and (not case.fit_rows or case.fit_rows(table.time_s[i]))]
+            x, y = columns(case, table), table.columns[case.target]
+            rows = [(x[i], y[i]) for i in range(len(y)) if y[i] is not None]
             if len(case.fit) == 1:
                 n = len(rows)
                 self.folds += [rows[n * p // 8:n * (p + 1) // 8] for p in range(8)]
@@ -60,11 +66,6 @@ def start(column):
 def readings(case, table, name):
     x = held(table.columns[name])
     return [v - start(x) for v in x] if case.from_start else x
-
-
-def target(case, table):
-    y = table.columns[case.target]
-    return [None if v is None else v - start(y) for v in y] if case.from_start else y
 
 
 def sums(rows):
@@ -181,12 +182,7 @@ def constant(case, value):
 
 
 def training_values(case):
-    values = []
-    for table in case.fit:
-        for t, y in zip(table.time_s, target(case, table)):
-            if y is not None and (not case.fit_rows or case.fit_rows(t)):
-                values.append(y)
-    return values
+    return [y for table in case.fit for y in table.columns[case.target] if y is not None]
 
 
 def by_mean(case):
@@ -199,7 +195,7 @@ def by_last(case):
     if len(case.fit) == 1:
         return constant(case, training_values(case)[-1])
     last = case.fit[-1]
-    at = [(t - last.time_s[0], y) for t, y in zip(last.time_s, target(case, last)) if y is not None]
+    at = [(t - last.time_s[0], y) for t, y in zip(last.time_s, last.columns[case.target]) if y is not None]
     times = [t for t, _ in at]
     result = []
     for table in case.judge:
@@ -240,12 +236,19 @@ BASELINES = {
 }
 
 
-def rms(case, predicted):
-    """Root mean square of target minus prediction over all judged rows."""
-    squares = n = 0
-    for table, p in zip(case.judge, predicted):
-        for t, y, v in zip(table.time_s, target(case, table), p):
-            if y is not None and (not case.judge_rows or case.judge_rows(t)):
-                squares += (y - v) ** 2
-                n += 1
-    return math.sqrt(squares / n)
+def enter(own, out):
+    """Writes the predictions of all baselines for the folder of one row; returns {name: path}, without those that need a column which the record lacks."""
+    case, paths = entry.read_inputs(own), {}
+    for name, predict in BASELINES.items():
+        predicted = predict(case)
+        if predicted is not None:
+            paths[name] = os.path.join(out, name.replace("/", "_").replace(" ", "_"), case.id + ".csv")
+            entry.write_prediction(paths[name], case, predicted)
+    return paths
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    for one in sorted(os.listdir(sys.argv[1])):
+        enter(os.path.join(sys.argv[1], one), sys.argv[2])

@@ -7,49 +7,30 @@ misses learned beside it (`identify --prior`), and the network from the records 
 rows it is worse by more than 5 %. The script needs only the standard library.
 """
 
+import dataclasses
 import json
 import math
 import os
 import sys
 import time
 
+import program as runs
 import records
-import score
 
 
 DRIVES = ("heater_W", "bed_degC")  # recorded columns that drive the machine: read, not predicted
 RUN_AND_STOP = "runs: while_spindle_turns}\n"
 
 
-def fl_thermal(data, fit_h, judge_h, lacks_run_and_stop):
-    """The network of fl_thermal, made by hand; its structure and exponents were chosen with all 28 h. Without its heats of run and stop it is a rough scenario."""
-    path = os.path.join(data, "fl_thermal", "first_28h.csv")
-    return records.parted("fl_thermal" + (", no run/stop" if lacks_run_and_stop else ""), path, f"fit {fit_h[0]}-{fit_h[1]} h, judge {judge_h[0]}-{judge_h[1]} h",
-                          records.between(*fit_h), records.between(*judge_h), "ch3_um", [], ambient="t16_degC", scenario="fl_thermal_network")
-
-
 def scenario_of(case, folder):
     """The scenario as written; a separate file if heats of run and stop are left out."""
-    path = os.path.join(score.ROOT, "scenarios", "measured", case.scenario + ".yaml")
+    path = runs.written(case)
     if "no run/stop" not in case.record:
         return path
     rough = os.path.join(folder, "rough.yaml")
     with open(path, encoding="utf-8") as source, open(rough, "w", encoding="utf-8") as out:
         out.writelines(line for line in source if not ("heat_source" in line and line.endswith(RUN_AND_STOP)))
     return rough
-
-
-def fitted(case, folder):
-    """The records of the fit, as the scenario reads them, cut to their rows."""
-    paths = []
-    for source in case.fit_files:
-        path = score.converted(case, source, os.path.join(folder, "fit_" + os.path.basename(source)))
-        if len(case.fit_files) == 1 and case.fit_rows:
-            rows = score.raw_rows(path)
-            with open(path, "w", newline="", encoding="utf-8") as out:
-                score.csv.writer(out, lineterminator="\n").writerows([rows[0], *(r for r in rows[1:] if case.fit_rows(float(r[0])))])
-        paths.append(path)
-    return paths
 
 
 def made(program, verb, options, fit, flag, result, folder):
@@ -62,8 +43,8 @@ def made(program, verb, options, fit, flag, result, folder):
     for record in fit:
         arguments += [flag, record]
     begin = time.time()
-    if score.run(arguments, log) != 0:
-        print(f"  {verb} {' '.join(options)}: {score.why(log)}", flush=True)
+    if runs.run(arguments, log) != 0:
+        print(f"  {verb} {' '.join(options)}: {runs.why(log)}", flush=True)
         return None
     print(f"  {os.path.basename(out)}: {time.time() - begin:.0f} s", flush=True)
     return path
@@ -74,21 +55,11 @@ def judged(case, program, scenario, folder, name):
     kept = os.path.join(folder, f"judged_{name}.json")
     if os.path.exists(kept):
         return json.load(open(kept, encoding="utf-8"))
-    squares = {}
-    for source in case.judge_files:
-        record = score.converted(case, source, os.path.join(folder, "judge_" + os.path.basename(source)))
-        channels, reason = score.simulated_channels(program, scenario, record, folder, f"{name}_{os.path.basename(source)[:-4]}",
-                                                     score.base(case.ambient))
-        if channels is None:
-            print(f"  {name}: {reason}", flush=True)
-            return {}
-        for header, rows in channels.items():
-            for t, y, p in rows:
-                if not case.judge_rows or len(case.judge_files) > 1 or case.judge_rows(t):
-                    of = squares.setdefault(header, [0, 0.0])
-                    of[0] += 1
-                    of[1] += (y - p) ** 2
-    result = {header: math.sqrt(s / n) for header, (n, s) in squares.items()}
+    channels, reason = runs.kept_out(case, program, scenario, folder, name)
+    if channels is None:
+        print(f"  {name}: {reason}", flush=True)
+        return {}
+    result = {header: runs.rms(pairs) for header, pairs in channels.items()}
     json.dump(result, open(kept, "w", encoding="utf-8"))
     return result
 
@@ -99,17 +70,18 @@ def main():
     arguments = [a for a in arguments if not a.startswith("--")]
     program, data, out = (os.path.abspath(p) for p in arguments[:3])
     table, seen = [], set()
-    cases = [fl_thermal(data, fit, judge, lacks) for lacks in (False, True) for fit, judge in (((0, 20), (20, 28)), ((8, 28), (0, 8)), ((0, 16), (16, 28)))]
-    for case in cases + records.cases(data) + records.later_cases(data):
+    network = records.cases(data, "network", arguments[3:])
+    rough = [dataclasses.replace(case, record=case.record + ", no run/stop") for case in network]  # as a first draft of a scenario would be
+    for case in network + rough + records.cases(data, "older", arguments[3:]) + records.cases(data, "later", arguments[3:]):
         key = (case.record, case.split)
-        if not case.scenario or key in seen or (arguments[3:] and not any(case.record.startswith(w) for w in arguments[3:])):
+        if not case.scenario or key in seen:
             continue
         seen.add(key)
         folder = os.path.join(out, f"{case.record} {case.split}".replace(" ", "_").replace(",", ""))
         os.makedirs(folder, exist_ok=True)
         print(f"{case.record}, {case.split}", flush=True)
         written = scenario_of(case, folder)
-        fit = fitted(case, folder)
+        fit = runs.fitted(case, folder)
         models = {"written": written, "calibrated": made(program, "calibrate", [written], fit, "--measured", "calibrated.yaml", folder)}
         if with_diagnosis:
             models["diagnosed"] = made(program, "diagnose", [written], fit, "--measured", "extended.yaml", folder)
