@@ -17,7 +17,7 @@
 #include "follow/state_json.hpp"
 #include "follow/watch_json.hpp"
 #include "output/predictor_file.hpp"
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 
 namespace driftwright::follow {
 namespace {

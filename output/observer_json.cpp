@@ -4,7 +4,7 @@
 #include "base/config_text.hpp"
 #include "machine/reduced_files.hpp"
 #include "output/json_value.hpp"
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 
 namespace driftwright::output {
 namespace {
