@@ -5,6 +5,12 @@
 
 namespace driftwright::output {
 
-using namespace json;
+using json::finite;
+using json::Json;
+using json::list;
+using json::number;
+using json::number_or;
+using json::positive;
+using json::value;
 
 }  // namespace driftwright::output

@@ -165,8 +165,8 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               selection = select_by_observability(p.system, p.start, histories, s.candidates, s.target, s.n_sensors, how);
               f.reason = fmt::format("{}: {}", fmt::join(selection.sensors, ", "), selection.reason);
             }
-            Observer observer(p.system, p.start, p.start_ambient_K, learns ? s.candidates : selection.sensors, s.target,
-                              how);
+            Observer observer(p.system, p.start, p.start_ambient_K, learns ? s.candidates : selection.sensors, s.target, how,
+                              p.laws);
             if (learns) {
               observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
@@ -362,11 +362,8 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
 /// Learns the fail-safe of a predictor.
 void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const FoldedRuns& folds) {
   std::vector<std::vector<double>> predicted;
-  // an observer checks its sensors itself
   std::vector<std::string> guarded;
-  if (!f.predictor->looks_after_inputs()) {
-    for (const Input& input : f.predictor->inputs()) guarded.push_back(input.name);
-  }
+  for (const Input& input : guarded_inputs(*f.predictor)) guarded.push_back(input.name);
   std::vector<Record> readings;
   // the lead-in of a run is followed, but sets no limits: its rows may belong to judged runs
   for (const ObservedRun& run : training) {
@@ -409,7 +406,7 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
       for (std::size_t i = 0; i < mean[k].size(); ++i)
         mean[k][i] = (m == 0 ? 0.0 : mean[k][i]) + share * members[m].predictions[k][i];
     }
-    models.push_back(*as_formula(*members[m].deployed.predictor));
+    models.push_back(*members[m].deployed.predictor->formula());
     names.push_back(members[m].deployed.name);
   }
   DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
