@@ -90,7 +90,7 @@ void add_observer_reference(output::FmuOrder& order, const compensation::Observe
 }
 
 const compensation::Observer& observer_in(const output::PredictorFile& file, const std::string& path) {
-  const auto* observer = dynamic_cast<const compensation::Observer*>(file.predictor.predictor.get());
+  const compensation::Observer* observer = file.predictor.predictor->observer();
   if (!observer)
     throw InputError(
         fmt::format("{}: '{}' is no observer; `validate` writes one as models/observer.json", path, file.predictor.name));

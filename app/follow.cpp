@@ -344,7 +344,7 @@ void calibrate_watch(const FollowVerbOptions& options) {
   if (options.models.size() != 1) throw InputError("--calibrate-watch: limits are those of one observer; name one file");
   const std::string& path = options.models.front();
   const output::PredictorFile file = output::read_predictor(path);
-  const auto* observer = dynamic_cast<const compensation::Observer*>(file.predictor.predictor.get());
+  const compensation::Observer* observer = file.predictor.predictor->observer();
   if (!observer)
     throw InputError(fmt::format(
         "{}: '{}' is no observer, and only an observer has residuals that physics explains; the fail-safe of a formula "

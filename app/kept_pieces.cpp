@@ -6,8 +6,8 @@
 
 #include "app/results.hpp"
 #include "base/version.hpp"
+#include "effects/former_words.hpp"
 #include "scenarios/reader/content_key.hpp"
-#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -34,7 +34,7 @@ KeptPieces::KeptPieces(const fs::path& target, const ShardOptions& options, cons
     : parts_(target.string() + ".parts"), shard_(read_shard(options.shard)), merges_(options.merge) {
   if (merges_ && !options.shard.empty()) throw InputError("--merge joins what all shards have written; leave out --shard");
   words.emplace_back(kVersion);
-  identity_ = {scenarios::content_key({scenarios::read_scenario_tree(scenario)}, fs::path(scenario).parent_path(), words), "piece,numbers"};
+  identity_ = {scenarios::content_key({effects::read_scenario_tree(scenario)}, fs::path(scenario).parent_path(), words), "piece,numbers"};
   std::size_t n_damaged = 0;
   rows_ = output::find_rows(parts_, identity_, &n_damaged);
   if (n_damaged > 0)

@@ -7,11 +7,11 @@
 
 #include "base/quantity.hpp"
 #include "compensation/control/control_files.hpp"
-#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/judging/judgement_json.hpp"
+#include "compensation/predictors/observer.hpp"
 #include "findings/strategy_section.hpp"
 #include "follow/watch_json.hpp"
 #include "follow/watch_trial.hpp"
-#include "output/document_json.hpp"
 #include "output/drift_model_c.hpp"
 #include "output/drift_model_files.hpp"
 #include "output/predictor_file.hpp"
@@ -22,17 +22,9 @@ namespace {
 using namespace compensation;
 using Json = nlohmann::ordered_json;
 
-/// A strategy that is a formula, as text and C have it.
-std::optional<output::DeployedModel> formula_of(const JudgedStrategy& s) {
-  const DriftModel* model = as_formula(*s.fitted.predictor);
-  if (!model || !s.fitted.fail_safe) return std::nullopt;
-  return output::DeployedModel{*model, *s.fitted.fail_safe,
-                               s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
-}
-
 /// Limits by which `follow` watches an observer; null for others, and for an observer that no stream can feed.
 Json watch_of(const JudgedStrategy& s, const StrategyMatrix& m, const Listener& listener) {
-  const auto* observer = dynamic_cast<const Observer*>(s.fitted.predictor.get());
+  const Observer* observer = s.fitted.predictor->observer();
   if (!observer || s.fitted.ambient.empty()) return nullptr;
   const std::optional<follow::WatchLimits> limits = follow::deployed_limits(*observer, m.training, listener);
   return limits ? follow::limits_json(*limits) : Json(nullptr);
@@ -57,30 +49,23 @@ std::optional<output::Covered> covered_by(const JudgedStrategy& s, const Strateg
 
 }  // namespace
 
-void write_models(const compensation::StrategyMatrix& m, const std::vector<effects::Effect>& effects,
-                  output::ResultsFolder& folder, const Listener& listener) {
-  const Json conditions = output::section_json(findings::conditions_of(m));
+void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& folder, const Listener& listener) {
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
     const std::string name = findings::model_file_name(s.fitted.name);
-    Json judged = conditions;
-    for (const compensation::JudgedRunOfMachine& r : m.runs)
-      judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
-    judged["with_failed_sensors"] = m.settings.fails_at.has_value();
-    judged.update(output::section_json({.blocks = {findings::strategies_table(m, {&s})}})["strategies"][0]);
     folder.write_text(fmt::format("models/{}.json", name),
-                      output::predictor_json({s.fitted, std::move(judged), watch_of(s, m, listener), covered_by(s, m)},
-                                             effects, folder.made_by())
+                      output::predictor_json({s.fitted, judgement_json(m, s), watch_of(s, m, listener), covered_by(s, m)},
+                                             folder.made_by())
                               .dump(1) +
                           "\n");
-    const std::optional<output::DeployedModel> formula = formula_of(s);
-    if (!formula) continue;
-    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));
+    if (!s.fitted.predictor->formula() || !s.fitted.fail_safe) continue;
+    const output::DeployedModel formula = output::deployed_model(s.fitted);
+    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(formula));
     const std::string made_by =
         fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
-    folder.write_text(fmt::format("models/{}.c", name), output::c_function(*formula, made_by));
+    folder.write_text(fmt::format("models/{}.c", name), output::c_function(formula, made_by));
     folder.write_text(fmt::format("models/{}_axis.comp", name),
-                      output::linuxcnc_component(*formula, name + "_axis", name + ".c", made_by));
+                      output::linuxcnc_component(formula, name + "_axis", name + ".c", made_by));
     has_formulas = true;
   }
   for (const ControlFile& file : control_files()) {

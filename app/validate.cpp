@@ -15,10 +15,9 @@
 namespace driftwright::app {
 namespace {
 
-void write_strategies(const compensation::StrategyMatrix& matrix, const scenarios::Scenario& scenario,
-                      output::ResultsFolder& folder, const Listener& listener) {
+void write_strategies(const compensation::StrategyMatrix& matrix, output::ResultsFolder& folder, const Listener& listener) {
   folder.write_text("strategies.csv", output::table_csv(findings::cases_table(matrix), folder.made_by()));
-  write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder, listener);
+  write_models(matrix, folder, listener);
 }
 
 std::optional<compensation::Probing> probing_of(const RecordOptions& options) {
@@ -83,7 +82,7 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
   if (scenario.validation) {
     const compensation::StrategyMatrix matrix =
         studies::validate_strategies(scenario, model, probing_of(options), progress.listener());
-    write_strategies(matrix, scenario, folder, progress.listener());
+    write_strategies(matrix, folder, progress.listener());
     document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
     if (!note.empty())
       document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
@@ -140,7 +139,7 @@ void validate(const RecordOptions& options) {
   const compensation::StrategyMatrix matrix =
       studies::validate_on_records(scenario, std::move(records), probing_of(options), progress.listener());
   warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
-  write_strategies(matrix, scenario, folder, progress.listener());
+  write_strategies(matrix, folder, progress.listener());
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + ": strategies judged on records they were not fitted on"};
   document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));

@@ -116,7 +116,8 @@ int main(int argc, char** argv) {
   if (argc < 3) return fmt::print(stderr, "watch MODEL.json TOP_RPM [MACHINES DAYS CASES]\n"), 2;
   const auto number = [&](int i, double fallback) { return argc > i ? std::atof(argv[i]) : fallback; };
   const output::PredictorFile file = output::read_predictor(argv[1]);
-  const auto& observer = dynamic_cast<const compensation::Observer&>(*file.predictor.predictor);
+  if (!file.predictor.predictor->observer()) return fmt::print(stderr, "{} holds no observer\n", argv[1]), 2;
+  const compensation::Observer& observer = *file.predictor.predictor->observer();
   const follow::TrialSettings settings{.top_rpm = number(2, 0.0)};
   const int n_machines = static_cast<int>(number(3, 100)), n_cases = static_cast<int>(number(5, 60));
   const double days = number(4, 16);

@@ -16,8 +16,8 @@
 #include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
+#include "effects/former_words.hpp"
 #include "scenarios/reader/absolute_paths.hpp"
-#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::diagnosis {
@@ -121,9 +121,9 @@ class Writer {
   [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
     TwinState read;
     try {
-      std::vector<scenarios::FormerWord> former;  // in the user's text; they are kept
+      std::vector<effects::FormerWord> former;  // in the user's text; they are kept
       const ConfigMap root =
-          ConfigMap::of_tree(scenarios::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
+          ConfigMap::of_tree(effects::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
       for (const ConfigMap& one : root.maps("effects")) read.push_back(effects::read_effect(one));
     } catch (const InputError&) {  // it is no longer valid YAML, or has an invalid effect
       return false;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "compensation/predictors/formula_predictor.hpp"
 #include "findings/cause_words.hpp"
 #include "findings/columns.hpp"
 #include "findings/iso230_3_section.hpp"
@@ -248,17 +247,6 @@ std::vector<Iso230Run> judged_iso230_3(const StrategyMatrix& m) {
   return list;
 }
 
-/// Displacements and tilts of the runs that strategies do not correct.
-std::vector<std::string> other_axes(const StrategyMatrix& m) {
-  std::vector<std::string> names;
-  const Record& readings = m.runs.front().run.readings;
-  for (const Channel& c : readings.channels) {
-    const bool is_axis = c.unit == "um" || c.unit == "mm" || c.unit == "urad";
-    if (is_axis && &c != readings.find(m.settings.strategies.target)) names.push_back(c.name);
-  }
-  return names;
-}
-
 /// The axis that a verdict is about; "" if no other was recorded.
 std::string axis_text(const StrategyMatrix& m) {
   const std::vector<std::string> others = other_axes(m);
@@ -475,19 +463,15 @@ void add_course(Section& section, const StrategyMatrix& m) {
 /// The formula in readable form, if there is one.
 void add_formula(Section& section, const StrategyMatrix& m) {
   for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.name != "regression, forward" || !s.fitted.fail_safe) continue;
-    const DriftModel* model = as_formula(*s.fitted.predictor);
-    if (!model) continue;
-    const double interval_um = s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN());
+    if (s.fitted.name != "regression, forward" || !s.fitted.predictor->formula()) continue;
     section.sections.push_back(
         {.title = "The formula of '" + s.fitted.name + "'",
-         .blocks = {output::Preformatted{.text = output::formula_text({*model, *s.fitted.fail_safe, interval_um})}},
+         .blocks = {output::Preformatted{.text = output::formula_text(output::deployed_model(s.fitted))}},
          .detail = true});
   }
 }
 
-}  // namespace
-
+/// The conditions that all strategies were judged under: target, tolerance, training runs.
 Section conditions_of(const StrategyMatrix& m) {
   const StrategySettings& how = m.settings.strategies;
   Section section;
@@ -521,12 +505,11 @@ Section conditions_of(const StrategyMatrix& m) {
   return section;
 }
 
-Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedStrategy*>& strategies) {
+/// All figures of each strategy, one row each; compensation/judging/judgement_json has the same keys and values.
+Table strategies_table(const StrategyMatrix& m) {
   const auto for_failures = [&](const char* title) { return has_failures(m) ? title : ""; };
   Table table{.key = "strategies",
-              .title = fmt::format("Error of {} that each strategy leaves (fitted to {}, judged on {})",
-                                   m.settings.strategies.target, counted(m.training.size(), "run", "runs"),
-                                   counted(m.runs.size(), "other", "others")),
+              .title = "All figures of each strategy",
               .columns = {{.key = "name", .title = "strategy"},
                           um_column("worst_peak_um", "largest residual"),
                           percent_column("worst_left_percent", "left of the peak"),
@@ -552,8 +535,7 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                           {.key = "n_not_kept"},
                           {.key = "sensors"},
                           {.key = "decided"}}};
-  for (const JudgedStrategy* judged : strategies) {
-    const JudgedStrategy& s = *judged;
+  for (const JudgedStrategy& s : m.strategies) {
     const Worst intact = worst_of(s, is_intact), failed = worst_of(s, has_failed);
     const bool base = s.fitted.is_baseline, covers = s.fitted.interval_um.has_value();
     std::vector<Datum> row = {s.fitted.name,
@@ -585,6 +567,8 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
   }
   return table;
 }
+
+}  // namespace
 
 std::string model_file_name(const std::string& strategy) {
   std::string name;
@@ -668,11 +652,8 @@ Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) 
 
 Section strategy_details(const StrategyMatrix& m) {
   Section section{.title = "For experts"};
-  std::vector<const JudgedStrategy*> all;
-  for (const JudgedStrategy& s : m.strategies) all.push_back(&s);
-  Table strategies = strategies_table(m, all);
+  Table strategies = strategies_table(m);
   strategies.detail = true;
-  strategies.title = "All figures of each strategy";
   strategies.caption = fmt::format(
       "Residual: drift less the correction in force, that is the prediction times trust, clamped and slewed. Of each family "
       "the worst run in any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. Left "

@@ -13,12 +13,6 @@ namespace driftwright::findings {
 [[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix,
                                                const scenarios::Scenario& scenario, const output::Provenance& made_by);
 
-/// The conditions that all strategies were judged under: target, tolerance, training runs.
-[[nodiscard]] output::Section conditions_of(const compensation::StrategyMatrix& matrix);
-/// The verdicts on these strategies, one row each, with the key `strategies`.
-[[nodiscard]] output::Table strategies_table(const compensation::StrategyMatrix& matrix,
-                                             const std::vector<const compensation::JudgedStrategy*>& strategies);
-
 /// The name of a strategy's files in models/, without extension: "ridge_all_sensors".
 [[nodiscard]] std::string model_file_name(const std::string& strategy);
 

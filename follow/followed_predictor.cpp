@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/bounded_json.hpp"
-#include "base/config_map.hpp"
-#include "base/config_text.hpp"
 #include "base/file_bytes.hpp"
 #include "base/quantity.hpp"
 #include "compensation/predictors/deployed_follower.hpp"
@@ -17,7 +14,6 @@
 #include "follow/state_json.hpp"
 #include "follow/watch_json.hpp"
 #include "output/predictor_file.hpp"
-#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::follow {
 namespace {
@@ -26,7 +22,7 @@ using namespace compensation;
 
 constexpr double kRoom = 0.2, kLeastRoom_K = 3.0;  // beyond what was judged, as the fail-safe allows beyond training
 
-/// Why a law of an observer cannot be followed on a stream; "" if it can.
+/// Why a law cannot be followed on a stream; "" if it can.
 std::string why_not(const effects::Effect& e) {
   for (const effects::Mention& mention : e.kind->mentions) {
     if (mention.of != effects::Mention::Of::kColumn) continue;
@@ -42,18 +38,10 @@ std::string why_not(const effects::Effect& e) {
   return "";
 }
 
-/// @throws InputError  for an observer with laws that a stream cannot provide
-void require_laws_of_streams(const std::string& path) {
-  const Json file = parse_json(read_bytes(path));
-  if (output::value<std::string>(file, "predictor") != "observer") return;
-  std::string yaml = "effects:\n";
-  const Json laws = output::list(output::value<Json>(file, "observer"), "effects");
-  if (laws.empty()) return;
-  for (const Json& law : laws) yaml += "  - " + law.get<std::string>() + "\n";
-  std::vector<scenarios::FormerWord> former;  // words of an earlier release
-  const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
-  for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) {
-    if (const std::string why = why_not(effects::read_effect(entry)); !why.empty())
+/// @throws InputError  for a predictor with laws that a stream cannot provide
+void require_laws_of_streams(const Predictor& predictor, const std::string& path) {
+  for (const effects::Effect& law : predictor.laws()) {
+    if (const std::string why = why_not(law); !why.empty())
       throw InputError(fmt::format("{}: cannot be followed: {}", path, why));
   }
 }
@@ -72,10 +60,9 @@ class FollowedPredictor final : public Followed {
   FollowedPredictor(const std::string& path, const FollowOptions& options)
       : path_(path),
         file_(output::read_predictor(path)),
-        observer_(dynamic_cast<const Observer*>(file_.predictor.predictor.get())),
         follower_(file_.predictor),
         stage_(settings_of(file_.predictor, options)) {
-    require_laws_of_streams(path);
+    require_laws_of_streams(*d().predictor, path);
     if (d().predictor->is_driven() && d().ambient.empty())
       throw InputError(
           fmt::format("{}: cannot be followed: '{}' takes the ambient from its scenario, and a stream has none; a "
@@ -84,12 +71,13 @@ class FollowedPredictor final : public Followed {
     if (file_.judged.is_object() && file_.judged.contains("verdict") && file_.judged["verdict"].is_string())
       axis_.verdict = file_.judged["verdict"].get<std::string>();
     if (!options.despite_verdict) refuse_unsafe();
+    const Observer* observer = d().predictor->observer();
     if (!options.watch.empty()) {
-      if (!observer_) throw InputError(fmt::format("--watch: {} holds no observer, whose residuals could be watched", path));
-      watch_.emplace(*observer_, read_watch(options.watch, content_hash(read_bytes(path))));
-    } else if (observer_ && !options.no_watch && !file_.watch.is_null()) {
+      if (!observer) throw InputError(fmt::format("--watch: {} holds no observer, whose residuals could be watched", path));
+      watch_.emplace(*observer, read_watch(options.watch, content_hash(read_bytes(path))));
+    } else if (observer && !options.no_watch && !file_.watch.is_null()) {
       try {
-        watch_.emplace(*observer_, limits_of(file_.watch));
+        watch_.emplace(*observer, limits_of(file_.watch));
       } catch (const std::exception& e) {
         throw InputError(fmt::format("{}: key `watch`: {}", path, e.what()));
       }
@@ -202,10 +190,10 @@ class FollowedPredictor final : public Followed {
                     path_, d().name, why.empty() ? "" : " (" + why + ")"));
   }
 
-  /// Whether a row comes sooner than an observer wants it: it takes rows as far apart as those it was fitted on, because
-  /// its memory and its doubts count in rows.
+  /// Whether a row comes sooner than the predictor takes rows. An observer takes them as far apart as those it was fitted
+  /// on, because its memory and its doubts count in rows.
   [[nodiscard]] bool is_too_soon(double run_s, double step_s) const {
-    return observer_ && has_begun() && run_->since_row_s(run_s) + 0.5 * step_s < observer_->period_s();
+    return has_begun() && run_->since_row_s(run_s) + 0.5 * step_s < d().predictor->period_s();
   }
 
   /// How far a value is within a range: 1 in it and a fifth of its width beyond, 0 another width further; as the fail-safe
@@ -234,7 +222,6 @@ class FollowedPredictor final : public Followed {
 
   std::string path_;
   output::PredictorFile file_;
-  const Observer* observer_;
   DeployedFollower follower_;
   OutputStage stage_;
   std::optional<LiveRun> run_;

@@ -74,12 +74,12 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
                {"error_K", machine.error.temperature_K},
                {"error_m", machine.error.displacement_m},
                {"error_rad", machine.error.angle_rad},
-               {"system", write_system(machine.system, machine.start, into_npy(in_folder(work)))}};
+               {"system", solver::write_system(machine.system, machine.start, into_npy(in_folder(work)))}};
   if (machine.modal) {
     const auto write = [&](const char* name, const compensation::ModalPredictor& p) {
       json["modal"][name] = {
           {"time_constant_s", p.time_constant_s},
-          {"system", write_system(p.system, p.start, into_npy(in_folder(work, fmt::format("modal_{}_", name))))}};
+          {"system", solver::write_system(p.system, p.start, into_npy(in_folder(work, fmt::format("modal_{}_", name))))}};
     };
     write("bare", machine.modal->bare);
     write("completed", machine.modal->completed);
@@ -137,15 +137,15 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
     machine.mesh = read_mesh(json.at("regions"), in_folder(folder));
-    machine.system = read_system(json.at("system"), balance, from_npy(in_folder(folder)), machine.start);
+    machine.system = solver::read_system(json.at("system"), balance, from_npy(in_folder(folder)), machine.start);
     machine.error = {json.at("error_K"), json.at("error_m"), json.at("error_rad")};
     if (json.contains("modal")) {
       const auto read = [&](const char* name) {
         const Json& m = json.at("modal").at(name);
         compensation::ModalPredictor p;
         p.time_constant_s = m.at("time_constant_s").get<std::vector<double>>();
-        p.system =
-            read_system(m.at("system"), balance, from_npy(in_folder(folder, fmt::format("modal_{}_", name))), p.start);
+        p.system = solver::read_system(m.at("system"), balance, from_npy(in_folder(folder, fmt::format("modal_{}_", name))),
+                                       p.start);
         return p;
       };
       machine.modal = {read("bare"), read("completed")};

@@ -58,9 +58,9 @@ Printed printed(const Table& table, std::size_t c) {
   return p;
 }
 
-class Writer {
+class TextWriter {
  public:
-  explicit Writer(const TextOptions& options) : options_(options) {}
+  explicit TextWriter(const TextOptions& options) : options_(options) {}
 
   /// @returns  whether there was anything to show
   bool add_section(const Section& section, std::size_t indent) {
@@ -161,7 +161,7 @@ class Writer {
 }  // namespace
 
 std::string section_text(const Section& section, const TextOptions& options) {
-  Writer writer(options);
+  TextWriter writer(options);
   writer.add_section(section, 2);
   return writer.text();
 }

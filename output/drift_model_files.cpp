@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 
@@ -30,6 +31,17 @@ std::string term_text(const DriftModel& model, const DriftModel::Term& t) {
 }
 
 }  // namespace
+
+DeployedModel deployed_model(const compensation::DeployedPredictor& d) {
+  const DriftModel* formula = d.predictor->formula();
+  if (!formula)
+    throw std::logic_error(
+        fmt::format("'{}' has no form for a control: C and LinuxCNC take a formula of readings and their lags, which "
+                    "Predictor::formula() of its class must give",
+                    d.name));
+  if (!d.fail_safe) throw std::logic_error(fmt::format("'{}' has no fail-safe; a control needs one", d.name));
+  return {*formula, *d.fail_safe, d.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+}
 
 std::string formula_text(const DeployedModel& d) {
   const DriftModel& m = d.model;

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/drift_model.hpp"
-#include "compensation/predictors/fail_safe.hpp"
 
 namespace driftwright::output {
 
@@ -14,6 +14,10 @@ struct DeployedModel {
   compensation::FailSafe safe;
   double interval_um = 0.0;  ///< half width of its 95 % prediction interval; NaN: unknown
 };
+
+/// What a control can run of a predictor: its formula with its fail-safe.
+/// @throws std::logic_error  for a predictor that gives no formula, and for one without a fail-safe
+[[nodiscard]] DeployedModel deployed_model(const compensation::DeployedPredictor& deployed);
 
 /// A formula that can be typed into a control, with units and validity ranges.
 [[nodiscard]] std::string formula_text(const DeployedModel& deployed);

@@ -12,7 +12,7 @@
 namespace driftwright::output {
 namespace {
 
-constexpr double kWidth = 968, kRow = 26, kLetter = 6.9, kSmallLetter = 5.9,
+constexpr double kMapWidth = 968, kRow = 26, kMapLetter = 6.9, kSmallLetter = 5.9,
                  kGap = 2;  // of the page; of a line of text; of a letter at 13 and at 11 px
 constexpr double kMostColumn = 96;
 
@@ -45,7 +45,7 @@ std::string number_text(double value) {
 }
 
 /// As many letters as fit.
-std::string cut(const std::string& text, double room, double letter = kLetter) {
+std::string cut(const std::string& text, double room, double letter = kMapLetter) {
   const auto n = static_cast<std::size_t>(std::max(1.0, room / letter));
   std::size_t letters = 0, bytes = 0;
   for (; bytes < text.size() && letters < n; ++letters) {
@@ -69,13 +69,13 @@ std::string draw_heat_map(const HeatMap& map) {
   std::size_t longest = 0;
   for (const std::string& row : map.rows) longest = std::max(longest, row.size());
   const auto n = static_cast<double>(map.columns.size());
-  const double left = std::min(0.4 * kWidth, kLetter * static_cast<double>(longest) + 14.0);
-  const double column = std::min(kMostColumn, (kWidth - left) / std::max(1.0, n));
+  const double left = std::min(0.4 * kMapWidth, kMapLetter * static_cast<double>(longest) + 14.0);
+  const double column = std::min(kMostColumn, (kMapWidth - left) / std::max(1.0, n));
   const double top = 2.0 * kRow, bottom = top + kRow * static_cast<double>(map.rows.size());
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"system-ui, Arial, sans-serif\" "
       "font-size=\"13\" fill=\"#1d2329\" role=\"img\">\n",
-      kWidth, bottom + 2.0 * kRow);
+      kMapWidth, bottom + 2.0 * kRow);
   for (std::size_t c = 0; c < map.columns.size(); ++c) {
     const double x = left + column * static_cast<double>(c);
     std::size_t end = c;  // end of the group that begins here

@@ -71,7 +71,7 @@ Json quantity_definition(const std::string& unit) {
   return {{"type", "string"}, {"pattern", fmt::format("^{}{}", kNumber, pattern)}};
 }
 
-class Writer {
+class SchemaWriter {
  public:
   /// One of several maps: the one whose condition holds.
   Json of(const std::vector<Map>& maps) {
@@ -233,7 +233,7 @@ class Writer {
 }  // namespace
 
 std::string json_schema(const std::vector<Map>& files, const std::string& title) {
-  Writer writer;
+  SchemaWriter writer;
   Json json = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
   json.update(writer.of(files));
   json["definitions"] = writer.definitions();

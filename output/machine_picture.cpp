@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "output/base64.hpp"
 #include "mesh/machine_skin.hpp"
+#include "output/base64.hpp"
 #include "output/markup.hpp"
 #include "output/surface_view.hpp"
 
@@ -35,7 +35,7 @@ std::array<float, 3> colour_of(double share) {
 }
 
 /// About the width of a text in the picture, of a wide sans-serif font [units of the SVG].
-double width_of(const std::string& text) {
+double drawn_width(const std::string& text) {
   constexpr double kOfLetter = 6.8;
   return kOfLetter * static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
            return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // bytes of UTF-8 that go on with a letter are none
@@ -46,7 +46,7 @@ double width_of(const std::string& text) {
 double margin_for(const std::vector<PictureMark>& marks) {
   constexpr double kLeast = 100.0;
   double margin = kLeast;
-  for (const PictureMark& mark : marks) margin = std::max(margin, std::ceil(width_of(mark.name)) + 12.0);
+  for (const PictureMark& mark : marks) margin = std::max(margin, std::ceil(drawn_width(mark.name)) + 12.0);
   return margin;
 }
 
@@ -62,7 +62,7 @@ std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn
     const Eigen::Vector2d p = drawn.pixel(mark.at_m) / kDense;
     sides[p.x() < 0.5 * kViewWidth ? 0 : 1].push_back({&mark, left + p.x(), p.y(), 0.0, drawn.hides(mark.at_m, slack)});
   }
-  constexpr double kLine = 13.0;
+  constexpr double kLabelStep = 13.0;
   constexpr std::size_t kMostNames = 30;  // of a side
   std::string out;
   for (int side = 0; side < 2; ++side) {
@@ -78,10 +78,10 @@ std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn
                          list.size() - kMostNames);
       list.resize(kMostNames);
     }
-    double next = kLine;
-    for (Label& l : list) next = (l.shown_y = std::max(l.y, next)) + kLine;
+    double next = kLabelStep;
+    for (Label& l : list) next = (l.shown_y = std::max(l.y, next)) + kLabelStep;
     double last = kViewHeight - 4.0;
-    for (auto l = list.rbegin(); l != list.rend(); ++l) last = (l->shown_y = std::min(l->shown_y, last)) - kLine;
+    for (auto l = list.rbegin(); l != list.rend(); ++l) last = (l->shown_y = std::min(l->shown_y, last)) - kLabelStep;
     const double text_x = side == 0 ? left - 6.0 : left + kViewWidth + 6.0;
     for (const Label& l : list) {
       const char* tone = l.hidden ? "#98a2ab" : "#1d2329";
@@ -140,7 +140,8 @@ std::string draw_machine(const MachinePicture& picture) {
   const std::vector<std::string>& names = picture.by_region ? mesh.regions : mesh.surfaces;
   if (picture.field) {
     low = picture.field->value.minCoeff<Eigen::PropagateNumbers>();
-    high = std::max(picture.field->value.maxCoeff<Eigen::PropagateNumbers>(), low + 0.01);  // what differs by less has one colour
+    high = std::max(picture.field->value.maxCoeff<Eigen::PropagateNumbers>(),
+                    low + 0.01);  // what differs by less has one colour
     for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.
@@ -164,7 +165,7 @@ std::string draw_machine(const MachinePicture& picture) {
   for (int i : shown) legend.emplace_back(hex(distinct_colour(i)), names[static_cast<std::size_t>(i)]);
   if (!picture.by_region) legend.emplace_back("#d1d6db", "without a name");
   double longest = 200.0;
-  for (const auto& [colour, name] : legend) longest = std::max(longest, width_of(name));
+  for (const auto& [colour, name] : legend) longest = std::max(longest, drawn_width(name));
   const int columns_of_names = std::max(1, static_cast<int>((width - 30.0) / (longest + 40.0)));
   const int rows_of_names =
       in_colours_of_names ? (static_cast<int>(legend.size()) + columns_of_names - 1) / columns_of_names : 0;

@@ -62,7 +62,7 @@ class NamelessFile {
 };
 
 /// A gnuplot string literal, in which only the quote itself is special.
-std::string quoted(const std::string& text) {
+std::string gnuplot_quoted(const std::string& text) {
   std::string literal = "'";
   for (const char c : text) {
     if (c == '\'')
@@ -191,10 +191,10 @@ std::string script(const Plot& plot) {
       "'%g'\n";
   out += "set grid lt 1 lw 0.6 lc rgb '#dddddd'\nset minussign\n";
   out += fmt::format("set xrange [{:.12g}:{:.12g}]\nset yrange [{:.12g}:{:.12g}]\n", x.low, x.high, y.low, y.high);
-  out += fmt::format("set xlabel {} offset 0, 0.4 textcolor rgb '#333333'\n", quoted(plot.x_label));
+  out += fmt::format("set xlabel {} offset 0, 0.4 textcolor rgb '#333333'\n", gnuplot_quoted(plot.x_label));
   // A label instead of gnuplot's ylabel, which long tick labels push out of the picture.
   out += fmt::format("set label {} at screen {:.4f}, graph 0.5 center rotate by 90 textcolor rgb '#333333'\n",
-                     quoted(plot.y_label), 18.0 / width);
+                     gnuplot_quoted(plot.y_label), 18.0 / width);
   for (std::size_t b = 0; b < plot.bands.size(); ++b) {
     const Band& band = plot.bands[b];
     if (band.low != band.high) {
@@ -217,7 +217,7 @@ std::string script(const Plot& plot) {
         "'#777777'\n",
         mark.x);
     out += fmt::format("set label {} at first {:.9g}, graph 1 offset 0, {} left font ',11' textcolor rgb '#555555'\n",
-                       quoted(mark.label), mark.x, 0.6 + rows[m]);
+                       gnuplot_quoted(mark.label), mark.x, 0.6 + rows[m]);
   }
   if (empty) out += "set label 'no data' at graph 0.5, graph 0.5 center textcolor rgb '#777777'\n";
 
@@ -227,7 +227,7 @@ std::string script(const Plot& plot) {
     if (data.empty()) return;
     const std::string block = fmt::format("$data{}", n_curves++);
     out += fmt::format("{} << END\n{}END\n", block, data);
-    curves += fmt::format("{} {} using 1:2 {} title {}", curves.empty() ? "plot" : ",", block, style, quoted(label));
+    curves += fmt::format("{} {} using 1:2 {} title {}", curves.empty() ? "plot" : ",", block, style, gnuplot_quoted(label));
   };
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& s = plot.series[i];

@@ -9,11 +9,9 @@
 #include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
 #include "base/hashed_json.hpp"
-#include "compensation/predictors/formula_predictor.hpp"
-#include "compensation/predictors/past_drift.hpp"
-#include "output/formula_json.hpp"
+#include "compensation/predictors/predictor_kind.hpp"
+#include "output/fail_safe_json.hpp"
 #include "output/json_value.hpp"
-#include "output/observer_json.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -30,72 +28,38 @@ void require_whole(const Json& file) {
         "writes it anew");
 }
 
-Json earlier_runs_json(const EarlierRunsPredictor& p) {
-  Json runs = Json::array();
-  for (const Record& run : p.runs()) {
-    Json drift = Json::array();
-    for (double v : run.channels.front().values) drift.push_back(number(v));
-    runs.push_back({{"name", run.source}, {"time_s", run.time_s}, {"drift_um", std::move(drift)}});
+/// The predictor that a file holds, whose content is under the name of its kind.
+std::shared_ptr<const Predictor> predictor_of(const Json& file, const DriftTarget& target) {
+  const auto word = value<std::string>(file, "predictor");
+  std::vector<std::string> known;
+  for (const PredictorKind& kind : predictor_kinds()) {
+    if (kind.key == word) return kind.read(value<Json>(file, word.c_str()), target);
+    known.push_back(kind.key);
   }
-  return {{"runs", std::move(runs)}};
+  throw InputError(fmt::format("key `predictor` is '{}'; {} are known", word, fmt::join(known, ", ")));
 }
 
-std::shared_ptr<const Predictor> earlier_runs_of(const Json& j, const std::string& target) {
-  std::vector<Record> runs;
-  for (const Json& run : list(j, "runs")) {
-    Record r{.source = value<std::string>(run, "name"),
-             .time_s = value<std::vector<double>>(run, "time_s"),
-             .channels = {{target, "um", {}}}};
-    for (const Json& v : list(run, "drift_um")) r.channels[0].values.push_back(v.is_number() ? v.get<double>() : NAN);
-    if (r.time_s.empty() || r.time_s.size() != r.channels[0].values.size() ||
-        std::adjacent_find(r.time_s.begin(), r.time_s.end(), std::greater_equal<>()) != r.time_s.end())
-      throw InputError(fmt::format("run '{}' must have as many `drift_um` as `time_s`, which rise", r.source));
-    runs.push_back(std::move(r));
-  }
-  if (runs.empty()) throw InputError("`runs` is empty; at least one run is required");
-  return std::make_shared<EarlierRunsPredictor>(runs, target);
-}
-
-/// The content of the predictor, and the name of its kind.
-std::pair<std::string, Json> made_of(const Predictor& p, const std::vector<effects::Effect>& effects) {
-  if (const DriftModel* formula = as_formula(p)) return {"formula", formula_json(*formula)};
-  if (const auto* observer = dynamic_cast<const Observer*>(&p)) return {"observer", observer_json(*observer, effects)};
-  if (const auto* constant = dynamic_cast<const ConstantPredictor*>(&p))
-    return {"constant", {{"drift_um", constant->drift_um()}}};
-  if (const auto* runs = dynamic_cast<const EarlierRunsPredictor*>(&p)) return {"earlier_runs", earlier_runs_json(*runs)};
-  throw std::logic_error("a predictor of a kind that no file holds");
-}
-
-/// @param file  holds the predictor's content under the name of its kind
-std::shared_ptr<const Predictor> predictor_of(const Json& file, const DeployedPredictor& d) {
-  const std::vector<std::string> kinds = {"formula", "observer", "constant", "earlier_runs"};
-  const auto kind = value<std::string>(file, "predictor");
-  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-    throw InputError(fmt::format("key `predictor` is '{}'; {} are known", kind, fmt::join(kinds, ", ")));
-  const auto j = value<Json>(file, kind.c_str());
-  if (kind == "formula") {
-    DriftModel model = formula_of(j);
-    model.target = d.target;
-    model.target_unit = "um";
-    model.from_start = d.from_start;
-    return std::make_shared<FormulaPredictor>(std::move(model));
-  }
-  if (kind == "observer") return std::make_shared<Observer>(observer_of(j));
-  if (kind == "constant") return std::make_shared<ConstantPredictor>(finite(j, "drift_um"));
-  return earlier_runs_of(j, d.target);
-}
-
-/// Requires that the fail-safe guards every input of a formula.
+/// Requires that the fail-safe guards every input that the predictor does not look after.
 void require_guards(const DeployedPredictor& d) {
-  if (!d.fail_safe) return;
-  if (d.fail_safe->from_start != d.from_start)
+  if (d.fail_safe && d.fail_safe->from_start != d.from_start)
     throw InputError("`from_start` of the predictor and of its `fail_safe` differ; they must say the same");
-  if (!as_formula(*d.predictor)) return;
-  for (const Input& input : d.predictor->inputs()) {
-    if (std::none_of(d.fail_safe->guards.begin(), d.fail_safe->guards.end(),
-                     [&](const FailSafe::Guard& g) { return g.input == input.name && g.unit == input.unit; }))
-      throw InputError(fmt::format("term '{}' in {} has no guard among `guards`", input.name, input.unit));
-  }
+  if (const std::optional<Input> input = unguarded_input(d))
+    throw InputError(fmt::format("input '{}' in {} has no guard in `fail_safe`", input->name, input->unit));
+}
+
+/// What the file holds of a predictor. @throws std::logic_error  for one that must not be deployed so
+Written written_of(const DeployedPredictor& d) {
+  if (const std::optional<Input> input = unguarded_input(d))
+    throw std::logic_error(
+        fmt::format("'{}' reads '{}' in {} without a guard; its fail-safe must guard each of guarded_inputs()", d.name,
+                    input->name, input->unit));
+  std::optional<Written> written = d.predictor->written();
+  if (!written) throw std::logic_error(fmt::format("'{}' is not stored in files: its written() gives nothing", d.name));
+  const std::vector<PredictorKind>& kinds = predictor_kinds();
+  if (std::none_of(kinds.begin(), kinds.end(), [&](const PredictorKind& kind) { return kind.key == written->kind; }))
+    throw std::logic_error(fmt::format(
+        "no file with a predictor of the kind '{}' could be read; the list PREDICTOR_KINDS must name it", written->kind));
+  return *std::move(written);
 }
 
 PredictorFile file_of(const Json& j) {
@@ -114,7 +78,7 @@ PredictorFile file_of(const Json& j) {
   d.ambient = value<std::string>(j, "hall");
   d.reason = value<std::string>(j, "decided");
   if (const double half = number_or(j, "interval_95_um", NAN); std::isfinite(half)) d.interval_um = half;
-  d.predictor = predictor_of(j, d);
+  d.predictor = predictor_of(j, {.name = d.target, .from_start = d.from_start});
   if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
   require_guards(d);
   file.judged = value<Json>(j, "judged");
@@ -129,9 +93,9 @@ PredictorFile file_of(const Json& j) {
 
 }  // namespace
 
-Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect>& effects, const Provenance& made_by) {
+Json predictor_json(const PredictorFile& file, const Provenance& made_by) {
   const DeployedPredictor& d = file.predictor;
-  auto [kind, made] = made_of(*d.predictor, effects);
+  Written written = written_of(d);
   Json j = {{"format", kFormat},
             {"program", "driftwright"},
             {"version", made_by.version},
@@ -152,8 +116,8 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
                                             {"high_degC", file.covered->high_degC}}
                                      : Json(nullptr)},
             {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
-            {"predictor", kind}};
-  j[kind] = std::move(made);
+            {"predictor", written.kind}};
+  j[written.kind] = std::move(written.content);
   return with_hash(std::move(j));
 }
 

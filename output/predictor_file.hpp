@@ -5,7 +5,6 @@
 #include <string>
 
 #include "compensation/predictors/deployed_predictor.hpp"
-#include "effects/effect.hpp"
 #include "output/results_folder.hpp"
 
 namespace driftwright::output {
@@ -26,13 +25,12 @@ struct PredictorFile {
   std::optional<Covered> covered = {};  ///< of a predictor that is driven by speed and ambient
 };
 
-/// @param effects  effects of the machine whose model it uses; empty for a predictor without a model
-/// @throws std::logic_error  for a kind of predictor that files do not support
-[[nodiscard]] nlohmann::ordered_json predictor_json(const PredictorFile& file, const std::vector<effects::Effect>& effects,
-                                                    const Provenance& made_by);
+/// @throws std::logic_error  for a predictor with an input that nothing guards (unguarded_input()), for one that is not stored,
+///                           and for one of a kind that is not in predictor_kinds()
+[[nodiscard]] nlohmann::ordered_json predictor_json(const PredictorFile& file, const Provenance& made_by);
 
 /// @param path  a JSON file as predictor_json() makes it
-/// @throws InputError  for a file that is no predictor, naming the key
+/// @throws InputError  for a file that is no predictor, naming the key, and for a predictor with an input that nothing guards
 [[nodiscard]] PredictorFile read_predictor(const std::string& path);
 
 }  // namespace driftwright::output

@@ -29,9 +29,9 @@ std::pair<std::string, std::string> divided(const std::string& path) {
   return dot == std::string::npos ? std::pair{std::string(), path} : std::pair{path.substr(0, dot), path.substr(dot + 1)};
 }
 
-class Writer {
+class KeyWriter {
  public:
-  explicit Writer(const std::vector<ResultKey>& keys) : keys_(keys) {
+  explicit KeyWriter(const std::vector<ResultKey>& keys) : keys_(keys) {
     for (const ResultKey& key : keys) {
       const std::string around = divided(key.path).first;
       bool is_known = around.empty();
@@ -128,7 +128,7 @@ std::string kind_words(const ResultKey& key) {
 }  // namespace
 
 std::string result_schema(const std::vector<ResultKey>& keys, const std::string& title) {
-  Writer writer(keys);
+  KeyWriter writer(keys);
   Json json = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
   json.update(writer.object(""));
   json["definitions"] = writer.definitions();

@@ -168,12 +168,12 @@ std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram,
   return "thermometers read with noise and steps, as in this run of `validate`";
 }
 
-/// The drift that is known before the run. For a formula the modes predict the temperatures; other predictors use drive
-/// and ambient.
+/// The drift that is known before the run. A driven predictor uses drive and ambient; for the inputs of others the modes
+/// predict the temperatures.
 std::vector<double> foretold_um(const Scenario& scenario, const scenarios::Model& model, const DeployedPredictor& d,
                                 const ObservedRun& run) {
   ObservedRun known{run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
-  if (as_formula(*d.predictor))
+  if (!d.predictor->is_driven() && !d.predictor->inputs().empty())
     known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, run.cyclogram),
                                      run.cyclogram, run.readings.time_s);
   return ahead(*d.predictor, known);

@@ -20,11 +20,14 @@ using scenarios::Scenario;
 
 constexpr int kModesOfObserver = 12;  // the slowest modes of the model, in addition to its steady responses
 
-Physics physics_from(const solver::ReducedSystem& linear, const Eigen::VectorXd& start, double ambient_K, double scatter,
-                     int seed) {
+Physics physics_from(const Scenario& scenario, const solver::ReducedSystem& linear, const Eigen::VectorXd& start,
+                     double ambient_K, double scatter, int seed) {
   const compensation::ModalPredictor modes =
       compensation::make_ritz_predictor(linear, start, kModesOfObserver, {.drive = {}, .ambient_K = ambient_K});
-  return {compensation::scattered(modes.system, scatter, seed, true), modes.start, ambient_K};
+  return {.system = compensation::scattered(modes.system, scatter, seed, true),
+          .start = modes.start,
+          .start_ambient_K = ambient_K,
+          .laws = scenario.machine->effects};
 }
 
 Eigen::Index output_index(const solver::ReducedSystem& system, const std::string& name) {
@@ -61,7 +64,8 @@ ModelRun model_run(const solver::ReducedSystem& system, const Eigen::VectorXd& s
 std::optional<Physics> physics_of(const Scenario& scenario, const scenarios::Model& model, double scatter, int seed) {
   const scenarios::ReducedMachine* reduced = model.reduced();
   if (!reduced || !reduced->system.is_linear()) return std::nullopt;
-  return physics_from(reduced->system, reduced->start, scenarios::felt_ambient_at_start_K(*scenario.machine), scatter, seed);
+  return physics_from(scenario, reduced->system, reduced->start, scenarios::felt_ambient_at_start_K(*scenario.machine),
+                      scatter, seed);
 }
 
 LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& model, std::span<const ObservedRun> runs,
@@ -100,7 +104,7 @@ LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& m
       lost.error_um = std::max(lost.error_um, (drift_um - nonlinear_um[r]).cwiseAbs().maxCoeff());
       lost.drift_um = std::max(lost.drift_um, nonlinear_um[r].cwiseAbs().maxCoeff());
     }
-    Physics physics = physics_from(linear.system, reduced->start, ambient_K, scatter, seed);
+    Physics physics = physics_from(scenario, linear.system, reduced->start, ambient_K, scatter, seed);
     physics.linearised = std::move(lost);
     return {std::move(physics), ""};
   } catch (const RangeError& e) {

@@ -42,7 +42,7 @@ output::PredictorFile formula(bool from_start) {
 }
 
 std::string path_of(const output::PredictorFile& file, const std::string& name = "model.json") {
-  return driftwright::write_file(name, output::predictor_json(file, {}, {"1", "a test"}).dump());
+  return driftwright::write_file(name, output::predictor_json(file, {"1", "a test"}).dump());
 }
 
 Session session_of(const std::string& path) {

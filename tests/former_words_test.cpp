@@ -1,6 +1,6 @@
 // `hall` of earlier releases is read as `ambient`, with a note for each place; both at once, and ambiguous words, are refused.
 
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,6 +19,9 @@
 namespace driftwright::scenarios::former_words_test {
 namespace {
 
+using effects::FormerWord;
+using effects::in_present_words;
+using effects::name_in_present_words;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

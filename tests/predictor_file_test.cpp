@@ -47,13 +47,13 @@ PredictorFile formula(bool from_start) {
   return file;
 }
 
-PredictorFile back(const PredictorFile& file, const std::vector<effects::Effect>& effects = {}) {
-  return read_predictor(driftwright::write_file("predictor.json", predictor_json(file, effects, {"1", "a test"}).dump()));
+PredictorFile back(const PredictorFile& file) {
+  return read_predictor(driftwright::write_file("predictor.json", predictor_json(file, {"1", "a test"}).dump()));
 }
 
-/// Everything but a model's laws is in the text.
-void expect_same(const PredictorFile& a, const PredictorFile& b, const std::vector<effects::Effect>& effects = {}) {
-  EXPECT_EQ(predictor_json(a, effects, {"1", "a test"}).dump(), predictor_json(b, effects, {"1", "a test"}).dump());
+/// All of a predictor is in the text.
+void expect_same(const PredictorFile& a, const PredictorFile& b) {
+  EXPECT_EQ(predictor_json(a, {"1", "a test"}).dump(), predictor_json(b, {"1", "a test"}).dump());
 }
 
 TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
@@ -78,7 +78,7 @@ TEST(PredictorFile, AFailSafeLearntAtOneSpeedComesBack) {
     std::vector<std::vector<double>> predicted;
     for (Record& r : training) {
       std::fill(r.channels.back().values.begin(), r.channels.back().values.end(), speed_rpm);
-      predicted.push_back(as_formula(*file.predictor.predictor)->predict(r));
+      predicted.push_back(file.predictor.predictor->formula()->predict(r));
     }
     file.predictor.fail_safe = learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, false);
     const PredictorFile read = back(file);
@@ -119,7 +119,7 @@ TEST(PredictorFile, EarlierRunsThatAreNoneAreRefused) {
                     .target = "z",
                     .is_baseline = true,
                     .predictor = std::make_shared<EarlierRunsPredictor>(runs, "z")};
-  const Json good = predictor_json(file, {}, {"1", "a test"});
+  const Json good = predictor_json(file, {"1", "a test"});
   const auto refused = [&](const char* key, const Json& value, const char* word) {
     Json j = good;
     (key == std::string("runs") ? j["earlier_runs"]["runs"] : j["earlier_runs"]["runs"][0][key]) = value;
@@ -138,7 +138,7 @@ TEST(PredictorFile, EarlierRunsThatAreNoneAreRefused) {
 }
 
 TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
-  const Json good = predictor_json(formula(false), {}, {"1", "a test"});
+  const Json good = predictor_json(formula(false), {"1", "a test"});
   struct Broken {
     const char* what;
     std::function<void(Json&)> by;
@@ -194,7 +194,7 @@ TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
 }
 
 TEST(PredictorFile, WhatIsNotWhatWasJudgedIsRefused) {
-  Json j = predictor_json(formula(false), {}, {"1", "a test"});
+  Json j = predictor_json(formula(false), {"1", "a test"});
   const auto read = [](const Json& file) { return read_predictor(driftwright::write_file("changed.json", file.dump(1))); };
   EXPECT_NO_THROW((void)read(j));  // the layout does not matter
   const auto refused = [&](const std::function<void(Json&)>& change, const char* word) {

@@ -60,11 +60,9 @@ double noise_in(std::span<const ResidualSeries> series, double stated_um) {
   return n > 0.0 ? std::min(stated_um, std::sqrt(square / n)) : stated_um;
 }
 
-/// The inputs that a fail-safe must check; an observer checks its sensors itself.
-std::vector<std::string> guarded_inputs(const Predictor& predictor) {
+std::vector<std::string> names_of(const std::vector<Input>& inputs) {
   std::vector<std::string> names;
-  if (predictor.looks_after_inputs()) return names;
-  for (const Input& input : predictor.inputs()) names.push_back(input.name);
+  for (const Input& input : inputs) names.push_back(input.name);
   return names;
 }
 
@@ -159,7 +157,7 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
     d.interval_um = std::max(d.interval_um.value_or(0.0), d.fold_errors.back().within_um);
   }
   if (d.is_baseline || predictors.empty()) return 1.0;
-  const std::vector<std::string> inputs = guarded_inputs(*d.predictor);
+  const std::vector<std::string> inputs = names_of(guarded_inputs(*d.predictor));
   std::vector<DeployedPredictor> tried(std::size(kRooms));
   for (std::size_t k = 0; k < predictors.size(); ++k) {
     const Seen seen = seen_in(*predictors[k], folds, k, s.from_start);
@@ -184,7 +182,8 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
 FailSafe fail_safe_of(const Predictor& predictor, std::span<const ObservedRun> training, const LeftOutSettings& s,
                       double room) {
   const Seen seen = seen_in(predictor, training, s.from_start);
-  FailSafe safe = learn_fail_safe(seen.readings, guarded_inputs(predictor), seen.predicted_um, s.from_start, true, room);
+  FailSafe safe =
+      learn_fail_safe(seen.readings, names_of(guarded_inputs(predictor)), seen.predicted_um, s.from_start, true, room);
   limit(safe, s.limits);
   return safe;
 }

@@ -160,8 +160,8 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               selection = select_by_observability(p.system, p.start, histories, s.candidates, s.target, s.n_sensors, how);
               f.reason = fmt::format("{}: {}", fmt::join(selection.sensors, ", "), selection.reason);
             }
-            Observer observer(p.system, p.start, p.start_ambient_K, learns ? s.candidates : selection.sensors, s.target,
-                              how);
+            Observer observer(p.system, p.start, p.start_ambient_K, learns ? s.candidates : selection.sensors, s.target, how,
+                              p.laws);
             if (learns) {
               observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
@@ -295,7 +295,7 @@ struct Member {
 /// The mean of formulas.
 std::shared_ptr<const Predictor> mean_predictor(std::span<const std::shared_ptr<const Predictor>> members) {
   std::vector<DriftModel> models;
-  for (const std::shared_ptr<const Predictor>& p : members) models.push_back(*as_formula(*p));
+  for (const std::shared_ptr<const Predictor>& p : members) models.push_back(*p->formula());
   return std::make_shared<FormulaPredictor>(mean_of(models, kBlend));
 }
 
@@ -309,7 +309,7 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   std::vector<DriftModel> models;
   std::vector<std::string> names;
   for (const Member& m : members) {
-    models.push_back(*as_formula(*m.deployed.predictor));
+    models.push_back(*m.deployed.predictor->formula());
     names.push_back(m.deployed.name);
   }
   FoldPredictors in_folds;

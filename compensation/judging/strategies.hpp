@@ -28,6 +28,7 @@ struct Physics {
   Eigen::VectorXd start;                           ///< state at the start of runs with the ambient at `start_ambient_K`
   double start_ambient_K = 0.0;                    ///< minus the reference temperature
   std::optional<LinearisedModel> linearised = {};  ///< none: the machine's own laws are linear
+  std::vector<effects::Effect> laws = {};          ///< effects of the machine that the system was made of
 };
 
 /// The corrected axis is probed again and again, and the correction takes up what is found (residual_process.hpp).

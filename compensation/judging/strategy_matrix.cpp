@@ -259,6 +259,16 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
 }
 
+std::vector<std::string> other_axes(const StrategyMatrix& m) {
+  std::vector<std::string> names;
+  const Record& readings = m.runs.front().run.readings;
+  for (const Channel& c : readings.channels) {
+    const bool is_axis = c.unit == "um" || c.unit == "mm" || c.unit == "urad";
+    if (is_axis && &c != readings.find(m.settings.strategies.target)) names.push_back(c.name);
+  }
+  return names;
+}
+
 std::vector<std::string> families_of(const StrategyMatrix& matrix) {
   return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.family; });
 }

@@ -114,6 +114,8 @@ struct Worst {
 /// RMS of the remaining error over the rows of all runs with all sensors intact [um].
 [[nodiscard]] double overall_rms(const JudgedStrategy& strategy);
 
+/// Displacements and tilts of the judged runs that strategies neither correct nor judge.
+[[nodiscard]] std::vector<std::string> other_axes(const StrategyMatrix& matrix);
 /// Families, or seasons, in the order of the runs.
 [[nodiscard]] std::vector<std::string> families_of(const StrategyMatrix& matrix);
 [[nodiscard]] std::vector<std::string> seasons_of(const StrategyMatrix& matrix);

@@ -17,10 +17,6 @@ struct FollowedCorrection {
   std::optional<double> interval_um = {};
 };
 
-/// Time constant with which a low trust is forgotten: one work shift [s]. A model that was wrong is still wrong after its
-/// filter has adapted.
-inline constexpr double kRemembersDoubt_s = 8.0 * 3600.0;
-
 /// A deployed predictor during one run. The predictor must outlive it.
 class DeployedFollower {
  public:

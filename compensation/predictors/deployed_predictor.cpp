@@ -5,6 +5,16 @@
 
 namespace driftwright::compensation {
 
+std::optional<Input> unguarded_input(const DeployedPredictor& deployed) {
+  for (const Input& input : guarded_inputs(*deployed.predictor)) {
+    const auto is_of_input = [&](const FailSafe::Guard& g) { return g.input == input.name && g.unit == input.unit; };
+    if (!deployed.fail_safe ||
+        std::none_of(deployed.fail_safe->guards.begin(), deployed.fail_safe->guards.end(), is_of_input))
+      return input;
+  }
+  return std::nullopt;
+}
+
 std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust) {
   if (!deployed.interval_um) return std::nullopt;
   return trust > 0.0 ? std::optional(*deployed.interval_um / trust) : std::nullopt;

@@ -38,6 +38,10 @@ struct DeployedPredictor {
   std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
 };
 
+/// The first input that must be guarded and has no guard in the fail-safe; none: the predictor may be deployed. What is not
+/// guarded is neither written to a file nor read from one.
+[[nodiscard]] std::optional<Input> unguarded_input(const DeployedPredictor& deployed);
+
 /// @return the half width of the prediction interval in force [um]: interval_um / trust; none without trust, and if there is
 ///         no interval
 [[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);

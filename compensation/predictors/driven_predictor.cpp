@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "compensation/predictors/predictor_kind.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
@@ -29,6 +31,10 @@ class DrivenFollower final : public Follower {
 };
 
 }  // namespace
+
+std::optional<Written> DrivenPredictor::written() const {
+  return std::nullopt;
+}
 
 std::unique_ptr<Follower> DrivenPredictor::follow() const {
   return std::make_unique<DrivenFollower>(drift_um_);

@@ -21,6 +21,8 @@ class DrivenPredictor final : public Predictor {
   explicit DrivenPredictor(Drift drift_um) : drift_um_(std::move(drift_um)) {}
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
   [[nodiscard]] bool is_driven() const override { return true; }
+  /// None: a function cannot be stored.
+  [[nodiscard]] std::optional<Written> written() const override;
   /// Computes the drift of all rows of the run, and again when rows have been added.
   /// @throws std::logic_error  from next(), for a drift of another length than the times; and what the drift itself throws
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;

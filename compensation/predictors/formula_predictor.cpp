@@ -5,7 +5,9 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/json_value.hpp"
 #include "compensation/predictors/control_tables.hpp"
+#include "compensation/predictors/predictor_kind.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -66,6 +68,31 @@ class FormulaFollower final : public Follower {
   bool has_channels_ = false;
 };
 
+std::shared_ptr<const Predictor> read_formula(const json::Json& j, const DriftTarget& target) {
+  DriftModel m;
+  m.target = target.name;
+  m.target_unit = "um";
+  m.from_start = target.from_start;
+  m.kind = json::value<std::string>(j, "kind");
+  m.intercept = json::finite(j, "intercept");
+  for (const json::Json& t : json::list(j, "terms")) {
+    m.terms.push_back({.input = json::value<std::string>(t, "input"),
+                       .unit = json::value<std::string>(t, "unit"),
+                       .coefficient = json::finite(t, "coefficient"),
+                       .power = json::value<int>(t, "power"),
+                       .lag_s = json::finite(t, "lag_s"),
+                       .is_running = t.contains("is_running") && json::value<bool>(t, "is_running")});
+    const DriftModel::Term& term = m.terms.back();
+    if (term.lag_s < 0.0 || term.power < 1)
+      throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; they must be at least 0 and 1", term.input,
+                                   term.lag_s, term.power));
+    if (term.is_running && term.power != 1)
+      throw InputError(fmt::format("term '{}' has `is_running` and `power` {}; with `is_running` the power is 1", term.input,
+                                   term.power));
+  }
+  return std::make_shared<FormulaPredictor>(std::move(m));
+}
+
 }  // namespace
 
 std::vector<Input> FormulaPredictor::inputs() const {
@@ -84,9 +111,18 @@ std::unique_ptr<Follower> FormulaPredictor::follow() const {
   return std::make_unique<FormulaFollower>(model_, inputs());
 }
 
-const DriftModel* as_formula(const Predictor& predictor) {
-  const auto* formula = dynamic_cast<const FormulaPredictor*>(&predictor);
-  return formula ? &formula->model() : nullptr;
+std::optional<Written> FormulaPredictor::written() const {
+  json::Json j = {{"kind", model_.kind}, {"intercept", model_.intercept}, {"terms", json::Json::array()}};
+  for (const DriftModel::Term& t : model_.terms) {
+    j["terms"].push_back(
+        {{"input", t.input}, {"unit", t.unit}, {"coefficient", t.coefficient}, {"power", t.power}, {"lag_s", t.lag_s}});
+    if (t.is_running) j["terms"].back()["is_running"] = true;
+  }
+  return Written{.kind = "formula", .content = std::move(j)};
+}
+
+PredictorKind formula_kind() {
+  return {.key = "formula", .read = read_formula};
 }
 
 }  // namespace driftwright::compensation

@@ -21,7 +21,7 @@ namespace {
 constexpr double kTemperatureLags_min[] = {20, 60, 180};
 constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
 // The smallest penalty prevents levels outside the tests from being computed from differences of nearly equal columns.
-constexpr double kPenalties[] = {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0};
+constexpr double kRidgePenalties[] = {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0};
 
 std::string mode_name(Eigen::Index k) {
   return fmt::format("mode_{}", k + 1);
@@ -85,7 +85,7 @@ Penalised penalised(const ProductSums& sums, std::span<const int> columns) {
     throw InputError("of the records given only one has rows in which no input is missing; give that one alone");
   const Eigen::MatrixXd total = sums.total();
   Penalised best;
-  for (double penalty : kPenalties) {
+  for (double penalty : kRidgePenalties) {
     double error = 0.0;
     for (const Eigen::MatrixXd& fold : folds)
       error += std::sqrt(residual_squares(fold, columns, fit_columns(total - fold, columns, penalty)) / fold(0, 0));

@@ -11,7 +11,6 @@
 #include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "base/median.hpp"
-#include "compensation/predictors/deployed_follower.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -701,14 +700,17 @@ class Observer::Run final : public ObserverFollower {
 };
 
 Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_ambient_K,
-                   std::vector<std::string> sensors, std::string drift, ObserverSettings settings)
+                   std::vector<std::string> sensors, std::string drift, ObserverSettings settings,
+                   std::vector<effects::Effect> laws)
     : system_(std::move(system)),
       start_(std::move(start)),
       start_ambient_K_(start_ambient_K),
       sensors_(std::move(sensors)),
       drift_(std::move(drift)),
-      settings_(settings) {
+      settings_(settings),
+      laws_(std::move(laws)) {
   if (!system_.is_linear()) throw std::logic_error("an observer follows a linear reduced model");
+  std::erase_if(laws_, [](const effects::Effect& e) { return !e.kind->acts_on_heat(); });
   const auto output = [&](const std::string& name) {
     const auto found = std::find(system_.outputs.name.begin(), system_.outputs.name.end(), name);
     if (found == system_.outputs.name.end()) throw InputError(fmt::format("the model has no output '{}'", name));
@@ -752,7 +754,7 @@ Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
 }
 
 Observer Observer::with_sensors(std::vector<std::string> sensors) const {
-  Observer other(system_, start_, start_ambient_K_, std::move(sensors), drift_, settings_);
+  Observer other(system_, start_, start_ambient_K_, std::move(sensors), drift_, settings_, laws_);
   other.factors_ = factors_;
   return other;
 }
@@ -786,12 +788,12 @@ std::unique_ptr<ObserverFollower> Observer::watch() const {
 }
 
 Observer::State Observer::state() const {
-  return {system_, start_, start_ambient_K_, sensors_, drift_, settings_, factors_};
+  return {system_, start_, start_ambient_K_, sensors_, drift_, settings_, factors_, laws_};
 }
 
 Observer Observer::of_state(State state) {
   Observer observer(std::move(state.system), std::move(state.start), state.start_ambient_K, std::move(state.sensors),
-                    std::move(state.drift), state.settings);
+                    std::move(state.drift), state.settings, std::move(state.laws));
   if (state.factors.mean.size() != observer.factors_.mean.size() ||
       state.factors.covariance.rows() != observer.factors_.covariance.rows() ||
       state.factors.covariance.cols() != observer.factors_.covariance.cols())

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compensation/predictors/predictor.hpp"
+#include "effects/effect.hpp"
 #include "solver/model_factors.hpp"
 
 namespace driftwright::compensation {
@@ -67,9 +68,10 @@ class Observer final : public Predictor {
   ///                 in another ambient it is raised everywhere by the difference
   /// @param sensors  outputs in K that it reads; none: the model alone
   /// @param drift    output in m
+  /// @param laws     effects of the machine that the system was made of; those that do not act on heat are left out
   /// @throws std::logic_error  for a system that is not linear; @throws InputError  for an output that the system lacks
   Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_ambient_K, std::vector<std::string> sensors,
-           std::string drift, ObserverSettings settings = {});
+           std::string drift, ObserverSettings settings = {}, std::vector<effects::Effect> laws = {});
 
   /// Follows runs with measured drift; keeps what it learns about the factors.
   void learn(std::span<const ObservedRun> runs);
@@ -80,7 +82,12 @@ class Observer final : public Predictor {
   [[nodiscard]] std::vector<Input> inputs() const override;
   [[nodiscard]] bool is_driven() const override { return true; }
   [[nodiscard]] double reference_K() const override { return system_.reference_K; }
+  [[nodiscard]] std::vector<effects::Effect> laws() const override { return laws_; }
+  [[nodiscard]] double period_s() const override { return settings_.period_s; }  ///< between the rows that it learned from
   [[nodiscard]] bool looks_after_inputs() const override { return true; }
+  /// Kind `observer`: matrices of the reduced model, the effects whose laws drive it, and what it has learned of its factors.
+  [[nodiscard]] std::optional<Written> written() const override;
+  [[nodiscard]] const Observer* observer() const override { return this; }
   /// Gives row by row the same as observe() for the whole run.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
   /// A follower that never drops a sensor and shows its innovations, in which a wrong sensor is visible. The observer must
@@ -101,7 +108,6 @@ class Observer final : public Predictor {
   /// Their values as factors on the model: solver::with_factors() makes the estimated machine.
   [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
-  [[nodiscard]] double period_s() const { return settings_.period_s; }  ///< between the rows that it learned from
 
   /// An estimate with a normal distribution.
   struct Belief {
@@ -116,7 +122,8 @@ class Observer final : public Predictor {
     std::vector<std::string> sensors;
     std::string drift;
     ObserverSettings settings;
-    Belief factors;  ///< of flow_names() minus 1, then of the drift minus 1
+    Belief factors;                     ///< of flow_names() minus 1, then of the drift minus 1
+    std::vector<effects::Effect> laws;  ///< effects whose laws are in the system
   };
   [[nodiscard]] State state() const;
   /// The observer with that state. @throws std::logic_error, InputError as the constructor, and for a wrong number of
@@ -136,6 +143,7 @@ class Observer final : public Predictor {
   std::vector<Eigen::Index> sensor_output_;
   Eigen::Index drift_output_ = 0;
   Belief factors_;  // w, v, g
+  std::vector<effects::Effect> laws_;
 };
 
 }  // namespace driftwright::compensation

@@ -11,9 +11,10 @@ namespace driftwright::compensation {
 class ConstantPredictor final : public Predictor {
  public:
   explicit ConstantPredictor(double drift_um) : drift_um_(drift_um) {}
-  [[nodiscard]] double drift_um() const { return drift_um_; }
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
   [[nodiscard]] bool is_driven() const override { return false; }
+  /// Kind `constant`.
+  [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
  private:
@@ -26,14 +27,14 @@ class EarlierRunsPredictor final : public Predictor {
   /// @param runs    records with the channel
   /// @param target  channel in um
   EarlierRunsPredictor(std::span<const Record> runs, const std::string& target);
-  /// One record per run, with one channel.
-  [[nodiscard]] const std::vector<Record>& runs() const { return runs_; }
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
   [[nodiscard]] bool is_driven() const override { return false; }
+  /// Kind `earlier_runs`: the drift of each run over its time.
+  [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
  private:
-  std::vector<Record> runs_;
+  std::vector<Record> runs_;  // one channel each
   std::string target_;
 };
 

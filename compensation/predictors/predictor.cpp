@@ -2,7 +2,17 @@
 
 #include <limits>
 
+#include "effects/effect.hpp"
+
 namespace driftwright::compensation {
+
+std::vector<effects::Effect> Predictor::laws() const {
+  return {};
+}
+
+std::vector<Input> guarded_inputs(const Predictor& predictor) {
+  return predictor.looks_after_inputs() ? std::vector<Input>() : predictor.inputs();
+}
 
 std::vector<double> live(const Predictor& predictor, const ObservedRun& run) {
   const std::unique_ptr<Follower> follower = predictor.follow();

@@ -1,8 +1,9 @@
 #pragma once
 // The interface of everything that predicts the drift of a machine: a formula, a model, a model with thermometers, or
-// earlier measurements. A predictor is already fitted, and is followed row by row. With fail-safe and interval it becomes a
-// DeployedPredictor (deployed_predictor.hpp), which `validate` judges and stores in a file. Those that `run` fits, and the
-// modes of `compensate --model modes`, are judged on their run and not stored.
+// earlier measurements. A predictor is already fitted, and is followed row by row. It says what it needs, which of its inputs
+// must be guarded, how it is written (predictor_kind.hpp) and what else can be made of it; no other file knows its class.
+// With fail-safe and interval it becomes a DeployedPredictor (deployed_predictor.hpp), which `validate` judges and stores in a
+// file. Those that `run` fits, and the modes of `compensate --model modes`, are judged on their run and not stored.
 
 #include <memory>
 #include <optional>
@@ -12,7 +13,19 @@
 
 #include "compensation/predictors/observed_run.hpp"
 
+namespace driftwright::effects {
+struct Effect;
+}
+
 namespace driftwright::compensation {
+
+struct DriftModel;
+class Observer;
+struct Written;
+
+/// Time constant with which a low trust is forgotten: one work shift [s]. A model that was wrong is still wrong after its
+/// filter has adapted.
+inline constexpr double kRemembersDoubt_s = 8.0 * 3600.0;
 
 /// A predictor during one run.
 class Follower {
@@ -44,17 +57,35 @@ struct Input {
 class Predictor {
  public:
   virtual ~Predictor() = default;
+
   /// The channels that it reads, each once. Drive and ambient of the run, which a model uses, are not channels.
   [[nodiscard]] virtual std::vector<Input> inputs() const = 0;
   /// True if it uses drive and ambient of the run; the caller must then provide them.
   [[nodiscard]] virtual bool is_driven() const = 0;
   /// For a driven one: zero point of its ambient temperatures [K].
   [[nodiscard]] virtual double reference_K() const { return 273.15; }
-  /// True if it checks its own inputs; the inputs of all others are checked by a fail-safe.
+  /// For a driven one: the effects whose laws it evaluates. They may follow recorded columns, or hold in a part of a run.
+  [[nodiscard]] virtual std::vector<effects::Effect> laws() const;
+  /// Interval of the rows that it must be given during a run [s]; 0: of any. Rows that come sooner are left out.
+  [[nodiscard]] virtual double period_s() const { return 0.0; }
+
+  /// True if it checks its own inputs; the inputs of all others are checked by a fail-safe (guarded_inputs()).
   [[nodiscard]] virtual bool looks_after_inputs() const { return false; }
+
+  /// What a file holds of it; none: it is not stored.
+  [[nodiscard]] virtual std::optional<Written> written() const = 0;
+
+  /// The formula that gives the same drift, for text, C, LinuxCNC and means of several; null: it is no formula of its inputs.
+  [[nodiscard]] virtual const DriftModel* formula() const { return nullptr; }
+  /// The state observer in it, for a watch over the machine and for functional mock-up units; null: there is none.
+  [[nodiscard]] virtual const Observer* observer() const { return nullptr; }
+
   /// A follower at the start of a run. The predictor must outlive it.
   [[nodiscard]] virtual std::unique_ptr<Follower> follow() const = 0;
 };
+
+/// The inputs that must not be used without a fail-safe: all of them, and none of a predictor that looks after them.
+[[nodiscard]] std::vector<Input> guarded_inputs(const Predictor& predictor);
 
 /// The drift of a run [um], row by row, including the lead-in: as it would be predicted during the run. NaN without a
 /// prediction.

@@ -13,7 +13,7 @@ namespace {
 constexpr double kDuplicate = 0.995;
 constexpr double kDependent = 1e-10;  // length of a column orthogonal to the others, as a share
 
-Eigen::MatrixXd centred(const Eigen::MatrixXd& x) {
+Eigen::MatrixXd about_means(const Eigen::MatrixXd& x) {
   return x.rowwise() - x.colwise().mean();
 }
 
@@ -50,7 +50,7 @@ RegressionQuality regression_quality(std::span<const Record> records, const Regr
     for (Eigen::Index i = rows.first[r] + 1; i < rows.first[r + 1]; ++i) steps += std::pow(residual(i) - residual(i - 1), 2);
   }
   q.durbin_watson = squares > 0.0 ? steps / squares : std::numeric_limits<double>::quiet_NaN();
-  const Eigen::MatrixXd about_mean = centred(x);
+  const Eigen::MatrixXd about_mean = about_means(x);
   const Eigen::VectorXd left = lengths_beside_others(about_mean);
   const double freedom = static_cast<double>(n - m - 1);
   for (Eigen::Index j = 0; j < m; ++j) {
@@ -68,7 +68,7 @@ RegressionQuality regression_quality(std::span<const Record> records, const Regr
 }
 
 std::vector<NearDuplicate> near_duplicates(std::span<const Record> records, const std::vector<std::string>& channels) {
-  Eigen::MatrixXd x = centred(complete_rows(records, channels).values);
+  Eigen::MatrixXd x = about_means(complete_rows(records, channels).values);
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
     const double length = x.col(j).norm();
     if (length > 0.0) x.col(j) /= length;

@@ -1,6 +1,6 @@
 #include "scenarios/reader/geometry.hpp"
 
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -23,7 +23,7 @@ const schema::Map& geometry_schema() {
 }  // namespace
 
 Geometry read_geometry(const std::string& path) {
-  const ConfigMap in = ConfigMap::of_tree(read_scenario_tree(path)).described_by(geometry_schema());
+  const ConfigMap in = ConfigMap::of_tree(effects::read_scenario_tree(path)).described_by(geometry_schema());
   Geometry geometry{in.name("name"), {}};
   MachineModel& m = geometry.machine;
   m.mesh = read_mesh_recipe(in.map("machine"));

@@ -12,7 +12,7 @@
 
 #include "base/designs.hpp"
 #include "base/quantity.hpp"
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 #include "scenarios/reader/sweep_plan.hpp"
 
 namespace driftwright::scenarios {
@@ -140,7 +140,7 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
   Variation v;
   std::vector<std::string> addresses = in.is_list("key") ? in.texts("key") : std::vector{in.text("key")};
   for (std::string& address : addresses) {
-    address = address_in_present_words(address, in.where("key"));
+    address = effects::address_in_present_words(address, in.where("key"));
     v.places.push_back(find_address(scenario, address, in.where("key")));
     v.tops.push_back(scenario.keys[v.places.back()[0]].text);
     if (v.tops.back() == "name" || v.tops.back() == "study")
@@ -151,7 +151,7 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
   v.written_at = in.value(kind);
   if (kind == "values") {
     read_values(in, v);
-    for (SweepValue& value : v.values) value.node = value_in_present_words(value.node, addresses[0]);
+    for (SweepValue& value : v.values) value.node = effects::value_in_present_words(value.node, addresses[0]);
   } else if (kind == "from") {
     read_steps(in, v);
   } else if (kind == "normal") {
@@ -404,7 +404,7 @@ SweepPlan read_sweep_plan(const std::string& path) {
       std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path is unchanged
   if (!std::filesystem::is_regular_file(scenario_path))
     in.fail("scenario", fmt::format("there is no file '{}' (paths are relative to the study)", scenario_path.string()));
-  plan.scenario = read_scenario_tree(scenario_path.string());
+  plan.scenario = effects::read_scenario_tree(scenario_path.string());
   const std::map<std::string, Design> designs = {
       {"list", Design::kList}, {"grid", Design::kGrid}, {"latin_hypercube", Design::kLatinHypercube}};
   plan.design = designs.at(in.choice("design"));

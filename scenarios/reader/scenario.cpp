@@ -8,8 +8,8 @@
 #include <set>
 
 #include "effects/effect_schema.hpp"
+#include "effects/former_words.hpp"
 #include "scenarios/reader/felt_run.hpp"
-#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
@@ -434,7 +434,7 @@ const std::vector<schema::Map>& scenario_schemas() {
 }
 
 Scenario read_scenario(const std::string& path) {
-  return read_scenario(ConfigMap::of_tree(read_scenario_tree(path)));
+  return read_scenario(ConfigMap::of_tree(effects::read_scenario_tree(path)));
 }
 
 Scenario read_scenario(const ConfigMap& top) {

@@ -7,7 +7,7 @@
 
 #include "base/config_tree.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::effects {
 
 /// A former word and its replacement.
 struct FormerWord {
@@ -31,4 +31,4 @@ struct FormerWord {
 /// The name of a body or of an exchange in a file that an earlier release wrote.
 [[nodiscard]] std::string name_in_present_words(std::string name);
 
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::effects

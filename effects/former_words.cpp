@@ -1,4 +1,4 @@
-#include "scenarios/reader/former_words.hpp"
+#include "effects/former_words.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +11,11 @@
 #include "effects/effect.hpp"
 #include "effects/heat_balance.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::effects {
 namespace {
 
 constexpr const char* kFormer = "hall";
-constexpr const char* kPresent = effects::kAmbientName;
+constexpr const char* kPresent = kAmbientName;
 /// End of the name of an exchange with the ambient, such as `link housing - ambient`.
 const std::string kFormerEnd = std::string(" - ") + kFormer, kPresentEnd = std::string(" - ") + kPresent;
 
@@ -48,39 +48,34 @@ ConfigNodePtr outputs_in_present_words(const ConfigNodePtr& node, Found& found) 
   });
 }
 
-const effects::EffectKind* kind_of_entry(const ConfigNode& entry) {
+const EffectKind* kind_of_entry(const ConfigNode& entry) {
   const ConfigNode* type = entry.find("type");
   if (!type || !type->is_scalar()) return nullptr;
-  for (const effects::EffectKind& kind : effects::catalogue()) {
+  for (const EffectKind& kind : catalogue()) {
     if (kind.key == type->text) return &kind;
   }
   return nullptr;
 }
 
 /// Whether a key of an effect takes the name of a lumped node, or the ambient as one of its words.
-bool takes_ambient(const effects::EffectKind& kind, const std::string& key) {
-  const auto is_node = [&](const effects::Reference& r) {
-    return r.name == key && r.kinds.front() == effects::BodyKind::kNode;
-  };
-  const auto is_word = [&](const effects::Choice& c) {
+bool takes_ambient(const EffectKind& kind, const std::string& key) {
+  const auto is_node = [&](const Reference& r) { return r.name == key && r.kinds.front() == BodyKind::kNode; };
+  const auto is_word = [&](const Choice& c) {
     return c.name == key && std::find(c.options.begin(), c.options.end(), kPresent) != c.options.end();
   };
-  return key == effects::place_key(effects::Place::kNode) ||
-         std::any_of(kind.references.begin(), kind.references.end(), is_node) ||
+  return key == place_key(Place::kNode) || std::any_of(kind.references.begin(), kind.references.end(), is_node) ||
          std::any_of(kind.choices.begin(), kind.choices.end(), is_word);
 }
 
 ConfigNodePtr effect_in_present_words(const ConfigNodePtr& entry, Found& found) {
-  const effects::EffectKind* kind = entry->is_map() ? kind_of_entry(*entry) : nullptr;
+  const EffectKind* kind = entry->is_map() ? kind_of_entry(*entry) : nullptr;
   if (!kind) return entry;
   return with_values(entry, [&](const std::string& key, const ConfigNodePtr& value) {
-    const bool is_law =
-        key == effects::place_key(effects::Place::kLaw) && value->is_scalar() && value->text.ends_with(kFormerEnd);
+    const bool is_law = key == place_key(Place::kLaw) && value->is_scalar() && value->text.ends_with(kFormerEnd);
     if (is_law || (takes_ambient(*kind, key) && is_former(*value))) return present_scalar(key, *value, found);
     if (!value->is_map()) return value;
     return with_values(value, [&](const std::string& inner, const ConfigNodePtr& body) {
-      return inner == effects::place_key(effects::Place::kNode) && is_former(*body) ? present_scalar(inner, *body, found)
-                                                                                    : body;
+      return inner == place_key(Place::kNode) && is_former(*body) ? present_scalar(inner, *body, found) : body;
     });
   });
 }
@@ -164,7 +159,7 @@ ConfigNodePtr value_in_present_words(const ConfigNodePtr& value, const std::stri
     root.items = {is_entry ? std::make_shared<const ConfigNode>(list) : value};
     present = in_present_words(std::make_shared<const ConfigNode>(root), found)->items.front();
     if (is_entry) present = present->items.front();
-  } else if (const auto& kinds = effects::catalogue(); is_former(*value)) {
+  } else if (const auto& kinds = catalogue(); is_former(*value)) {
     const bool takes = std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return takes_ambient(kind, key); });
     if (takes) present = present_scalar(key, *value, found);
   }
@@ -178,4 +173,4 @@ std::string name_in_present_words(std::string name) {
   return name;
 }
 
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::effects

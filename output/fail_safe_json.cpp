@@ -1,4 +1,4 @@
-#include "output/formula_json.hpp"
+#include "output/fail_safe_json.hpp"
 
 #include <limits>
 
@@ -6,40 +6,7 @@
 
 namespace driftwright::output {
 
-using compensation::DriftModel;
 using compensation::FailSafe;
-
-Json formula_json(const DriftModel& model) {
-  Json j = {{"kind", model.kind}, {"intercept", model.intercept}, {"terms", Json::array()}};
-  for (const DriftModel::Term& t : model.terms) {
-    j["terms"].push_back(
-        {{"input", t.input}, {"unit", t.unit}, {"coefficient", t.coefficient}, {"power", t.power}, {"lag_s", t.lag_s}});
-    if (t.is_running) j["terms"].back()["is_running"] = true;
-  }
-  return j;
-}
-
-DriftModel formula_of(const Json& j) {
-  DriftModel m;
-  m.kind = value<std::string>(j, "kind");
-  m.intercept = finite(j, "intercept");
-  for (const Json& t : list(j, "terms")) {
-    m.terms.push_back({.input = value<std::string>(t, "input"),
-                       .unit = value<std::string>(t, "unit"),
-                       .coefficient = finite(t, "coefficient"),
-                       .power = value<int>(t, "power"),
-                       .lag_s = finite(t, "lag_s"),
-                       .is_running = t.contains("is_running") && value<bool>(t, "is_running")});
-    const DriftModel::Term& term = m.terms.back();
-    if (term.lag_s < 0.0 || term.power < 1)
-      throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; they must be at least 0 and 1", term.input,
-                                   term.lag_s, term.power));
-    if (term.is_running && term.power != 1)
-      throw InputError(fmt::format("term '{}' has `is_running` and `power` {}; with `is_running` the power is 1", term.input,
-                                   term.power));
-  }
-  return m;
-}
 
 Json fail_safe_json(const FailSafe& s) {
   Json safe = {{"from_start", s.from_start},
