@@ -19,11 +19,12 @@ def number(v):
 
 
 def write_run(case, table, path):
-    """A record CSV of a run; the drive as speed_rpm, a temperature that is a target in K as if in um."""
+    """A record CSV of a run; the drive as speed_rpm, the ambient as ambient_degC, a temperature that is a target in K as if in um."""
     drive = ["speed_rpm"] if case.drive else []
+    thermometers = ["ambient_degC" if n == case.ambient else n.replace("W_m2", "K").replace("_Ps", "_K") for n in case.thermometers]
     with open(path, "w", newline="", encoding="utf-8") as out:
         rows = csv.writer(out, lineterminator="\n")
-        rows.writerow(["time_s", *drive, *(n.replace("W_m2", "K").replace("_Ps", "_K") for n in case.thermometers), records.base(case.target) + "_um"])
+        rows.writerow(["time_s", *drive, *thermometers, records.base(case.target) + "_um"])
         columns = [table.columns[n] for n in [case.drive] * len(drive) + case.thermometers + [case.target]]
         for t, *cells in zip(table.time_s, *columns):
             rows.writerow([number(t), *map(number, cells)])
