@@ -14,19 +14,6 @@ namespace {
 constexpr double kNoError_um = 1e-6;  // smaller errors are rounding
 constexpr double kTellsApart = 2.0;   // standard errors of a difference; chance exceeds it in one of twenty cases
 
-/// Difference of the mean squares of two strategies in units of its standard error, fold by fold; both have the same folds.
-double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
-  const auto n = static_cast<double>(a.fold_errors.size());
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t k = 0; k < a.fold_errors.size(); ++k) {
-    const double more = std::pow(a.fold_errors[k].rms_um, 2) - std::pow(b.fold_errors[k].rms_um, 2);
-    sum += more;
-    squares += more * more;
-  }
-  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
-  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
 /// The first of the strategies that count whose mean square is within one standard error of one of them.
 const DeployedPredictor& simplest_near(std::span<const DeployedPredictor> list, const DeployedPredictor& best,
                                        const std::function<bool(const DeployedPredictor&)>& counts) {
@@ -51,6 +38,18 @@ double left_out_um(const DeployedPredictor& strategy) {
   for (const auto& [kind, squares] : squares_of)
     logarithms += 0.5 * std::log(std::max(squares.first / squares.second, kNoError_um * kNoError_um));
   return std::exp(logarithms / static_cast<double>(squares_of.size()));
+}
+
+double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
+  const auto n = static_cast<double>(a.fold_errors.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < a.fold_errors.size(); ++k) {
+    const double more = std::pow(a.fold_errors[k].rms_um, 2) - std::pow(b.fold_errors[k].rms_um, 2);
+    sum += more;
+    squares += more * more;
+  }
+  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
+  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
 Choice choose(std::span<const DeployedPredictor> strategies) {

@@ -19,6 +19,9 @@ inline constexpr const char* kBlend = "blend";
 /// geometric mean over the kinds, so that a factor counts the same in each kind. Infinite without folds.
 [[nodiscard]] double left_out_um(const DeployedPredictor& strategy);
 
+/// Difference of the mean squares of two strategies in units of its standard error, fold by fold. @pre both have the same folds
+[[nodiscard]] double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b);
+
 struct Choice {
   std::string name = {};  ///< "": nothing could be left out of the training runs
   std::string why = {};   ///< one sentence

@@ -108,8 +108,9 @@ void add_speeds(FoldMaker& make, std::span<const ObservedRun> runs, const std::s
   std::erase_if(n_of,
                 [&](const auto& e) { return static_cast<double>(e.second) < kLeastShareOfSpeed * static_cast<double>(n); });
   if (n_of.size() < 2) return;
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(kSpeedStep * largest))));
   for (const auto& [at, count] : n_of) {
-    make.add("speed", fmt::format("speed {:.0f} rpm", static_cast<double>(at) * kSpeedStep * largest),
+    make.add("speed", fmt::format("speed {:.{}f} rpm", static_cast<double>(at) * kSpeedStep * largest, decimals),
              [&, at = at](std::size_t r, std::size_t, std::size_t row) {
                const Channel* channel = runs[r].readings.find(speed);
                return channel && std::isfinite(channel->values[row]) && level(channel->values[row]) == at;

@@ -172,11 +172,13 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
       tried[n].fold_errors.push_back(std::move(error));
     }
   }
-  const auto best = std::min_element(tried.begin(), tried.end(), [](const DeployedPredictor& a, const DeployedPredictor& b) {
-    return left_out_um(a) < left_out_um(b);
-  });
-  d.fold_errors = best->fold_errors;
-  return kRooms[best - tried.begin()];
+  const auto least = std::min_element(
+      tried.begin(), tried.end(),
+      [](const DeployedPredictor& a, const DeployedPredictor& b) { return left_out_um(a) < left_out_um(b); });
+  auto chosen = tried.begin();  // the smallest that is not worse beyond chance
+  while (chosen != least && standard_errors_above(*chosen, *least) > 1.0) ++chosen;
+  d.fold_errors = chosen->fold_errors;
+  return kRooms[chosen - tried.begin()];
 }
 
 FailSafe fail_safe_of(const Predictor& predictor, std::span<const ObservedRun> training, const LeftOutSettings& s,

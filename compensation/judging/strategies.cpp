@@ -340,7 +340,9 @@ std::string words_of(const LinearisedModel& model) {
 FittedStrategies fit_strategies(const StrategySettings& given, std::span<const ObservedRun> training) {
   FittedStrategies result{.strategies = {}, .left_out = {}, .doubted = doubted_in(training, given), .choice = {}};
   StrategySettings settings = given;
-  for (const DoubtedThermometer& d : result.doubted) std::erase(settings.candidates, d.name);
+  for (const DoubtedThermometer& d : result.doubted) {
+    if (d.is_alone) std::erase(settings.candidates, d.name);
+  }
   const std::vector<Strategy> list = strategies(settings);
   const FoldedRuns folds = folded(training, {.target = settings.target,
                                              .from_start = settings.count_from_start,

@@ -61,7 +61,7 @@ struct LeftOut {
 struct FittedStrategies {
   std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first, the blend last
   std::vector<LeftOut> left_out;
-  std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads them
+  std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads those that are alone
   Choice choice;                            ///< by choose()
 };
 

@@ -388,10 +388,13 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   matrix.choice = std::move(fitted.choice);
   for (const DoubtedThermometer& d : fitted.doubted) {
     matrix.findings.push_back(fmt::format(
-        "Thermometer '{}' is left out: in {} from {:.0f} min on it differs by up to {:.2g} K from what the other "
-        "thermometers lead to; on other parts of the training runs the difference is usually {:.2g} K. Check "
-        "whether it is broken or has come off.",
-        d.name, d.record, d.from_s / 60.0, d.off_K, d.usual_K));
+        "Thermometer '{}' {}: in {} from {:.0f} min on it differs by up to {:.2g} K from what the others lead to; usually "
+        "the "
+        "difference is {:.2g} K. {}",
+        d.name, d.is_alone ? "is left out of all strategies" : "is doubtful", d.record, d.from_s / 60.0, d.off_K, d.usual_K,
+        d.is_alone ? "Check whether it is broken or has come off."
+                   : "Others differ in the same record, too: the machine may have been in an unusual state, or they share a "
+                     "plug. All are used; leave them out of `sensors` if they are broken."));
   }
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
@@ -404,9 +407,13 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
                                    settings.strategies.target));
   }
   if (std::all_of(fitted.strategies.begin(), fitted.strategies.end(),
-                  [](const DeployedPredictor& f) { return f.is_baseline; }))
-    throw InputError(
-        fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
+                  [](const DeployedPredictor& f) { return f.is_baseline; })) {
+    std::vector<std::string> reasons;
+    for (const LeftOut& l : matrix.left_out) {
+      if (std::find(reasons.begin(), reasons.end(), l.why) == reasons.end()) reasons.push_back(l.why);
+    }
+    throw InputError(fmt::format("no strategy could be fitted: {}", fmt::join(reasons, "; ")));
+  }
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
   std::vector<std::vector<Case>> cases(n_jobs);
   parallel_for(n_jobs, [&](std::size_t job) {

@@ -49,6 +49,25 @@ Lasting lasting(const std::vector<double>& time_s, const std::vector<double>& of
   return most;
 }
 
+/// A thermometer less its prediction by the relations of the other records, row by row, and the scatter of these.
+struct Departure {
+  std::vector<double> off, scatter;
+};
+Departure departure(const std::vector<double>& read, const std::vector<std::vector<double>>& expected) {
+  Departure d;
+  std::vector<double> at;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    at.clear();
+    for (const std::vector<double>& e : expected) {
+      if (std::isfinite(read[i] - e[i])) at.push_back(read[i] - e[i]);
+    }
+    d.off.push_back(at.empty() ? std::numeric_limits<double>::quiet_NaN() : upper_median(at));
+    for (double& off : at) off = std::abs(off - d.off.back());
+    d.scatter.push_back(kMedianToSigma * upper_median(at));
+  }
+  return d;
+}
+
 /// One thermometer, judged by the others.
 struct Judged {
   DoubtedThermometer as_doubted;
@@ -58,17 +77,18 @@ Judged judged(std::span<const Record> given, const std::string& name, const std:
               double reading_K) {
   const std::vector<Record> records = in_blocks({given.begin(), given.end()}, name);
   const ProductSums sums = product_sums(records, others, name);
-  const Eigen::MatrixXd total = sums.total();
-  std::vector<std::vector<double>> off(records.size());
+  std::vector<Departure> departures;
   std::vector<double> all;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Eigen::MatrixXd rest = total - sums.by_record[r];
-    if (sums.by_record[r](0, 0) == 0.0 || rest(0, 0) <= static_cast<double>(others.size() + 1)) continue;
-    const std::vector<double> expected = relation_of(sums, rest).predict(records[r], others);
-    const std::vector<double>& read = records[r].at(name).values;
-    for (std::size_t i = 0; i < read.size(); ++i) {
-      off[r].push_back(read[i] - expected[i]);
-      if (std::isfinite(off[r].back())) all.push_back(std::abs(off[r].back()));
+    std::vector<std::vector<double>> expected;
+    for (std::size_t fitted = 0; fitted < records.size(); ++fitted) {
+      const bool has_enough = sums.by_record[fitted](0, 0) > static_cast<double>(others.size() + 1);
+      if (fitted != r && has_enough)
+        expected.push_back(relation_of(sums, sums.by_record[fitted]).predict(records[r], others));
+    }
+    departures.push_back(departure(records[r].at(name).values, expected));
+    for (double off : departures.back().off) {
+      if (std::isfinite(off)) all.push_back(std::abs(off));
     }
   }
   Judged worst{.as_doubted = {.name = name, .record = {}}};
@@ -76,10 +96,12 @@ Judged judged(std::span<const Record> given, const std::string& name, const std:
   const double usual = std::max(kMedianToSigma * upper_median(all), reading_K);
   worst.as_doubted.usual_K = usual;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Lasting l = lasting(records[r].time_s, off[r]);
+    std::vector<double>& off = departures[r].off;
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] *= usual / std::max(usual, departures[r].scatter[i]);
+    const Lasting l = lasting(records[r].time_s, off);
     if (!(l.off > worst.as_doubted.off_K)) continue;
     std::size_t first = l.row;  // it had departed before it was farthest off
-    while (first > 0 && std::abs(off[r][first - 1]) > kDeparts * usual) --first;
+    while (first > 0 && std::abs(off[first - 1]) > kDeparts * usual) --first;
     worst.as_doubted.record = records[r].source;
     worst.as_doubted.from_s = records[r].time_s[first];
     worst.as_doubted.off_K = l.off;
@@ -142,11 +164,14 @@ std::vector<DoubtedThermometer> doubted_thermometers(std::span<const Record> rec
       Judged j = judged(records, name, others, reading_K);
       if (j.times > worst.times) worst = std::move(j);
     }
-    if (!(worst.times > kDeparts)) return doubted;
+    if (!(worst.times > kDeparts)) break;
     if (doubted.size() == most) return {};
     std::erase(thermometers, worst.as_doubted.name);
     doubted.push_back(std::move(worst.as_doubted));
   }
+  for (DoubtedThermometer& d : doubted)
+    d.is_alone = std::count_if(doubted.begin(), doubted.end(),
+                               [&](const DoubtedThermometer& other) { return other.record == d.record; }) == 1;
   return doubted;
 }
 

@@ -25,8 +25,7 @@ struct Relation {
 [[nodiscard]] Relation relation(std::span<const Record> records, const std::string& input,
                                 const std::vector<std::string>& others);
 
-/// A thermometer departs from its prediction if the difference exceeds this multiple of its usual size on records left
-/// out, ...
+/// A thermometer departs from its prediction if the difference exceeds this multiple of its usual size, ...
 inline constexpr double kDeparts = 6.0;
 /// ... for this long [s]. Shorter ones are chips, coolant or a disturbed reading.
 inline constexpr double kDepartsFor_s = 600.0;
@@ -36,22 +35,25 @@ struct DoubtedThermometer {
   std::string name, record;
   double from_s = 0.0;   ///< time in that record at which it begins
   double off_K = 0.0;    ///< largest difference that lasts kDepartsFor_s
-  double usual_K = 0.0;  ///< standard deviation of the difference on records left out
+  double usual_K = 0.0;  ///< standard deviation of the difference
+  /// No other thermometer departs in that record. If several do, they have one cause: a state of the machine that the
+  /// relations do not describe, or a plug or an amplifier that they share.
+  bool is_alone = true;
 };
 
-/// The thermometers that depart in some records, the worst first. Each record in turn (eighth of a single record) is predicted
-/// by a relation that is fitted to the others; the usual difference is the median of all of these times 1.4826, which half of
-/// the rows cannot move, and at least `reading_K`. The worst is taken out, and the rest is judged again without it.
+/// The thermometers that depart in some records, the worst first. Relations are fitted to each record alone (eighth of a single
+/// record), and a row of another record is predicted by the median of all of these: records in which the thermometer, or
+/// another one, is broken are outvoted as long as they are fewer than half. The usual difference is the median over all rows
+/// times 1.4826, at least `reading_K`, and in a row the scatter of the predictions by the relations if that is larger: so a row
+/// far from all records counts less. The worst is taken out, and the rest is judged again without it.
 ///
-/// At most a third of the thermometers can be told apart from the rest. If more depart, the machine was in a state that the
-/// relations do not hold in, and none is doubted. A thermometer that is wrong from the first row of the records to the last
-/// is not noticed, and one that is wrong in half of the rows may not be.
-/// None is doubted either if no row has all readings.
+/// If more than a third of the thermometers depart, nothing distinguishes them from the rest, and none is returned. None is
+/// either if no row has all readings. A thermometer that is wrong in all records is not noticed.
 /// @param thermometers  channels of one unit
 /// @param beside        channels that help to predict them and are not judged: drive, ambient
 /// @param reading_K     standard deviation of a thermometer
-/// Source: fault detection by residuals of a redundant set: Isermann, Fault-Diagnosis Systems (2006), ch. 10; the robust scale:
-/// Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273.
+/// Source: fault detection by residuals of a redundant set: Isermann, Fault-Diagnosis Systems (2006), ch. 10; median and its
+/// robust scale: Rousseeuw & Croux, J. Am. Stat. Assoc. 88 (1993) 1273.
 [[nodiscard]] std::vector<DoubtedThermometer> doubted_thermometers(std::span<const Record> records,
                                                                    std::vector<std::string> thermometers,
                                                                    const std::vector<std::string>& beside, double reading_K);
