@@ -312,10 +312,9 @@ double noise_in(std::span<const ResidualSeries> series, double stated_um) {
 /// Sets the errors and the interval.
 void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f,
                   const StrategySettings& s) {
-  if (s.probing) {
-    const std::vector<ResidualSeries> series = residuals_of(predictions, f);
-    d.residual = fit_residual_process(series, noise_in(series, s.drift_um));
-  }
+  const std::vector<ResidualSeries> series = residuals_of(predictions, f);
+  d.residual = fit_residual_process(series, noise_in(series, s.drift_um));
+  if (s.probing) d.probe.noise_um = s.probing->noise_um;
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     std::vector<double> off;
     for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured_um[k][i] - predictions[k][i]));
