@@ -27,7 +27,8 @@ std::optional<output::DeployedModel> formula_of(const JudgedStrategy& s) {
   const DriftModel* model = as_formula(*s.fitted.predictor);
   if (!model || !s.fitted.fail_safe) return std::nullopt;
   return output::DeployedModel{*model, *s.fitted.fail_safe,
-                               s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+                               s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN()), s.fitted.residual,
+                               s.fitted.probe};
 }
 
 /// Limits by which `follow` watches an observer; null for others, and for an observer that no stream can feed.

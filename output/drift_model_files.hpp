@@ -5,6 +5,7 @@
 
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/fail_safe.hpp"
+#include "compensation/predictors/residual_process.hpp"
 
 namespace driftwright::output {
 
@@ -12,7 +13,9 @@ namespace driftwright::output {
 struct DeployedModel {
   compensation::DriftModel model;
   compensation::FailSafe safe;
-  double interval_um = 0.0;  ///< half width of its 95 % prediction interval; NaN: unknown
+  double interval_um = 0.0;                                    ///< half width of its 95 % prediction interval; NaN: unknown
+  std::optional<compensation::ResidualProcess> residual = {};  ///< what it leaves, for probings; none: unknown
+  compensation::Probe probe = {};
 };
 
 /// A formula that can be typed into a control, with units and validity ranges.
