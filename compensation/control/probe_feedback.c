@@ -91,7 +91,8 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
   state->past[state->newest].correction_um = isfinite(correction_um) ? correction_um : 0.0;
 }
 
-/* Prediction and correction at a time between the rows that are kept, on a straight line between two of them. */
+/* Prediction and correction at a time between two rows that are kept: the prediction on a straight line, the correction as it was in
+ * force until the later one. */
 static probe_past probe_past_at(const probe_state* state, double time_s) {
   int k = state->newest, i;
   probe_past at = state->past[k];
@@ -102,7 +103,7 @@ static probe_past probe_past_at(const probe_state* state, double time_s) {
     if (at.time_s <= time_s && later.time_s > at.time_s) {
       const double share = (time_s - at.time_s) / (later.time_s - at.time_s);
       at.prediction_um += share * (later.prediction_um - at.prediction_um);
-      at.correction_um += share * (later.correction_um - at.correction_um);
+      if (at.time_s < time_s) at.correction_um = later.correction_um;
       at.time_s = time_s;
       return at;
     }
