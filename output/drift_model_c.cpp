@@ -130,7 +130,7 @@ pin out float probe_off_um "of the last probing: read minus expected, um";
 pin out signed refused_probings "how many were refused";
 )";
 constexpr const char* kProbeRow =
-    "    probe_row(&process, &probing, prediction_um, axis.sign * axis.offset_um, probe_waited_s);\n"
+    "    probe_row(&process, &probing, prediction_um, axis_offset_correction_um(&axis), probe_waited_s);\n"
     "    probe_waited_s = 0.0;\n";
 constexpr const char* kProbeCycle =
     "  if (probe_strobe && !strobe_was_on) {{\n    if (is_started) {{\n{row}    }}\n"
