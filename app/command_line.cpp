@@ -231,6 +231,13 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("--fade", options.fade,
                    "time constant with which the correction then decreases to 0, such as '10 min' [the value in the model's "
                    "file, else 10 min]");
+  verb->add_option("--probe-noise", options.probe_noise,
+                   "noise of one probing, 1 sigma, such as '1 um'; for rows with a column probe_AXIS_um or "
+                   "probe_left_AXIS_um [the value in the model's file]");
+  verb->add_option("--probe-lag", options.probe_lag,
+                   "time from the touch until its value is in a row, such as '20 s' [the value in the model's file]");
+  verb->add_option("--tolerance", options.tolerance,
+                   "asks for a probing as soon as the interval passes half of this, such as '10 um' [never]");
   CLI::Option* watch = verb->add_option(
       "--watch", options.watch,
       "file of limits written by --calibrate-watch; `follow` raises an alarm if the machine no longer behaves like the "

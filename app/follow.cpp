@@ -64,7 +64,10 @@ std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, 
                             .for_picture = options.serve.has_value(),
                             .watch = options.watch,
                             .no_watch = options.no_watch,
-                            .despite_verdict = options.despite_verdict};
+                            .despite_verdict = options.despite_verdict,
+                            .probe_noise_um = quantity("--probe-noise", options.probe_noise, "um"),
+                            .probe_lag_s = quantity("--probe-lag", options.probe_lag, "s"),
+                            .tolerance_um = quantity("--tolerance", options.tolerance, "um")};
   std::vector<follow::Session::Model> models;
   for (const std::string& path : options.models) {
     const bool is_scenario = path.ends_with(".yaml") || path.ends_with(".yml");
@@ -182,6 +185,13 @@ class Following {
           "GROUP/NODE with --topic CHANNEL=METRIC for each channel; a scenario's key `topics` says the same");
     std::vector<std::string> topics;
     for (const follow::ChannelOrigin& o : origins) topics.push_back(o.from);
+    for (const follow::ChannelOrigin& o : origins) {
+      if (node && o.header.starts_with(follow::kProbePrefix) && o.header.ends_with("_um"))
+        throw InputError(fmt::format(
+            "--topic {}={}: a metric of Sparkplug does not say when it was measured, and a probing is of one moment; send "
+            "probings with --from or with topics of MQTT",
+            o.header, o.from));
+    }
     constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
     link_ = std::make_unique<follow::MqttLink>(follow::read_mqtt_address(options_.mqtt),
                                                node         ? node->topics()
@@ -271,6 +281,7 @@ class Following {
   }
 
   void begin() {
+    require_probings();
     session_.begin(text_.channels());
     if (page_) page_->begin(text_.channels());
     const bool goes_on = !options_.state.empty() && follow::resume_from(options_.state, session_);
@@ -278,6 +289,15 @@ class Following {
     if (!options_.record.empty())
       record_.emplace(options_.record, text_.channels(), fmt::format("driftwright {} follow", kVersion), goes_on);
     saved_ = Clock::now();
+  }
+
+  void require_probings() const {
+    const bool has_options = !options_.probe_noise.empty() || !options_.probe_lag.empty() || !options_.tolerance.empty();
+    if (!has_options || std::any_of(text_.channels().begin(), text_.channels().end(), follow::is_probing)) return;
+    throw InputError(
+        "--probe-noise, --probe-lag and --tolerance require a column of probings, probe_AXIS_um or probe_left_AXIS_um, "
+        "which "
+        "the stream does not have (docs/how-to/probing.md)");
   }
 
   void write(const follow::FollowLine& said) {

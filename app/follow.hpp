@@ -25,11 +25,13 @@ struct FollowVerbOptions {
   std::string bind = "127.0.0.1";   ///< address that it listens at
   std::string token;                ///< that it asks for; "@FILE": its first line
   std::string slew, hold, fade;     ///< "0.5 um/s", "5 min", "10 min"; empty: the model's own
-  bool despite_verdict = false;     ///< models that `validate` calls unsafe are followed, too
-  std::string watch;                ///< limits of the watch; empty: those of the model's file
-  bool no_watch = false;            ///< nothing is watched
-  std::string calibrate_watch;      ///< file that limits are written to, in place of following; empty: none
-  std::string top_speed;            ///< with that: "2500 rpm"
+  std::string probe_noise, probe_lag;  ///< "1 um", "20 s"; empty: the model's own
+  std::string tolerance;               ///< "10 um": a probing is due where the interval passes a half of it; empty: never
+  bool despite_verdict = false;        ///< models that `validate` calls unsafe are followed, too
+  std::string watch;                   ///< limits of the watch; empty: those of the model's file
+  bool no_watch = false;               ///< nothing is watched
+  std::string calibrate_watch;         ///< file that limits are written to, in place of following; empty: none
+  std::string top_speed;               ///< with that: "2500 rpm"
 };
 void follow_stream(const FollowVerbOptions& options);
 

@@ -83,13 +83,16 @@ void set_units(HeardValues& values, const MtconnectProbe& probe, const Mtconnect
                     fmt::join(unknown, ", ")));
 }
 
-void hear_in(HeardValues& values, const Observation& o) {
+/// @param is_former  the observation was made before anybody asked
+void hear_in(HeardValues& values, const Observation& o, bool is_former) {
   for (const std::string& from : {o.id, o.name}) {
     if (from.empty()) continue;
     if (o.value.empty())
       values.forget(from);  // UNAVAILABLE
+    else if (is_former)
+      values.hear_former(from, o.value, o.sequence);
     else
-      values.hear(from, o.value);
+      values.hear(from, o.value, o.sequence);
   }
 }
 
@@ -135,7 +138,7 @@ RowSource::Got CurrentRows::next(std::string& line, double wait_s) {
     if (!has_answered_) require_items(values_, told);
     units_.learn(values_, agent_, told, say_);
     values_.forget_all();
-    for (const Observation& o : told.observations) hear_in(values_, o);
+    for (const Observation& o : told.observations) hear_in(values_, o, !has_answered_);
     if (is_away_) say_("answers again");
     has_answered_ = true;
     is_away_ = false;
@@ -210,7 +213,7 @@ void SampleRows::begin(const MtconnectStreams& now) {
   instance_ = now.instance;
   next_ = now.next;
   values_.forget_all();
-  for (const Observation& o : now.observations) hear_in(values_, o);
+  for (const Observation& o : now.observations) hear_in(values_, o, true);
   last_s_ = in_milliseconds(now.created_s);
   rows_.push_back(values_.row(last_s_));
 }
@@ -235,7 +238,7 @@ void SampleRows::take(const MtconnectStreams& streams) {
   }
   std::sort(list.begin(), list.end(), [](const Observation& a, const Observation& b) { return a.sequence < b.sequence; });
   for (std::size_t i = 0; i < list.size(); ++i) {
-    hear_in(values_, list[i]);
+    hear_in(values_, list[i], false);
     const bool is_last_of_time = i + 1 == list.size() || list[i + 1].time_s != list[i].time_s;
     if (!is_last_of_time) continue;
     last_s_ = std::max(in_milliseconds(list[i].time_s), in_milliseconds(last_s_ + 1e-3));

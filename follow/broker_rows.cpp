@@ -30,8 +30,13 @@ RowSource::Got TopicRows::next(std::string& line, double wait_s) {
     return Got::kLine;
   }
   MqttLink::Message message;
-  if (link_.next(message, std::min(wait_s, ticks_.until_next_s())))
-    values_.hear(message.topic, message.is_cut ? "too large for a number" : message.payload);
+  if (link_.next(message, std::min(wait_s, ticks_.until_next_s()))) {
+    const std::string text = message.is_cut ? "too large for a number" : message.payload;
+    if (message.is_former)
+      values_.hear_former(message.topic, text);
+    else
+      values_.hear(message.topic, text);
+  }
   if (!ticks_.is_due()) return Got::kNothingYet;
   line = values_.row(now_s());
   return Got::kLine;

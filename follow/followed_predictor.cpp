@@ -11,6 +11,7 @@
 #include "compensation/predictors/observer.hpp"
 #include "effects/effect.hpp"
 #include "effects/recorded_column.hpp"
+#include "follow/axis_probing.hpp"
 #include "follow/state_json.hpp"
 #include "follow/watch_json.hpp"
 #include "output/predictor_file.hpp"
@@ -55,13 +56,19 @@ OutputSettings settings_of(const DeployedPredictor& d, const FollowOptions& o) {
   return s;
 }
 
+Probe probe_of(const DeployedPredictor& d, const FollowOptions& o) {
+  return {o.probe_noise_um.value_or(d.probe.noise_um), o.probe_lag_s.value_or(d.probe.lag_s)};
+}
+
 class FollowedPredictor final : public Followed {
  public:
   FollowedPredictor(const std::string& path, const FollowOptions& options)
       : path_(path),
         file_(output::read_predictor(path)),
         follower_(file_.predictor),
-        stage_(settings_of(file_.predictor, options)) {
+        stage_(settings_of(file_.predictor, options)),
+        probe_(probe_of(file_.predictor, options)),
+        tolerance_um_(options.tolerance_um) {
     require_laws_of_streams(*d().predictor, path);
     if (d().predictor->is_driven() && d().ambient.empty())
       throw InputError(
@@ -105,7 +112,19 @@ class FollowedPredictor final : public Followed {
     return list;
   }
 
+  [[nodiscard]] std::vector<std::string> probings(const std::vector<Channel>& channels) const override {
+    std::vector<std::string> columns = AxisProbing::columns_of(d().target, channels);
+    if (!columns.empty() && !d().residual)
+      throw InputError(fmt::format(
+          "the stream has the column '{}_um', but {} does not say what '{}' leaves (key `probing` is null or missing); "
+          "`validate` writes it where parts of the training runs could be left out. Leave the column out, or follow "
+          "another strategy",
+          columns.front(), path_, d().name));
+    return columns;
+  }
+
   void begin(const std::vector<Channel>& channels) override {
+    if (!probings(channels).empty()) probing_.emplace(d().target, *d().residual, probe_, d().from_start, channels);
     const bool is_driven = d().predictor->is_driven();
     for (std::size_t k = 0; k < channels.size(); ++k) {
       if (channels[k].name == "speed" && channels[k].unit == "rpm") speed_ = k;
@@ -117,20 +136,29 @@ class FollowedPredictor final : public Followed {
     const std::vector<double> values = without_impossible_drive(as_read);
     if (is_too_soon(run_s, step_s)) {
       run_->between(run_s, values);
-      stage_.take(axis_.predicted_um, step_s, run_->drive_age_s());
+      probe(step_s, values);
+      stage_.take(wanted_um(), step_s, run_->drive_age_s());
       return true;
     }
-    if (!run_->add(run_s, values)) return false;
+    if (!run_->add(run_s, values)) {
+      if (probing_) probing_->hear(values);  // too early: it is refused
+      return false;
+    }
     const FollowedCorrection c = follower_.next(run_->run());
     if (watch_) (void)watch_->next(run_->run());
     const double covered = share_covered();
     trust_ = c.trust * covered;
     axis_.interval_um = c.interval_um;
+    half_width_um_ = c.half_width_um;
     axis_.predicted_um = c.correction_um * covered;
-    stage_.take(axis_.predicted_um, step_s, run_->drive_age_s());
+    probe(step_s, values);
+    stage_.take(wanted_um(), step_s, run_->drive_age_s());
     return true;
   }
-  void wait(double step_s) override { stage_.wait(step_s); }
+  void wait(double step_s) override {
+    if (has_begun() && probing_) probing_->wait(axis_.predicted_um, stage_.state().correction_um, step_s);
+    stage_.wait(step_s);
+  }
   [[nodiscard]] bool has_begun() const override { return run_ && run_->n_rows() > 0; }
 
   [[nodiscard]] std::vector<AxisCorrection> axes() const override {
@@ -139,7 +167,9 @@ class FollowedPredictor final : public Followed {
     axis.trust = trust_ * stage_.state().authority;
     if (!has_begun()) axis.trust = 0.0;
     if (!(axis.trust > 0.0)) axis.interval_um.reset();
-    if (axis.interval_um) *axis.interval_um += std::abs(axis.predicted_um - axis.correction_um);
+    if (probing_) set_probing(axis);
+    const double residual_um = probing_ ? probing_->residual_um() : 0.0;
+    if (axis.interval_um) *axis.interval_um += std::abs(axis.predicted_um + residual_um - axis.correction_um);
     axis.doubted = follower_.doubted();
     if (has_begun() && share_covered() < 1.0) axis.doubted.emplace_back("speed or ambient: beyond those it was judged on");
     if (has_begun()) {
@@ -161,6 +191,7 @@ class FollowedPredictor final : public Followed {
             {"trust", trust_},
             {"predicted_um", axis_.predicted_um},
             {"watch", watch_ ? numbers_json(watch_->memory()) : Json(nullptr)},
+            {"probing", probing_ ? numbers_json(probing_->memory()) : Json(nullptr)},
             {"stage", state_json(stage_.state())}};
   }
   void recall(const Json& j) override {
@@ -174,6 +205,7 @@ class FollowedPredictor final : public Followed {
         throw InputError("it was saved without a watch; add --no-watch, or begin a new state");
       watch_->recall(numbers_of(j, "watch"));
     }
+    if (probing_) probing_->recall(numbers_of(j, "probing"));  // a state of the same columns has it
     trust_ = output::finite(j, "trust");
     axis_.predicted_um = output::finite(j, "predicted_um");
   }
@@ -218,6 +250,27 @@ class FollowedPredictor final : public Followed {
     return values;
   }
 
+  /// A row for the probings, with the prediction that it has led to.
+  void probe(double step_s, const std::vector<double>& values) {
+    if (!probing_) return;
+    probing_->wait(axis_.predicted_um, stage_.state().correction_um, step_s);
+    probing_->hear(values);
+  }
+  /// The predictor's value with what probings have found, within the clamp of the fail-safe.
+  [[nodiscard]] double wanted_um() const {
+    if (!probing_) return axis_.predicted_um;
+    const double um = axis_.predicted_um + probing_->residual_um();
+    return d().fail_safe ? std::clamp(um, d().fail_safe->lowest_um, d().fail_safe->highest_um) : um;
+  }
+  void set_probing(AxisCorrection& axis) const {
+    axis.probing = probing_->state(axis.interval_um ? half_width_um_ : std::nullopt);
+    if (!axis.interval_um || !half_width_um_) return;
+    *axis.interval_um += probing_->interval_um(*half_width_um_) - *half_width_um_;
+    if (tolerance_um_ && *axis.interval_um > 0.5 * *tolerance_um_)  // a way that the axis still has to go needs no probing
+      axis.probing->probe_now = fmt::format("probe now: the interval of {:.1f} um passes half of the tolerance of {:g} um",
+                                            *axis.interval_um, *tolerance_um_);
+  }
+
   [[nodiscard]] const DeployedPredictor& d() const { return file_.predictor; }
 
   std::string path_;
@@ -226,6 +279,10 @@ class FollowedPredictor final : public Followed {
   OutputStage stage_;
   std::optional<LiveRun> run_;
   std::optional<Watch> watch_;
+  Probe probe_;
+  std::optional<double> tolerance_um_;
+  std::optional<AxisProbing> probing_;   // with a column of probings
+  std::optional<double> half_width_um_;  // of the interval about the prediction, in the last row
   AxisCorrection axis_;
   std::optional<std::size_t> speed_;  // channel
   double trust_ = 0.0;

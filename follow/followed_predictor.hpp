@@ -15,6 +15,9 @@ struct FollowOptions {
   std::string watch = {};                     ///< file of a watch's limits; empty: those in the model's file
   bool no_watch = false;                      ///< nothing is watched
   bool despite_verdict = false;               ///< false: what `validate` calls unsafe is refused
+  std::optional<double> probe_noise_um = {};  ///< of a probing, 1 sigma; none: the model's own
+  std::optional<double> probe_lag_s = {};     ///< from a touch until its value is in a row; none: the model's own
+  std::optional<double> tolerance_um = {};    ///< a probing is due where the interval passes a half of it; none: never
 };
 
 /// @param path  of its file

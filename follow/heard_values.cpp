@@ -37,7 +37,14 @@ std::vector<ChannelOrigin> read_origins(const std::vector<std::string>& topics) 
 }
 
 HeardValues::HeardValues(std::vector<ChannelOrigin> origins, double stale_s)
-    : origins_(std::move(origins)), values_(origins_.size()), units_(origins_.size()), stale_s_(stale_s) {}
+    : origins_(std::move(origins)),
+      values_(origins_.size()),
+      units_(origins_.size()),
+      numbers_(origins_.size()),
+      stale_s_(stale_s) {
+  for (const ChannelOrigin& o : origins_)
+    is_probing_.push_back(o.header.starts_with(kProbePrefix) && o.header.ends_with("_um"));
+}
 
 void HeardValues::set_unit(std::size_t k, const std::string& unit) {
   const ColumnUnit& channel = origins_[k].numbers;
@@ -57,10 +64,22 @@ void HeardValues::set_unit(std::size_t k, const std::string& unit) {
   units_[k] = unit;
 }
 
-void HeardValues::hear(const std::string& from, const std::string& text) {
+void HeardValues::hear(const std::string& from, const std::string& text, std::uint64_t number, bool is_former) {
   for (std::size_t k = 0; k < origins_.size(); ++k) {
-    if (origins_[k].from == from) values_[k] = {cell_of(text, units_[k], origins_[k].numbers.unit), Clock::now()};
+    if (origins_[k].from != from) continue;
+    const bool is_known = is_former || (number > 0 && number == numbers_[k]);
+    numbers_[k] = number;
+    if (is_probing_[k] && is_known) continue;
+    values_[k] = {cell_of(text, units_[k], origins_[k].numbers.unit), Clock::now()};
   }
+}
+
+void HeardValues::hear(const std::string& from, const std::string& text, std::uint64_t number) {
+  hear(from, text, number, false);
+}
+
+void HeardValues::hear_former(const std::string& from, const std::string& text, std::uint64_t number) {
+  hear(from, text, number, true);
 }
 
 void HeardValues::forget(const std::string& from) {
@@ -79,12 +98,14 @@ std::string HeardValues::header() const {
   return text;
 }
 
-std::string HeardValues::row(double time_s) const {
+std::string HeardValues::row(double time_s) {
   const Clock::time_point now = Clock::now();
   std::string text = fmt::format("{:.3f}", time_s);
-  for (const Value& v : values_) {
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const Value& v = values_[k];
     const bool is_known = v.at && std::chrono::duration<double>(now - *v.at).count() < stale_s_;
     text += fmt::format(",{}", is_known ? v.cell : "");
+    if (is_probing_[k]) values_[k] = {};
   }
   return text;
 }

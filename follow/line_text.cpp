@@ -17,6 +17,21 @@ std::string number_or_null(const std::optional<double>& x) {
   return x ? number(*x) : "null";
 }
 
+std::string probing_text(const ProbingState& p) {
+  std::string text = fmt::format(R"({{"residual_um":{},"deviation_um":{},"refused":{})", number(p.residual_um),
+                                 number(p.deviation_um), p.n_refused);
+  if (p.answer) {
+    const ProbingAnswer& a = *p.answer;
+    text += fmt::format(R"(,"is_taken":{},"off_um":{},"bound_um":{},"words":{})", a.is_taken, number(a.off_um),
+                        number(a.bound_um), quoted(a.words));
+    std::vector<std::string> list;
+    for (const auto& [in, um] : a.intervals_um) list.push_back(fmt::format("{}:{}", quoted(in), number(um)));
+    if (!list.empty()) text += fmt::format(R"(,"interval_95_um_in":{{{}}})", fmt::join(list, ","));
+  }
+  if (!p.probe_now.empty()) text += fmt::format(R"(,"probe_now":{})", quoted(p.probe_now));
+  return text + "}";
+}
+
 }  // namespace
 
 std::string line_text(const FollowLine& l) {
@@ -29,6 +44,7 @@ std::string line_text(const FollowLine& l) {
     if (!a.verdict.empty()) axes += fmt::format(R"(,"verdict":{})", quoted(a.verdict));
     if (a.watch_level) axes += fmt::format(R"(,"watch_level":{:.4g})", *a.watch_level);
     if (!a.alarm.empty()) axes += fmt::format(R"(,"alarm":{})", quoted(a.alarm));
+    if (a.probing) axes += fmt::format(R"(,"probing":{})", probing_text(*a.probing));
     axes += fmt::format(R"(,"doubted":{}}})", list_of(a.doubted));
   }
   std::string text =

@@ -84,7 +84,8 @@ void MqttLink::heard(mosquitto*, void* self, const mosquitto_message* message) {
   auto& link = *static_cast<MqttLink*>(self);
   const auto size = static_cast<std::size_t>(message->payloadlen), n_kept = std::min(size, kLargestPayload);
   const std::lock_guard lock(link.mutex_);
-  link.waiting_.push_back({message->topic, std::string(static_cast<const char*>(message->payload), n_kept), n_kept < size});
+  link.waiting_.push_back(
+      {message->topic, std::string(static_cast<const char*>(message->payload), n_kept), n_kept < size, message->retain});
   link.waiting_bytes_ += n_kept;
   while (link.waiting_.size() > kMostWaiting || link.waiting_bytes_ > kMostWaitingBytes) {
     link.waiting_bytes_ -= link.waiting_.front().payload.size();

@@ -30,7 +30,8 @@ class MqttLink {
  public:
   struct Message {
     std::string topic, payload;
-    bool is_cut = false;  ///< the message was larger, and only its beginning is here
+    bool is_cut = false;     ///< the message was larger, and only its beginning is here
+    bool is_former = false;  ///< the broker had it before the link (retained)
   };
   /// Connects in the background, now and whenever the link is lost (again after 1 s, later after up to 10 s).
   /// @param topics   topics to subscribe to

@@ -55,8 +55,33 @@ void Session::begin(const std::vector<Channel>& channels) {
     if (there->unit != w.unit)
       throw InputError(fmt::format("{} reads '{}' in {}, which the stream has in {}", w.by, w.name, w.unit, there->unit));
   }
+  require_probed_axes(channels);
   channels_ = channels;
   for (const Model& m : models_) m.followed->begin(channels);
+}
+
+/// A column of probings that nobody takes is a mistake in its name, or of the model.
+void Session::require_probed_axes(const std::vector<Channel>& channels) const {
+  std::vector<std::string> taken, axes;
+  for (const Model& m : models_) {
+    for (std::string& name : m.followed->probings(channels)) taken.push_back(std::move(name));
+    for (const AxisCorrection& axis : m.followed->axes()) axes.push_back(axis.name);
+  }
+  for (const Channel& c : channels) {
+    if (!is_probing(c) || std::find(taken.begin(), taken.end(), c.name) != taken.end()) continue;
+    throw InputError(fmt::format(
+        "the stream has the column '{}', a probing that no followed model takes: probe_AXIS_um and "
+        "probe_left_AXIS_um are allowed, where AXIS is corrected by a model file of `validate`. Corrected here: {}. "
+        "Leave the column out, or rename it if it is no probing",
+        c.header(), fmt::join(axes, ", ")));
+  }
+}
+
+bool Session::has_probing(const StreamRow& row) const {
+  for (std::size_t k = 0; k < channels_.size(); ++k) {
+    if (is_probing(channels_[k]) && std::isfinite(row.values[k])) return true;
+  }
+  return false;
 }
 
 void Session::wait_all(double step_s) {
@@ -68,6 +93,7 @@ void Session::wait_all(double step_s) {
 FollowLine Session::take(StreamRow row) {
   const double gap_s = guard_.short_gap_s(), usual_s = guard_.usual_step_s();
   const JudgedRow judged = guard_.judge(row, channels_);
+  const bool lost_probing = !judged.is_taken && has_probing(row);
   const double time_s = row.time_s;
   if (judged.is_taken) {
     double step_s = std::max(0.0, judged.step_s - waited_s_);
@@ -80,7 +106,7 @@ FollowLine Session::take(StreamRow row) {
     taken_ = std::move(row);
     taken_.time_s = judged.run_s;
   }
-  FollowLine l = line(judged.is_taken, judged.faults, "");
+  FollowLine l = line(judged.is_taken, judged.faults, "", lost_probing);
   if (std::isfinite(time_s)) l.time_s = time_s;
   if (judged.is_taken) l.run_s = judged.run_s;
   return l;
@@ -96,7 +122,7 @@ FollowLine Session::wait(double step_s) {
   return line(false, {}, fmt::format("no row for {:.0f} s", waited_s_));
 }
 
-FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::string& passed_over) const {
+FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::string& passed_over, bool lost_probing) const {
   FollowLine l;
   bool has_begun = true;
   double trust = 1.0;
@@ -108,6 +134,7 @@ FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::st
       for (const std::string& name : axis.doubted) {
         if (std::find(doubted.begin(), doubted.end(), name) == doubted.end()) doubted.push_back(name);
       }
+      if (axis.probing && !is_taken) axis.probing->answer.reset();  // it was to an earlier row
       l.axes.push_back(std::move(axis));
     }
   }
@@ -118,6 +145,7 @@ FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::st
     l.why = "no row has given drive and ambient yet";
   } else if (!is_taken) {
     l.why = !passed_over.empty() ? passed_over : fmt::format("the row is passed over: {}", fmt::join(l.faults, ", "));
+    if (lost_probing) l.why += "; its probing was not used, probe again";
   } else if (!doubted.empty()) {
     l.why = fmt::format("in doubt: {}", fmt::join(doubted, ", "));
   } else {

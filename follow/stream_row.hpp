@@ -19,6 +19,14 @@ struct StreamRow {
 /// rows before its age counts.
 inline constexpr double kMissingSteps = 2.5;
 
+/// A column whose numbers are probings: each belongs to the one row that has it. "probe_drift_y" in um: the drift of the axis;
+/// "probe_left_drift_y" in um: what was left of it on the corrected axis.
+inline constexpr const char* kProbePrefix = "probe_";
+inline constexpr const char* kProbeLeftPrefix = "probe_left_";
+[[nodiscard]] inline bool is_probing(const Channel& channel) {
+  return channel.unit == "um" && channel.name.starts_with(kProbePrefix);
+}
+
 /// What the numbers in a column of a stream are, for sources that say in which unit theirs are.
 struct ColumnUnit {
   std::string unit;            ///< as UDUNITS reads it; "": nothing says

@@ -42,7 +42,21 @@ const std::vector<std::string> kTaken = {"s",
                                          "waited_s",
                                          "is_started",
                                          "heartbeat_is_late",
-                                         "setting_is_wrong"};
+                                         "setting_is_wrong",
+                                         "probed_um",
+                                         "probe_um",
+                                         "probe_strobe",
+                                         "probe_residual_um",
+                                         "probe_sigma_um",
+                                         "probe_verdict",
+                                         "probe_off_um",
+                                         "refused_probings",
+                                         "probe_noise_um",
+                                         "probe_lag_s",
+                                         "probing",
+                                         "prediction_um",
+                                         "probe_waited_s",
+                                         "strobe_was_on"};
 
 /// A name that C and HAL allow; HAL allows no two underscores in a row.
 std::string c_name(const std::string& name) {
@@ -92,11 +106,43 @@ std::string upper(std::string text) {
   return text;
 }
 
+/// The settings of the filter of probings, as C has them.
+std::string probing_numbers(const DeployedModel& d) {
+  const probe_process p = compensation::probe_process_of(*d.residual, d.probe, d.model.from_start);
+  return fmt::format("{}, {}, {}, {}, {}", c_number(p.deviation_um), c_number(p.time_constant_s), c_number(p.noise_um),
+                     c_number(p.lag_s), p.is_known_at_start);
+}
+
 /// `static const TYPE NAME[] = {rows};`, with one row of zeros for an empty table: C has no empty arrays.
 std::string table(const std::string& type, const std::string& name, std::vector<std::string> rows) {
   if (rows.empty()) rows = {"{0}"};
   return fmt::format("static const {} {}[] = {{\n  {}\n}};\n", type, name, fmt::join(rows, ",\n  "));
 }
+
+/// What the component has for a probe. @{
+constexpr const char* kProbePins =
+    R"(pin in float probe_um "what the probe reads on the corrected axis: by how much it is off, um; not a number: the probe missed";
+pin in bit probe_strobe = 0 "turns on when a probed value is there, and off before the next one";
+pin out float probe_residual_um "what probings have found beyond the model, um; correction-um contains it";
+pin out float probe_sigma_um "standard deviation of what is left after probings, um";
+pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number";
+pin out float probe_off_um "of the last probing: read minus expected, um";
+pin out signed refused_probings "how many were refused";
+)";
+constexpr const char* kProbeRow =
+    "    probe_row(&process, &probing, prediction_um, axis_offset_correction_um(&axis), probe_waited_s);\n"
+    "    probe_waited_s = 0.0;\n";
+constexpr const char* kProbeCycle =
+    "  if (probe_strobe && !strobe_was_on) {{\n    if (is_started) {{\n{row}    }}\n"
+    "    probe_left(&process, &probing, probe_um);\n  }}\n"
+    "  strobe_was_on = probe_strobe;\n"
+    "  if (is_started && probe_waited_s == 0.0)\n"
+    "    correction_um = probe_corrected_um(&process, &probing, prediction_um, {lowest}, {highest});\n";
+constexpr const char* kProbeOutputs =
+    "  probe_residual_um = probe_expected_um(&process, &probing, 0.0);\n"
+    "  probe_sigma_um = probe_deviation_um(&process, &probing, 0.0);\n"
+    "  probe_verdict = probing.verdict;\n  probe_off_um = probing.off_um;\n  refused_probings = probing.n_refused;\n";
+/// @}
 
 }  // namespace
 
@@ -118,12 +164,14 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
     comment.replace(at, 1, "\n * ");
   std::string text = fmt::format("/* Correction of {} [um], by {}. {}\n *\n * {} *\n", quoted(d.model.target),
                                  quoted(d.model.kind), quoted(made_by), comment);
-  text +=
+  const char* probing_file = d.residual ? " probe_feedback.c" : "";
+  text += fmt::format(
       " * Compile it with drift_correction.c, which lies beside it; drift_correction.h says what is computed, and how it "
       "must be\n"
       " * compiled to give the numbers that were judged, to the last bit: cc -std=c99 -ffp-contract=off THIS.c "
-      "drift_correction.c -lm */\n"
-      "#include \"drift_correction.h\"\n\n#include <math.h>\n\n";
+      "drift_correction.c{} -lm */\n"
+      "#include \"drift_correction.h\"\n{}\n#include <math.h>\n\n",
+      probing_file, d.residual ? "#include \"probe_feedback.h\"\n" : "");
   text += fmt::format("#define {}_INPUTS {}\n#define {}_TERMS {}\n\n", capitals, n, capitals, formula.terms.size());
 
   for (std::size_t k = 0; k < n; ++k) {
@@ -162,8 +210,8 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   text += fmt::format(
       "/* All zero before the first call. Afterwards run.trust, inputs[k].is_doubted and repaired[k] may be read. */\n"
       "typedef struct {{\n  drift_state run;\n  drift_input_state inputs[{}];\n  drift_term_state terms[{}];\n"
-      "  double repaired[{}], room[{}];\n}} {}_state;\n\n",
-      room, n_terms, room, room * (room + 1), name);
+      "  double repaired[{}], room[{}];\n{}}} {}_state;\n\n",
+      room, n_terms, room, room * (room + 1), d.residual ? "  probe_state probing;\n  double probed_um;\n" : "", name);
   text += fmt::format(
       "/* What to take away from the position [um]: the axis moves by its negative. Readings that are missing are NAN.\n"
       " * dt_s: since the call before; it does not matter in the first one. */\n"
@@ -177,6 +225,29 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
       "  arrays.repaired = s->repaired;\n  arrays.room = s->room;\n"
       "  return drift_correction_step(&{0}_safe, &{0}_formula, &s->run, &arrays, readings, dt_s);\n}}\n",
       name);
+  if (!d.residual) return text;
+  std::vector<std::string> values = readings;
+  values.emplace_back("");
+  text += fmt::format(
+      "\n/* deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start; probe_feedback.h says what is computed. */\n"
+      "static const probe_process {0}_probing = {{{1}}};\n\n"
+      "/* The same with what probings have found, within the clamp and the slew limit. probed_um: the drift of the axis "
+      "without\n"
+      " * correction by a probing whose value has come since the call before [um], which is what the probe read on the "
+      "corrected\n"
+      " * axis plus the correction that was in force then; NAN without one. Call either this function or the one above.\n"
+      " * s->probing.verdict says what became of the last probing, s->probing.n_refused how many were refused;\n"
+      " * probe_deviation_um(&{0}_probing, &s->probing, 0.0) is the standard deviation of what is left. */\n"
+      "double {0}_probed_correction_um({0}_state *s, {2}double probed_um, double dt_s) {{\n"
+      "  const int is_first = !s->probing.has_begun;\n"
+      "  const double prediction_um = {0}_correction_um(s, {3}dt_s), before_um = is_first ? prediction_um : s->probed_um;\n"
+      "  probe_row(&{0}_probing, &s->probing, prediction_um, before_um, dt_s);\n"
+      "  if (!isnan(probed_um)) probe_drift(&{0}_probing, &s->probing, probed_um);\n"
+      "  s->probed_um = probe_corrected_um(&{0}_probing, &s->probing, prediction_um, {0}_safe.lowest_um,\n"
+      "                                    {0}_safe.highest_um);\n"
+      "  if (!is_first) s->probed_um = probe_slewed_um(before_um, s->probed_um, {0}_safe.most_rate_um_s, dt_s);\n"
+      "  return s->probed_um;\n}}\n",
+      name, probing_numbers(d), fmt::join(arguments, ""), fmt::join(values, ", "));
   return text;
 }
 
@@ -194,13 +265,40 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
     values += fmt::format("is_late ? NAN : {}, ", readings[k]);
     set_doubts += fmt::format("    doubt_{} = model.inputs[{}].is_doubted;\n", readings[k], k);
   }
+  std::string step = fmt::format("    correction_um = {}_correction_um(&model, {}waited_s);\n", target, values);
+  std::string probe_pins, probe_parameters, probe_variables, begin, probe, outputs, is_wrong = "axis.is_wrong";
+  std::string description_files =
+      "drift_correction.c the code. Both, with\ndrift_correction.h, axis_offset.h and axis_offset.c,";
+  if (d.residual) {
+    description_files =
+        "drift_correction.c and\nprobe_feedback.c the code. They, with drift_correction.h, probe_feedback.h, axis_offset.h "
+        "and "
+        "axis_offset.c,";
+    const compensation::ResidualProcess& r = *d.residual;
+    probe_pins = kProbePins;
+    probe_parameters = fmt::format(
+        "param rw float probe_noise_um = {} \"of a probing, 1 sigma, um; above 0\";\n"
+        "param rw float probe_lag_s = {} \"from the touch until probe-strobe turns on, s; 0 or more\";\n",
+        c_number(d.probe.noise_um), c_number(d.probe.lag_s));
+    probe_variables =
+        "variable probe_state probing;\nvariable double prediction_um;\nvariable double probe_waited_s;\n"
+        "variable int strobe_was_on;\n";
+    begin = fmt::format(
+        "  static const probe_state unprobed;\n"
+        "  const probe_process process = {{{}, {}, probe_noise_um, probe_lag_s, {}}};\n",
+        c_number(r.deviation_um), c_number(r.time_constant_s), d.model.from_start ? 1 : 0);
+    step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, values) + kProbeRow;
+    probe = fmt::format(kProbeCycle, fmt::arg("row", kProbeRow), fmt::arg("lowest", c_number(d.safe.lowest_um)),
+                        fmt::arg("highest", c_number(d.safe.highest_um)));
+    outputs = kProbeOutputs;
+    is_wrong = "axis.is_wrong || !probe_is_valid(&process)";
+  }
   return fmt::format(
       R"(component {name} "Correction of {target} [um], by {kind}, as external offset of an axis";
 description """
 {made_by}
 
-What is judged by Driftwright runs here: {c_file} holds the tables of the model, drift_correction.c the code. Both, with
-drift_correction.h, axis_offset.h and axis_offset.c, must lie beside this file when it is compiled:
+What is judged by Driftwright runs here: {c_file} holds the tables of the model, {files} must lie beside this file when it is compiled:
 
   halcompile --install {name}.comp
 
@@ -225,7 +323,7 @@ pin out bit eoffset_enable "to axis.L.eoffset-enable";
 pin out float correction_um "of the model: what is to be taken away from the position";
 pin out float axis_offset_um "of the axis, in force";
 pin out float model_trust "0 to 1, that the prediction was multiplied by";
-pin out bit heartbeat_is_late "the watchdog has bitten";
+{probe_pins}pin out bit heartbeat_is_late "the watchdog has bitten";
 pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
 {doubts}param rw float most_rate_um_s = {rate} "slew limit of the offset, um/s; 0 or more";
 param rw float most_um = {most} "largest offset by size, um; 0: no limit";
@@ -234,44 +332,49 @@ param rw float count_um = 0.1 "um per count, above 0. A new one waits until the 
 param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
 param rw float most_age_s = {age} "the heartbeat must turn over within this time, s; above 0";
 param rw float step_s = {period} "from one step of the model to the next, s: as far apart as the readings that it was judged on; 0: each cycle";
-variable {state} model;
+{probe_parameters}variable {state} model;
 variable axis_offset_state axis;
 variable double waited_s;
 variable int is_started;
-include "{c_file}";
+{probe_variables}include "{c_file}";
 include "drift_correction.c";
-include "axis_offset.c";
+{probe_include}include "axis_offset.c";
 function _ fp;
 license "GPL";
 ;;
 FUNCTION(_) {{
   static const {state} at_start;
-  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
+{begin}  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
   const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
   waited_s += fperiod;
-  if (restart) {{
+{wait}  if (restart) {{
     model = at_start;
     is_started = 0;
     correction_um = 0.0;
-  }} else if (is_started ? !(waited_s + 0.5 * fperiod < step_s) : !is_late) {{
-    correction_um = {function}(&model, {values}waited_s);
-    is_started = 1;
+{forget}  }} else if (is_started ? !(waited_s + 0.5 * fperiod < step_s) : !is_late) {{
+{step}    is_started = 1;
     waited_s = 0.0;
   }}
-  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
+{probe}  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
   eoffset_counts = axis.counts;
   eoffset_scale = axis.scale;
   eoffset_enable = axis.is_offset_enabled;
   axis_offset_um = axis.offset_um;
   model_trust = model.run.trust;
   heartbeat_is_late = is_late;
-  setting_is_wrong = axis.is_wrong;
-{set_doubts}}}
+  setting_is_wrong = {is_wrong};
+{outputs}{set_doubts}}}
 )",
       fmt::arg("name", name), fmt::arg("target", quoted(d.model.target)), fmt::arg("kind", quoted(d.model.kind)),
       fmt::arg("made_by", quoted(made_by)), fmt::arg("c_file", c_file), fmt::arg("pins", pins), fmt::arg("doubts", doubts),
-      fmt::arg("values", values), fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
-      fmt::arg("function", target + "_correction_um"), fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
+      fmt::arg("step", step), fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
+      fmt::arg("files", description_files), fmt::arg("probe_pins", probe_pins),
+      fmt::arg("probe_parameters", probe_parameters), fmt::arg("probe_variables", probe_variables),
+      fmt::arg("probe_include", d.residual ? "include \"probe_feedback.c\";\n" : ""), fmt::arg("begin", begin),
+      fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""), fmt::arg("probe", probe),
+      fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
+      fmt::arg("forget", d.residual ? "    probing = unprobed;\n    probe_waited_s = 0.0;\n" : ""),
+      fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
       fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))), fmt::arg("age", c_number(d.safe.stale_s)),
       fmt::arg("period", c_number(d.safe.period_s)));
 }

@@ -40,7 +40,7 @@ DeployedModel deployed_model(const compensation::DeployedPredictor& d) {
                     "Predictor::formula() of its class must give",
                     d.name));
   if (!d.fail_safe) throw std::logic_error(fmt::format("'{}' has no fail-safe; a control needs one", d.name));
-  return {*formula, *d.fail_safe, d.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+  return {*formula, *d.fail_safe, d.interval_um.value_or(std::numeric_limits<double>::quiet_NaN()), d.residual, d.probe};
 }
 
 std::string formula_text(const DeployedModel& d) {

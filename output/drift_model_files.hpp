@@ -12,7 +12,9 @@ namespace driftwright::output {
 struct DeployedModel {
   compensation::DriftModel model;
   compensation::FailSafe safe;
-  double interval_um = 0.0;  ///< half width of its 95 % prediction interval; NaN: unknown
+  double interval_um = 0.0;                                    ///< half width of its 95 % prediction interval; NaN: unknown
+  std::optional<compensation::ResidualProcess> residual = {};  ///< what it leaves, for probings; none: unknown
+  compensation::Probe probe = {};
 };
 
 /// What a control can run of a predictor: its formula with its fail-safe.

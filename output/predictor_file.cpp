@@ -62,6 +62,31 @@ Written written_of(const DeployedPredictor& d) {
   return *std::move(written);
 }
 
+Json probing_json(const DeployedPredictor& d) {
+  if (!d.residual) return nullptr;
+  return {{"deviation_um", d.residual->deviation_um},
+          {"time_constant_s", d.residual->time_constant_s},
+          {"reading_um", d.residual->reading_um},
+          {"noise_um", d.probe.noise_um},
+          {"lag_s", d.probe.lag_s}};
+}
+
+/// What probings need. Files of earlier versions have none.
+void read_probing(const Json& file, DeployedPredictor& d) {
+  if (!file.contains("probing") || file["probing"].is_null()) return;
+  const auto j = value<Json>(file, "probing");
+  if (!j.is_object()) throw InputError(fmt::format("key `probing` is {}; it must be a map, or null", j.dump()));
+  try {
+    d.residual = {positive(j, "deviation_um"), positive(j, "time_constant_s"), finite(j, "reading_um")};
+    d.probe = {positive(j, "noise_um"), finite(j, "lag_s")};
+    for (const char* key : {"reading_um", "lag_s"}) {
+      if (finite(j, key) < 0.0) throw InputError(fmt::format("key `{}` is {}; it must be 0 or more", key, finite(j, key)));
+    }
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("key `probing`: {}", e.what()));
+  }
+}
+
 PredictorFile file_of(const Json& j) {
   if (!j.is_object() || value<std::string>(j, "format") != kFormat)
     throw InputError(
@@ -79,6 +104,7 @@ PredictorFile file_of(const Json& j) {
   d.reason = value<std::string>(j, "decided");
   if (const double half = number_or(j, "interval_95_um", NAN); std::isfinite(half)) d.interval_um = half;
   d.predictor = predictor_of(j, {.name = d.target, .from_start = d.from_start});
+  read_probing(j, d);
   if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
   require_guards(d);
   file.judged = value<Json>(j, "judged");
@@ -109,6 +135,7 @@ Json predictor_json(const PredictorFile& file, const Provenance& made_by) {
             {"hall", d.ambient},
             {"decided", d.reason},
             {"interval_95_um", d.interval_um ? Json(*d.interval_um) : Json(nullptr)},
+            {"probing", probing_json(d)},
             {"judged", file.judged},
             {"watch", file.watch},
             {"covered", file.covered ? Json{{"most_rpm", file.covered->most_rpm},

@@ -108,6 +108,25 @@ std::vector<std::pair<double, double>> rows(RowSource& source, std::size_t n, st
   return list;
 }
 
+// A probing is in one row, whether its message comes once or is asked for again and again; one from before is none.
+TEST(HeardValues, AProbingIsInOneRowAlone) {
+  HeardValues values({{"t_degC", "t"}, {"probe_y_um", "p"}}, std::numeric_limits<double>::infinity());
+  values.hear("t", "21");
+  values.hear_former("p", "3", 7);
+  EXPECT_EQ(values.row(1.0), "1.000,21,");
+  values.hear("p", "3", 7);  // the same observation
+  EXPECT_EQ(values.row(2.0), "2.000,21,");
+  values.hear("p", "4", 8);
+  EXPECT_EQ(values.row(3.0), "3.000,21,4");
+  EXPECT_EQ(values.row(4.0), "4.000,21,");
+  values.hear("p", "4");  // a message: each one is new
+  EXPECT_EQ(values.row(5.0), "5.000,21,4");
+  values.hear("p", "4");
+  EXPECT_EQ(values.row(6.0), "6.000,21,4");
+  values.hear_former("p", "5");
+  EXPECT_EQ(values.row(7.0), "7.000,21,");
+}
+
 TEST(SampleRows, AnObservationFarAheadOfTheAgentsOwnTimeIsOfThatTime) {
   // An adapter's clock is an hour ahead: what others observe meanwhile would be late for an hour.
   Agent agent(streams(0, 2, 1, {{1, 0, 1000}}),

@@ -216,7 +216,8 @@ TEST(ControlFiles, AreTheFilesThatAreCompiledInToTheByte) {
     EXPECT_GT(source.size(), 500u) << file.name;
     EXPECT_EQ(file.text, source) << file.name;
   }
-  EXPECT_THAT(names, ::testing::ElementsAre("drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c"));
+  EXPECT_THAT(names, ::testing::ElementsAre("drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c",
+                                            "probe_feedback.h", "probe_feedback.c"));
 }
 
 TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
@@ -239,6 +240,73 @@ TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
   const std::vector<Row> got = Exported(d, "gcc -std=c99 -O2").run(r);
   ASSERT_EQ(got.size(), 2u);
   for (const Row& row : got) EXPECT_EQ(row.correction_um, 83.0);
+}
+
+// Probings in the exported C are the program's filter on top of the guarded correction: within the clamp, no faster than the slew
+// limit, and by the same source file.
+TEST(CFunction, TakesProbingsAsTheProgramDoes) {
+  DeployedModel d = deployed(true, 60.0);
+  d.residual = compensation::ResidualProcess{4.0, 5400.0};
+  d.probe = {0.6, 90.0};
+  const std::filesystem::path folder = fresh_folder("probed");
+  std::ofstream(folder / "model.c") << c_function(d, "a test");
+  for (const compensation::ControlFile& file : compensation::control_files())
+    std::ofstream(folder / file.name, std::ios::binary) << file.text;
+  std::ofstream(folder / "main.c")
+      << "#include <stdio.h>\n#include \"model.c\"\nint main(void) {\n  static drift_y_state s;\n  double x[7], y[4];\n"
+         "  while (fread(x, sizeof x, 1, stdin) == 1) {\n"
+         "    y[0] = drift_y_probed_correction_um(&s, x[0], x[1], x[2], x[3], x[4], x[5], x[6]);\n"
+         "    y[1] = s.probing.verdict;\n    y[2] = s.probing.n_refused;\n"
+         "    y[3] = probe_deviation_um(&drift_y_probing, &s.probing, 0.0);\n    fwrite(y, sizeof y, 1, stdout);\n  }\n"
+         "  return 0;\n}\n";
+  ASSERT_EQ(
+      std::system(fmt::format("gcc -std=c99 -O2 -ffp-contract=off -Wall -Wextra -Werror -pedantic -o {0}/run {0}/main.c "
+                              "{0}/drift_correction.c {0}/probe_feedback.c -lm",
+                              folder.string())
+                      .c_str()),
+      0);
+  const Record r = machine(5, 60.0);
+  std::vector<double> probed_um(r.n_samples(), NAN);
+  for (const auto& [row, um] : std::vector<std::pair<std::size_t, double>>{
+           {0, 1.0}, {40, 3.0}, {80, -2.0}, {120, 900.0}, {150, 4.0}, {200, -30.0}, {201, -31.0}})
+    probed_um[row] = um;
+  const compensation::Repaired repaired = compensation::repaired(d.safe, r);
+  const std::vector<double> guarded_um =
+      compensation::guarded(d.safe, repaired, d.model.predict(repaired.readings)).correction_um;
+  std::ofstream in(folder / "in", std::ios::binary);
+  const auto write = [&](double v) { in.write(reinterpret_cast<const char*>(&v), sizeof v); };
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    for (const FailSafe::Guard& g : d.safe.guards) write(r.at(g.input).values[i]);
+    write(std::isnan(probed_um[i]) ? NAN : guarded_um[i >= 2 ? i - 2 : 0] + probed_um[i]);
+    write(i > 0 ? 60.0 : kFirstStep_s);
+  }
+  in.close();
+  ASSERT_EQ(std::system(fmt::format("{0}/run <{0}/in >{0}/out", folder.string()).c_str()), 0);
+  std::ifstream out(folder / "out", std::ios::binary);
+  compensation::ProbeFeedback feedback(*d.residual, d.probe, true);
+  double in_force_um = guarded_um[0];
+  int n_taken = 0, n_slewed = 0;
+  std::vector<int> verdicts;
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    double y[4];
+    ASSERT_TRUE(out.read(reinterpret_cast<char*>(y), sizeof y)) << i;
+    feedback.row(guarded_um[i], 0.0, 60.0);
+    if (!std::isnan(probed_um[i])) {
+      n_taken += feedback.probe_drift_um(guarded_um[i >= 2 ? i - 2 : 0] + probed_um[i]);
+      verdicts.push_back(static_cast<int>(y[1]));
+    }
+    const double wanted_um = std::clamp(guarded_um[i] + feedback.estimate_um(), d.safe.lowest_um, d.safe.highest_um);
+    const double most_um = i > 0 ? 60.0 * d.safe.most_rate_um_s : 1e9;
+    if (std::abs(wanted_um - in_force_um) > most_um) ++n_slewed;
+    in_force_um += std::clamp(wanted_um - in_force_um, -most_um, most_um);
+    ASSERT_NEAR(y[0], in_force_um, 1e-12 * (1.0 + std::abs(in_force_um))) << i;
+    ASSERT_EQ(y[2], feedback.state().n_refused) << i;
+    ASSERT_EQ(bits(y[3]), bits(feedback.deviation_um())) << i;
+  }
+  EXPECT_THAT(verdicts, ::testing::ElementsAre(PROBE_TOO_EARLY, PROBE_TAKEN, PROBE_TAKEN, PROBE_UNLIKELY, PROBE_TAKEN,
+                                               PROBE_UNLIKELY, PROBE_JUMP));
+  EXPECT_EQ(n_taken, 4);
+  EXPECT_GT(n_slewed, 0);
 }
 
 TEST(CFunction, OfATermWithoutAGuardIsOurOwnMistake) {

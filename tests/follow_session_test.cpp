@@ -10,6 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "base/random.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
+#include "follow/axis_probing.hpp"
 #include "follow/followed_predictor.hpp"
 #include "follow/session.hpp"
 #include "follow/state_file.hpp"
@@ -206,6 +207,196 @@ TEST(FollowSession, NoCorrectionStepsWhateverTheRowsAre) {
     }
     EXPECT_GT(session.faults()[static_cast<std::size_t>(Fault::kDoubled)], 0);
   }
+}
+
+/// 2 um/K (T - 20): 10 um at 25 degC. The drift does not count from the start.
+output::PredictorFile two_um_per_K() {
+  output::PredictorFile file;
+  DeployedPredictor& d = file.predictor;
+  d.name = "by hand";
+  d.target = "drift_y";
+  d.sensors = {"T"};
+  d.predictor =
+      std::make_shared<FormulaPredictor>(DriftModel{.kind = "by hand",
+                                                    .target = "drift_y",
+                                                    .target_unit = "um",
+                                                    .intercept = -40.0,
+                                                    .terms = {{.input = "T", .unit = "degC", .coefficient = 2.0}}});
+  FailSafe safe;
+  safe.guards = {{.input = "T", .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}}};
+  safe.lowest_um = -100;
+  safe.highest_um = 100;
+  safe.most_rate_um_s = 2.0;
+  safe.period_s = 60.0;
+  safe.stale_s = 300.0;
+  safe.fade_s = 600.0;
+  d.fail_safe = safe;
+  d.interval_um = 12.0;
+  d.residual = ResidualProcess{5.0, 7200.0, 0.1};
+  d.probe = {0.5, 0.0};
+  file.judged = {{"verdict", "safe within limits"}};
+  return file;
+}
+
+Session probed_session(const FollowOptions& options = {}, const std::string& column = "probe_drift_y",
+                       const output::PredictorFile& file = two_um_per_K()) {
+  const std::string path = path_of(file, "probed.json");
+  std::vector<Session::Model> models;
+  models.push_back({path, content_hash(read_bytes(path)), followed_predictor(path, options)});
+  Session session(std::move(models));
+  session.begin({{"T", "degC", {}}, {column, "um", {}}});
+  return session;
+}
+
+/// A row each minute at 25 degC.
+FollowLine minute(Session& session, int k, double probed_um = NAN) {
+  return session.take({.time_s = 60.0 * k, .values = {25.0, probed_um}});
+}
+
+// The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found fades with the
+// time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`.
+TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
+  Session session = probed_session();
+  FollowLine line;
+  for (int k = 0; k < 30; ++k) line = minute(session, k);
+  EXPECT_NEAR(line.axes[0].correction_um, 10.0, 1e-9);
+  ASSERT_TRUE(line.axes[0].probing);
+  EXPECT_FALSE(line.axes[0].probing->answer);
+  EXPECT_NEAR(*line.axes[0].interval_um, 12.0, 1e-9);
+  line = minute(session, 30, 19.3);
+  const double gain = 25.0 / 25.25;
+  ASSERT_TRUE(line.axes[0].probing->answer);
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  EXPECT_NEAR(line.axes[0].probing->answer->off_um, 9.3, 1e-9);
+  EXPECT_NEAR(line.axes[0].probing->answer->bound_um, 4.0 * std::sqrt(25.25), 1e-9);
+  EXPECT_NEAR(line.axes[0].correction_um, 10.0 + gain * 9.3, 1e-9);
+  EXPECT_LT(std::abs(19.0 - line.axes[0].correction_um), 0.5);
+  EXPECT_EQ(line.axes[0].predicted_um, 10.0);
+  EXPECT_THAT(line_text(line), AllOf(HasSubstr("probing taken: it is 9.3 um from what is expected (4 sigmas are 20.1 um)"),
+                                     HasSubstr(R"("interval_95_um_in":{"15 min":)")));
+  const auto half_um = [&](double after_s) {
+    const double kept = std::exp(-after_s / 7200.0);
+    return 12.0 / 5.0 * std::sqrt(kept * kept * gain * 0.25 + (1.0 - kept * kept) * 25.0);
+  };
+  EXPECT_NEAR(line.axes[0].probing->answer->intervals_um[1].second, half_um(3600.0), 1e-9);
+  for (int k = 0; k < 600; ++k) {
+    if (k > 0) line = minute(session, 30 + k);
+    ASSERT_NEAR(line.axes[0].correction_um, 10.0 + gain * 9.3 * std::exp(-60.0 * k / 7200.0), 1e-9) << k;
+    ASSERT_NEAR(*line.axes[0].interval_um, half_um(60.0 * k), 1e-9) << k;
+    EXPECT_EQ(line.axes[0].probing->answer.has_value(), k == 0);
+  }
+  EXPECT_NEAR(*line.axes[0].interval_um, 12.0, 0.01);
+}
+
+// What a probe reads on the corrected axis is the drift minus the correction that was in force, also with a lag and while the axis
+// is on its way.
+TEST(FollowProbing, WhatIsLeftOnTheCorrectedAxisIsTheSameNews) {
+  for (const double lag_s : {0.0, 90.0}) {
+    const FollowOptions options{.most_rate_um_s = 0.05, .probe_lag_s = lag_s};
+    Session by_drift = probed_session(options), by_left = probed_session(options, "probe_left_drift_y");
+    std::vector<double> in_force_um = {0.0};  // after each minute
+    for (int k = 0; k < 200; ++k) {
+      const bool is_probed = k == 3 || k == 40 || k == 41;
+      // touched one and a half minutes ago, between the answers to the rows k - 2 and k - 1
+      const double at_touch_um = in_force_um[in_force_um.size() - (lag_s == 0.0 || k < 2 ? 1 : 2)];
+      const FollowLine a = minute(by_drift, k, is_probed ? 14.0 : NAN);
+      const FollowLine b = minute(by_left, k, is_probed ? 14.0 - at_touch_um : NAN);
+      ASSERT_NEAR(a.axes[0].correction_um, b.axes[0].correction_um, 1e-9) << k << " " << lag_s;
+      in_force_um.push_back(a.axes[0].correction_um);
+    }
+  }
+}
+
+TEST(FollowProbing, AChipIsRefusedAndAConfirmedJumpTaken) {
+  Session session = probed_session(), untouched = probed_session();
+  FollowLine line;
+  const auto both = [&](int k, double um) {
+    line = minute(session, k, um);
+    return std::abs(line.axes[0].correction_um - minute(untouched, k).axes[0].correction_um);
+  };
+  for (int k = 0; k < 30; ++k) (void)both(k, NAN);
+  EXPECT_EQ(both(30, 50.0), 0.0);
+  EXPECT_FALSE(line.axes[0].probing->answer->is_taken);
+  EXPECT_THAT(
+      line_text(line),
+      AllOf(HasSubstr("probing refused: it is 40.0 um from what is expected (4 sigmas are 20.1 um); measured another tool, "
+                      "chips, or the machine was touched? Probe again"),
+            HasSubstr(R"("refused":1,"is_taken":false)")));
+  EXPECT_EQ(both(31, -40.0), 0.0);  // another chip
+  EXPECT_LT(both(32, 10.5), 0.6);   // as expected
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  (void)both(33, 50.0);
+  EXPECT_FALSE(line.axes[0].probing->answer->is_taken);
+  (void)both(34, 51.0);
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  EXPECT_THAT(line.axes[0].probing->answer->words, HasSubstr("taken as a jump of the axis"));
+  EXPECT_NEAR(line.axes[0].correction_um, 50.5, 0.5);
+  for (int k = 35; k < 635; ++k) line = minute(session, k);
+  EXPECT_NEAR(line.axes[0].correction_um, 50.5, 1.0);  // 5 time constants later; an axis that was knocked stays there
+  EXPECT_EQ(line.axes[0].probing->n_refused, 3);
+}
+
+TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
+  Session session = probed_session({.tolerance_um = 10.0});
+  EXPECT_THAT(line_text(minute(session, 0)),
+              HasSubstr("probe now: the interval of 12.0 um passes half of the tolerance of 10 um"));
+  FollowLine line = minute(session, 1, 12.0);
+  int n_minutes = 0;
+  for (; line.axes[0].probing->probe_now.empty() && n_minutes < 1000; ++n_minutes) line = minute(session, 2 + n_minutes);
+  // 12/5 sqrt(k² p + (1 - k²) 25) = 5 with k = exp(-t / 2 h)
+  const double p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2);
+  EXPECT_EQ(n_minutes, std::ceil(-0.5 * 120.0 * std::log((25.0 - um2) / (25.0 - p))));
+}
+
+TEST(FollowProbing, ARestartChangesNothing) {
+  const std::filesystem::path state = temporary_folder() / "probed.state";
+  Session whole = probed_session({.probe_lag_s = 100.0}), first = probed_session({.probe_lag_s = 100.0});
+  const auto probed_um = [](int k) { return k == 20 ? 13.0 : k == 59 || k == 60 ? 48.0 : NAN; };
+  for (int k = 0; k < 60; ++k)
+    EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(first, k, probed_um(k))));
+  write_state(state, first);  // between two probings that agree
+  Session second = probed_session({.probe_lag_s = 100.0});
+  EXPECT_TRUE(resume_from(state, second));
+  for (int k = 60; k < 100; ++k)
+    EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(second, k, probed_um(k)))) << k;
+}
+
+TEST(FollowProbing, AProbingInARowThatIsPassedOverIsSaid) {
+  Session session = probed_session();
+  for (int k = 0; k < 10; ++k) (void)minute(session, k);
+  const FollowLine line = minute(session, 8, 12.0);
+  EXPECT_EQ(line.state, "held");
+  EXPECT_EQ(line.why, "the row is passed over: late; its probing was not used, probe again");
+  EXPECT_EQ(line.axes[0].probing->residual_um, 0.0);
+}
+
+TEST(FollowProbing, WhatCannotBeTakenIsRefused) {
+  const auto begun = [](std::vector<Channel> channels, const output::PredictorFile& file) {
+    channels.insert(channels.begin(), {"T", "degC", {}});
+    const std::string path = path_of(file, "probed.json");
+    std::vector<Session::Model> models;
+    models.push_back({path, "", followed_predictor(path, {})});
+    Session session(std::move(models));
+    session.begin(channels);
+  };
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_z", "um", {}}}, two_um_per_K());
+      },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_z_um'"), HasSubstr("Corrected here: drift_y"))));
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_y", "um", {}}, {"probe_left_drift_y", "um", {}}}, two_um_per_K());
+      },
+      ThrowsMessage<InputError>(HasSubstr("only one of them is allowed")));
+  output::PredictorFile file = two_um_per_K();
+  file.predictor.residual.reset();
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_y", "um", {}}}, file);
+      },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_y_um'"), HasSubstr("key `probing`"))));
+  EXPECT_NO_THROW(begun({{"probe_1", "degC", {}}}, file));  // a thermometer
 }
 
 }  // namespace

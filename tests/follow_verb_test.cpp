@@ -267,6 +267,10 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
   refused("head.yaml", "echo 'time_s,speed_rpm' |", "'ambient_degC', which the stream does not have");
   refused("head.yaml", "echo 'nonsense' |", "no unit");
   refused("head.yaml --pace 3", "true |", "--pace");
+  refused("head.yaml --probe-noise '-1 um'", "true |", "--probe-noise '-1 um' must be above 0");
+  refused("head.yaml --probe-lag '3 um'", "true |", "--probe-lag");
+  refused("head.yaml --tolerance '10 um'", "cat day.csv |", "--tolerance require a column of probings");
+  refused("head.yaml", "echo 'time_s,speed_rpm,ambient_degC,probe_nose_z_um' |", "a probing that no followed model takes");
   refused("head.yaml --slew '0 um/s'", "true |", "must be above 0");
   refused("head.yaml head.yaml", "true |", "corrected by another model");
   refused("nowhere.json", "true |", "no such file");

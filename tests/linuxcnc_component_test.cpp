@@ -287,6 +287,54 @@ TEST(LinuxcncComponent, StepsTheModelAsFarApartAsItWasJudgedOn) {
   EXPECT_EQ(out[80].at("doubt_X3_degC"), 1.0);
 }
 
+// 20 um of correction, and the axis is 8 um off: the probe reads that on the corrected axis, once for each time that the strobe
+// turns on. Then the residual fades with its time constant. A chip is refused, what is probed twice is a jump.
+TEST(LinuxcncComponent, TakesProbings) {
+  DeployedModel d = two_um_per_K();
+  d.residual = compensation::ResidualProcess{5.0, 1800.0};
+  d.probe = {0.1, 0.0};
+  Component c(exported("probed", d));
+  int heartbeat = 0;
+  c.set("T_degC", 30.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  beating(c, 60, heartbeat);
+  const auto probe = [&](double um) {
+    c.set("probe_um", um);
+    c.set("probe_strobe", 1);
+    beating(c, 1, heartbeat);
+    c.set("probe_strobe", 0);
+  };
+  probe(8.0);
+  beating(c, 599, heartbeat);
+  probe(-60.0);
+  beating(c, 9, heartbeat);
+  probe(-60.0);
+  beating(c, 199, heartbeat);
+  probe(NAN);
+  const auto out = c.outputs();
+  const double gain = 25.0 / 25.01;
+  EXPECT_EQ(out[299].at("correction_um"), 20.0);
+  EXPECT_NEAR(out[299].at("probe_sigma_um"), 5.0, 1e-9);  // nothing is known of a drift that does not count from the start
+  EXPECT_EQ(out[304].at("probe_verdict"), 1.0);
+  EXPECT_NEAR(out[304].at("probe_off_um"), 8.0, 1e-9);
+  EXPECT_NEAR(out[304].at("correction_um"), 20.0 + gain * 8.0, 0.01);  // 1 s of 1800 s
+  EXPECT_NEAR(out[304].at("probe_sigma_um"), std::sqrt(0.01 * gain + 25.0 * (1.0 - std::exp(-0.4 / 1800.0))),
+              0.003);                                                    // the step of 60.2 s
+  EXPECT_NEAR(out[350].at("axis_offset_um"), -20.0 - 0.5 * 10.2, 0.02);  // on its way, at 0.5 um/s
+  EXPECT_NEAR(out[3299].at("axis_offset_um"), -20.0 - gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_EQ(out[3304].at("probe_verdict"), 3.0);
+  EXPECT_EQ(out[3304].at("refused_probings"), 1.0);
+  EXPECT_NEAR(out[3304].at("correction_um"), 20.0 + gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_EQ(out[3354].at("probe_verdict"), 2.0);
+  EXPECT_NEAR(out[3354].at("probe_residual_um"), gain * 8.0 * std::exp(-600.0 / 1800.0) - 60.0, 0.2);
+  // the jump does not fade, what was left before it does
+  EXPECT_NEAR(out[4349].at("axis_offset_um"), -(20.0 + gain * 8.0 * std::exp(-810.0 / 1800.0) - 60.0), 0.1);
+  EXPECT_EQ(out[4354].at("probe_verdict"), 5.0);
+  EXPECT_EQ(out[4354].at("refused_probings"), 2.0);
+  EXPECT_EQ(out[4354].at("setting_is_wrong"), 0.0);
+}
+
 // HAL takes 47 characters, of which "thermal." are eight.
 TEST(LinuxcncComponent, HasPinsThatHalCanName) {
   DeployedModel d = two_um_per_K();
@@ -374,7 +422,9 @@ TEST(FollowedAxis, IsTakenByHalcompile) {
 TEST(LinuxcncComponent, IsTakenByHalcompile) {
   if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
-  const std::filesystem::path folder = exported("halcompile", fixtures::deployed(true, 60.0));
+  DeployedModel d = fixtures::deployed(true, 60.0);
+  d.residual = compensation::ResidualProcess{4.0, 3600.0};
+  const std::filesystem::path folder = exported("halcompile", d);
   const std::string model = read_text(folder / "model.c");
   for (const char* what : {"--preprocess", "--compile", "--document"}) {
     EXPECT_EQ(std::system(fmt::format("cd {} && halcompile {} model_axis.comp >said 2>&1", folder.string(), what).c_str()),

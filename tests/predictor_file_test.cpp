@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
+#include "base/hashed_json.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "tests/deployed_model.hpp"
@@ -68,6 +69,50 @@ TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
     file.predictor.interval_um.reset();
     EXPECT_FALSE(back(file).predictor.interval_um);
   }
+}
+
+TEST(PredictorFile, WhatProbingsNeedComesBack) {
+  PredictorFile file = formula(true);
+  EXPECT_FALSE(back(file).predictor.residual);
+  file.predictor.residual = {10.0 / 3.0, 7200.0 / 7.0, 0.1};
+  file.predictor.probe = {0.3, 20.0};
+  const PredictorFile read = back(file);
+  expect_same(file, read);
+  ASSERT_TRUE(read.predictor.residual);
+  EXPECT_EQ(read.predictor.residual->deviation_um, 10.0 / 3.0);
+  EXPECT_EQ(read.predictor.residual->time_constant_s, 7200.0 / 7.0);
+  EXPECT_EQ(read.predictor.probe.noise_um, 0.3);
+  EXPECT_EQ(read.predictor.probe.lag_s, 20.0);
+  Json earlier = predictor_json(formula(true), {}, {"1", "a test"});  // a file of a version without the key
+  earlier.erase("probing");
+  earlier.erase("hash");
+  EXPECT_FALSE(read_predictor(driftwright::write_file("earlier.json", with_hash(earlier).dump())).predictor.residual);
+}
+
+TEST(PredictorFile, WrongNumbersForProbingsAreRefusedWithTheirKey) {
+  PredictorFile file = formula(true);
+  file.predictor.residual = {3.0, 7200.0, 0.1};
+  const Json good = predictor_json(file, {}, {"1", "a test"});
+  const auto refused = [&](const char* key, const Json& value, const char* word) {
+    Json j = good;
+    j["probing"][key] = value;
+    const std::string path = driftwright::write_file("probing.json", j.dump());
+    EXPECT_THAT([&] { (void)read_predictor(path); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr("probing.json: key `probing`"), HasSubstr(word))))
+        << key << " " << value.dump();
+  };
+  refused("deviation_um", 0.0, "key `deviation_um` is 0; it must be above 0");
+  refused("time_constant_s", -60.0, "key `time_constant_s` is -60; it must be above 0");
+  refused("noise_um", -1.0, "key `noise_um` is -1; it must be above 0");
+  refused("noise_um", "1 um", "key `noise_um`");
+  refused("lag_s", -1.0, "key `lag_s` is -1; it must be 0 or more");
+  refused("reading_um", nullptr, "key `reading_um`");
+  Json j = good;
+  j["probing"].erase("lag_s");
+  EXPECT_THROW((void)read_predictor(driftwright::write_file("probing.json", j.dump())), InputError);
+  j["probing"] = 3.0;
+  EXPECT_THAT([&] { (void)read_predictor(driftwright::write_file("probing.json", j.dump())); },
+              ThrowsMessage<InputError>(HasSubstr("must be a map")));
 }
 
 // Tests at one speed, or at rest, leave a drive no width.

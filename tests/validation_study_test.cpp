@@ -145,11 +145,15 @@ TEST_F(ValidationStudy, WritesFormulasAsTextJsonAndC) {
   EXPECT_THAT(text, HasSubstr("Valid for"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward.c"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward_axis.comp"));
-  for (const char* file : {"drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c"}) {
+  for (const char* file : {"drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c", "probe_feedback.h",
+                           "probe_feedback.c"}) {
     EXPECT_GT(read_text(folder_ / "models" / file).size(), 500u) << file;
     EXPECT_EQ(read_text(folder_ / "models" / file), read_text(std::filesystem::path("compensation/control") / file)) << file;
   }
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_with_lags.json"));
+  const Json probing = Json::parse(read_text(folder_ / "models" / "regression_with_lags.json"))["probing"];
+  EXPECT_GT(probing["deviation_um"], 0.0);  // without --probe, too
+  EXPECT_GT(probing["time_constant_s"], 0.0);
+  EXPECT_EQ(probing["noise_um"], 1.0);
 }
 
 TEST_F(ValidationStudy, GivesTheSameBytesOnOneThread) {

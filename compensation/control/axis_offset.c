@@ -60,3 +60,7 @@ int axis_offset_step(const axis_offset_settings* settings, axis_offset_state* st
   state->is_offset_enabled = is_machine_on && (is_wanted || state->counts != 0 || counts_before != 0);
   return state->counts;
 }
+
+double axis_offset_correction_um(const axis_offset_state* state) {
+  return state->sign * state->offset_um;
+}

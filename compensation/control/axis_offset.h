@@ -43,6 +43,9 @@ int axis_offset_watch(const axis_offset_settings* settings, axis_offset_state* s
 int axis_offset_step(const axis_offset_settings* settings, axis_offset_state* state, int is_machine_on, int is_enabled,
                      double correction_um, double dt_s);
 
+/* The correction in force [um]: what is taken away from the position now. */
+double axis_offset_correction_um(const axis_offset_state* state);
+
 #ifdef __cplusplus
 }
 #endif

@@ -4,7 +4,8 @@
     loadusr -Wn follow ./follow.sh      # which holds: thermometers | driftwright follow model.json | follow_hal.py --axes drift_y
 
 Pins: follow.AXIS.correction-um (float) and follow.AXIS.trust (float) for each axis ('_' in its name becomes '-'), follow.heartbeat (bit), which toggles
-with each line that answers a row, follow.is-on (bit). When the lines end, the pins keep their values and the heartbeat stops: the watchdog of
+with each line that answers a row, follow.is-on (bit); where rows have probings, follow.AXIS.probe-now (bit: a probing is due, with --tolerance) and
+follow.AXIS.refused-probings (s32). When the lines end, the pins keep their values and the heartbeat stops: the watchdog of
 followed_axis then returns the offset to 0 at its slew limit. The component leaves on SIGTERM, as unloadusr sends it.
 """
 import argparse
@@ -28,6 +29,8 @@ def main():
     for pin in axes.values():
         component.newpin(f"{pin}.correction-um", hal.HAL_FLOAT, hal.HAL_OUT)
         component.newpin(f"{pin}.trust", hal.HAL_FLOAT, hal.HAL_OUT)
+        component.newpin(f"{pin}.probe-now", hal.HAL_BIT, hal.HAL_OUT)
+        component.newpin(f"{pin}.refused-probings", hal.HAL_S32, hal.HAL_OUT)
     component.newpin("heartbeat", hal.HAL_BIT, hal.HAL_OUT)
     component.newpin("is-on", hal.HAL_BIT, hal.HAL_OUT)
     component.ready()
@@ -60,6 +63,10 @@ def take(component, axes, line):
     for pin, correction_um, trust in values:
         component[f"{pin}.correction-um"] = correction_um
         component[f"{pin}.trust"] = trust
+    for name, pin in axes.items():
+        probing = told["axes"][name].get("probing", {})
+        component[f"{pin}.probe-now"] = "probe_now" in probing
+        component[f"{pin}.refused-probings"] = probing.get("refused", 0)
     component["is-on"] = told.get("state") == "on"
     component["heartbeat"] = not component["heartbeat"]
 

@@ -147,10 +147,8 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
                     const LeftOutSettings& s) {
   PerFold predictions;
   for (std::size_t k = 0; k < predictors.size(); ++k) predictions.push_back(folds.predicted_um(*predictors[k], k));
-  if (s.drift_um) {
-    const std::vector<ResidualSeries> series = residuals_of(predictions, folds);
-    d.residual = fit_residual_process(series, noise_in(series, *s.drift_um));
-  }
+  const std::vector<ResidualSeries> series = residuals_of(predictions, folds);
+  d.residual = fit_residual_process(series, noise_in(series, s.drift_um));
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     const std::vector<double> off = absolute_errors(folds.measured_um[k], predictions[k]);
     d.fold_errors.push_back({folds.folds[k].kind, folds.folds[k].name, score(off).rmse, quantile(off, kInterval)});

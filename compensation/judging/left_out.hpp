@@ -25,7 +25,7 @@ struct LeftOutSettings {
   std::string target;
   bool from_start = false;  ///< drift and temperatures count from the first row of each run
   CorrectionLimits limits = {};
-  std::optional<double> drift_um = {};  ///< 1 sigma of the target: a residual's process is fitted; none: it is not
+  double drift_um = 1.0;  ///< 1 sigma of the target as measured in the training runs
 };
 
 /// Sets `fold_errors`, `interval_um` and `residual` of a strategy, and returns the room of its fail-safe: the factor on the

@@ -250,10 +250,7 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
 }
 
 LeftOutSettings left_out_settings(const StrategySettings& s) {
-  return {.target = s.target,
-          .from_start = s.count_from_start,
-          .limits = s.limits,
-          .drift_um = s.probing ? std::optional(s.drift_um) : std::nullopt};
+  return {.target = s.target, .from_start = s.count_from_start, .limits = s.limits, .drift_um = s.drift_um};
 }
 
 /// Fits a strategy, without its errors on left-out rows and without fail-safe.
@@ -262,6 +259,7 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   f.name = strategy.name;
   f.is_baseline = strategy.is_baseline;
   f.ambient = s.ambient;
+  if (s.probing) f.probe.noise_um = s.probing->noise_um;
   return f;
 }
 
@@ -321,6 +319,7 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
   d.name = kBlend;
   d.ambient = s.ambient;
+  if (s.probing) d.probe.noise_um = s.probing->noise_um;
   const double room = set_left_out(d, in_folds, folds, left_out_settings(s));
   d.fail_safe = fail_safe_of(*d.predictor, training, left_out_settings(s), room);
   return d;

@@ -362,16 +362,16 @@ namespace {
 std::optional<Score> probed(const Judgement& judged, const DeployedPredictor& strategy,
                             const std::optional<Probing>& probing, const ObservedRun& run, std::uint64_t seed) {
   if (!probing || !strategy.residual) return std::nullopt;
-  ProbeFeedback feedback(*strategy.residual, strategy.from_start);
+  ProbeFeedback feedback(*strategy.residual, strategy.probe, strategy.from_start);
   Random random(seed, 31);
   const std::vector<double>& t_s = run.readings.time_s;
   std::vector<double> left_um;
   double next_s = t_s.front() + probing->every_s;
   for (std::size_t i = 0; i < judged.left_um.size(); ++i) {
-    if (i > 0) feedback.wait(t_s[i] - t_s[i - 1]);
+    feedback.row(0.0, 0.0, i > 0 ? t_s[i] - t_s[i - 1] : 0.0);
     left_um.push_back(judged.left_um[i] - feedback.estimate_um());
     if (t_s[i] < next_s || !std::isfinite(judged.left_um[i])) continue;
-    (void)feedback.probe(judged.left_um[i] + probing->noise_um * random.normal(), probing->noise_um);
+    (void)feedback.probe_drift_um(judged.left_um[i] + probing->noise_um * random.normal());
     next_s += probing->every_s * (1.0 + std::floor((t_s[i] - next_s) / probing->every_s));
   }
   return score(left_um);

@@ -73,7 +73,8 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
     return {.prediction_um = drift_um,
             .correction_um = std::isfinite(drift_um) ? drift_um : 0.0,
             .trust = 1.0,
-            .interval_um = deployed_.interval_um};
+            .interval_um = deployed_.interval_um,
+            .half_width_um = deployed_.interval_um};
   }
   if (channel_.empty()) {
     for (const FailSafe::Guard& g : deployed_.fail_safe->guards)
@@ -90,8 +91,13 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
   std::optional<double> interval_um = interval_in_force_um(deployed_, least_trust_);
   if (const auto own_um = follower_->deviation_um(); interval_um && own_um)
     *interval_um = std::max(*interval_um, kNormal95 * *own_um);
+  const std::optional<double> half_width_um = interval_um;
   if (interval_um) *interval_um += std::abs(guard_.prediction_um - correction_um);
-  return {.prediction_um = drift_um, .correction_um = correction_um, .trust = guard_.trust, .interval_um = interval_um};
+  return {.prediction_um = drift_um,
+          .correction_um = correction_um,
+          .trust = guard_.trust,
+          .interval_um = interval_um,
+          .half_width_um = half_width_um};
 }
 
 std::vector<std::string> DeployedFollower::doubted() const {

@@ -15,6 +15,7 @@ struct FollowedCorrection {
   /// smallest trust of the last hours (kRemembersDoubt_s), at least 1.96 of the predictor's own deviations, plus the distance from the prediction to the correction, which
   /// may be faded, clamped or slewed. None without trust, and if the predictor has no interval.
   std::optional<double> interval_um = {};
+  std::optional<double> half_width_um = {};  ///< of that, without the distance from the prediction to the correction
 };
 
 /// A deployed predictor during one run. The predictor must outlive it.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 namespace driftwright::compensation {
 namespace {
@@ -59,7 +60,7 @@ std::optional<ResidualProcess> fit_residual_process(std::span<const ResidualSeri
   for (int t = 0; t < kTimeConstants; ++t) {
     for (int d = 0; d < kDeviations; ++d) {
       const ResidualProcess tried{on_grid(0.1 * rms_um, 3.0 * rms_um, d, kDeviations),
-                                  on_grid(step_s, kLongest * longest_s, t, kTimeConstants)};
+                                  on_grid(step_s, kLongest * longest_s, t, kTimeConstants), reading_um};
       const double log_l = log_likelihood(series, tried, std::max(reading_um, kLeastDeviation_um));
       if (log_l <= most) continue;
       most = log_l;
@@ -69,35 +70,63 @@ std::optional<ResidualProcess> fit_residual_process(std::span<const ResidualSeri
   return best;
 }
 
-ProbeFeedback::ProbeFeedback(const ResidualProcess& process, bool is_known)
-    : process_(process), variance_um2_(is_known ? 0.0 : process.deviation_um * process.deviation_um) {}
-
-void ProbeFeedback::wait(double step_s) {
-  const double kept = std::exp(-step_s / process_.time_constant_s);
-  mean_um_ *= kept;
-  variance_um2_ = kept * kept * variance_um2_ + (1.0 - kept * kept) * process_.deviation_um * process_.deviation_um;
+probe_process probe_process_of(const ResidualProcess& process, const Probe& probe, bool is_known) {
+  return {process.deviation_um, process.time_constant_s, probe.noise_um, probe.lag_s, is_known ? 1 : 0};
 }
 
-bool ProbeFeedback::probe(double off_um, double noise_um) {
-  const double noise = noise_um * noise_um;
-  const bool is_expected = std::abs(off_um - mean_um_) <= kRefused * std::sqrt(variance_um2_ + noise);
-  const bool is_confirmed =
-      refused_um_ &&
-      std::abs(off_um - *refused_um_) <= kRefused * std::sqrt(2.0 * noise + process_.deviation_um * process_.deviation_um);
-  if (!is_expected && !is_confirmed) {
-    refused_um_ = off_um;
-    return false;
+namespace {
+
+constexpr std::size_t kNumbersOfEstimate = 5, kNumbersOfPast = 3;
+constexpr std::size_t kNumbersOfProbings = 11 + 2 * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
+
+}  // namespace
+
+std::vector<double> ProbeFeedback::memory() const {
+  const probe_state& s = state_;
+  std::vector<double> m = {static_cast<double>(s.has_begun),
+                           static_cast<double>(s.has_jumped),
+                           static_cast<double>(s.n_pasts),
+                           static_cast<double>(s.newest),
+                           s.time_s,
+                           static_cast<double>(s.verdict),
+                           s.off_um,
+                           s.bound_um,
+                           static_cast<double>(s.n_taken),
+                           static_cast<double>(s.n_refused),
+                           static_cast<double>(s.n_jumps)};
+  for (const probe_estimate& e : {s.now, s.jumped})
+    m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2});
+  for (const probe_past& p : s.past) m.insert(m.end(), {p.time_s, p.prediction_um, p.correction_um});
+  return m;
+}
+
+void ProbeFeedback::recall(std::span<const double> m) {
+  const auto is_index = [&](std::size_t k, int most) { return m[k] >= 0.0 && m[k] <= most; };
+  if (m.size() != kNumbersOfProbings || !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); }) ||
+      !is_index(2, PROBE_PASTS) || !is_index(3, PROBE_PASTS - 1))
+    throw std::logic_error("the memory of other probings");
+  probe_state s{};
+  s.has_begun = m[0] != 0.0;
+  s.has_jumped = m[1] != 0.0;
+  s.n_pasts = static_cast<int>(m[2]);
+  s.newest = static_cast<int>(m[3]);
+  s.time_s = m[4];
+  s.verdict = static_cast<int>(m[5]);
+  s.off_um = m[6];
+  s.bound_um = m[7];
+  s.n_taken = static_cast<int>(m[8]);
+  s.n_refused = static_cast<int>(m[9]);
+  s.n_jumps = static_cast<int>(m[10]);
+  const double* at = m.data() + 11;
+  for (probe_estimate* e : {&s.now, &s.jumped}) {
+    *e = {at[0], at[1], at[2], at[3], at[4]};
+    at += kNumbersOfEstimate;
   }
-  if (!is_expected) variance_um2_ = off_um * off_um;  // the process is wider than was known
-  refused_um_.reset();
-  const double gain = variance_um2_ / (variance_um2_ + noise);
-  mean_um_ += gain * (off_um - mean_um_);
-  variance_um2_ *= 1.0 - gain;
-  return true;
-}
-
-double ProbeFeedback::deviation_um() const {
-  return std::sqrt(variance_um2_);
+  for (probe_past& p : s.past) {
+    p = {at[0], at[1], at[2]};
+    at += kNumbersOfPast;
+  }
+  state_ = s;
 }
 
 }  // namespace driftwright::compensation

@@ -1,21 +1,25 @@
 #pragma once
-// What a correction leaves, as a random process that fades, and its estimate from probings: a touch probe measures now and
-// then by how much the corrected axis is off, and the correction takes that up and forgets it as the residual does.
-//
-//     residual r: dr = -r/T dt + s sqrt(2/T) dW (Ornstein-Uhlenbeck), its deviation s, its time constant T;
-//     a probing reads r + noise
-//
-// Source: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35.
+// What a correction leaves, as a random process that fades, and its estimate from probings (control/probe_feedback.h has the
+// formulas): fit of the process, and the filter with its settings.
 
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "compensation/control/probe_feedback.h"
 
 namespace driftwright::compensation {
 
 struct ResidualProcess {
   double deviation_um = 0.0;
   double time_constant_s = 0.0;
+  double reading_um = 0.0;  ///< white noise beside the process in the series of the fit, 1 sigma
+};
+
+/// The probe that measures an axis now and then.
+struct Probe {
+  double noise_um = 1.0;  ///< of a probing, 1 sigma
+  double lag_s = 0.0;     ///< from the touch until its value is known
 };
 
 /// Measured minus predicted over a stretch of time.
@@ -29,29 +33,38 @@ struct ResidualSeries {
 /// @return none for less than ten rows
 [[nodiscard]] std::optional<ResidualProcess> fit_residual_process(std::span<const ResidualSeries> series, double reading_um);
 
-/// The residual during a run, estimated from probings by a Kalman filter.
+/// The settings of the filter in control/probe_feedback.h.
+/// @param is_known  the residual is 0 at the start, because the drift counts from there
+[[nodiscard]] probe_process probe_process_of(const ResidualProcess& process, const Probe& probe, bool is_known);
+
+/// The residual during a run, by the C code of controls.
 class ProbeFeedback {
  public:
-  /// @param is_known  the residual is 0 at the start, because the drift counts from there
-  ProbeFeedback(const ResidualProcess& process, bool is_known);
+  ProbeFeedback(const ResidualProcess& process, const Probe& probe, bool is_known)
+      : process_(probe_process_of(process, probe, is_known)) {}
 
-  /// Time passes without a probing.
-  void wait(double step_s);
-  /// A probing: measured minus predicted, with its noise. One that is further than `kRefused` deviations from what is
-  /// expected is refused (a chip, another tool); if the next one agrees with it, both are right and the process is not, and
-  /// it is taken.
-  /// @return whether it was taken
-  bool probe(double off_um, double noise_um);
+  /// A row. @param correction_um  in force until now @param step_s  since the row before; of no account in the first one
+  void row(double prediction_um, double correction_um, double step_s) {
+    probe_row(&process_, &state_, prediction_um, correction_um, step_s);
+  }
+  /// A probing of the axis without correction, and of the corrected axis. @return whether it was taken; verdict() says more
+  bool probe_drift_um(double drift_um) { return is_taken(probe_drift(&process_, &state_, drift_um)); }
+  bool probe_left_um(double left_um) { return is_taken(probe_left(&process_, &state_, left_um)); }
 
-  [[nodiscard]] double estimate_um() const { return mean_um_; }
-  [[nodiscard]] double deviation_um() const;
+  /// Expected after some time, and its standard deviation.
+  [[nodiscard]] double estimate_um(double ahead_s = 0.0) const { return probe_expected_um(&process_, &state_, ahead_s); }
+  [[nodiscard]] double deviation_um(double ahead_s = 0.0) const { return probe_deviation_um(&process_, &state_, ahead_s); }
+  [[nodiscard]] const probe_process& process() const { return process_; }
+  [[nodiscard]] const probe_state& state() const { return state_; }
 
-  static constexpr double kRefused = 4.0;  ///< one of 16,000 good probings is refused
+  /// All that it remembers. @throws std::logic_error  from recall(), for numbers that are no memory
+  [[nodiscard]] std::vector<double> memory() const;
+  void recall(std::span<const double> memory);
 
  private:
-  ResidualProcess process_;
-  double mean_um_ = 0.0, variance_um2_ = 0.0;
-  std::optional<double> refused_um_;  // the last probing, if it was refused
+  static bool is_taken(int verdict) { return verdict == PROBE_TAKEN || verdict == PROBE_JUMP; }
+  probe_process process_;
+  probe_state state_{};
 };
 
 }  // namespace driftwright::compensation

@@ -1,0 +1,194 @@
+/* See probe_feedback.h for what is computed. */
+#include "probe_feedback.h"
+
+#include <math.h>
+
+#ifdef __FAST_MATH__
+#error "probe_feedback.c marks missing values by NAN: compile it without -ffast-math"
+#endif
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+static int probe_is_above(double x, double least) {
+  return x > least && isfinite(x);
+}
+
+static double probe_time_s(double dt_s) {
+  return probe_is_above(dt_s, 0.0) ? dt_s : 0.0;
+}
+
+int probe_is_valid(const probe_process* process) {
+  return probe_is_above(process->deviation_um, 0.0) && probe_is_above(process->time_constant_s, 0.0) &&
+         probe_is_above(process->noise_um, 0.0) && process->lag_s >= 0.0 && isfinite(process->lag_s);
+}
+
+static double probe_sum_um2(const probe_estimate* e) {
+  return e->level_um2 + 2.0 * e->both_um2 + e->residual_um2;
+}
+
+static void probe_wait(const probe_process* process, probe_estimate* e, double step_s) {
+  const double kept = exp(-step_s / process->time_constant_s);
+  e->residual_um *= kept;
+  e->both_um2 *= kept;
+  e->residual_um2 = kept * kept * e->residual_um2 + (1.0 - kept * kept) * process->deviation_um * process->deviation_um;
+}
+
+/* By how much a probing is off what is expected, and by how much it may be. */
+static double probe_off_um(const probe_process* process, const probe_estimate* e, double read_um, double* bound_um) {
+  *bound_um = PROBE_REFUSED * sqrt(probe_sum_um2(e) + process->noise_um * process->noise_um);
+  return read_um - (e->level_um + e->residual_um);
+}
+
+static void probe_learn(const probe_process* process, probe_estimate* e, double off_um) {
+  const double level = e->level_um2 + e->both_um2, residual = e->both_um2 + e->residual_um2;
+  const double all = level + residual + process->noise_um * process->noise_um;
+  e->level_um += level / all * off_um;
+  e->residual_um += residual / all * off_um;
+  e->level_um2 -= level * level / all;
+  e->both_um2 -= level * residual / all;
+  e->residual_um2 -= residual * residual / all;
+}
+
+/* The level has jumped: what is read is its first and only news, whatever it was before. */
+static void probe_begin_jumped(const probe_process* process, probe_estimate* e, double read_um) {
+  e->level_um = read_um - e->residual_um;
+  e->level_um2 = e->residual_um2 + process->noise_um * process->noise_um;
+  e->both_um2 = -e->residual_um2;
+}
+
+void probe_row(const probe_process* process, probe_state* state, double prediction_um, double correction_um, double dt_s) {
+  const double spacing_s = process->lag_s / (PROBE_PASTS - 2);
+  double before_s, after_s;
+  int k;
+  if (!probe_is_valid(process)) return;
+  if (!state->has_begun) {
+    state->has_begun = 1;
+    state->now.residual_um2 = process->is_known_at_start ? 0.0 : process->deviation_um * process->deviation_um;
+  } else {
+    before_s = state->time_s - process->lag_s;
+    state->time_s += probe_time_s(dt_s);
+    after_s = state->time_s - process->lag_s;
+    if (before_s < 0.0) before_s = 0.0; /* a probing of times before the first row is not taken */
+    if (after_s > before_s) {
+      probe_wait(process, &state->now, after_s - before_s);
+      probe_wait(process, &state->jumped, after_s - before_s);
+    }
+  }
+  /* The newest of the past rows is this one. It is written over while it is near the one before it: then the ring reaches back over
+   * lag_s, however fast rows come. */
+  k = (state->newest + PROBE_PASTS - 1) % PROBE_PASTS;
+  if (state->n_pasts == 0) {
+    state->n_pasts = 1;
+  } else if (state->n_pasts == 1 || state->past[state->newest].time_s - state->past[k].time_s >= spacing_s) {
+    state->newest = (state->newest + 1) % PROBE_PASTS;
+    if (state->n_pasts < PROBE_PASTS) ++state->n_pasts;
+  }
+  state->past[state->newest].time_s = state->time_s;
+  state->past[state->newest].prediction_um = isfinite(prediction_um) ? prediction_um : 0.0;
+  state->past[state->newest].correction_um = isfinite(correction_um) ? correction_um : 0.0;
+}
+
+/* Prediction and correction at a time between two rows that are kept: the prediction on a straight line, the correction as it was in
+ * force until the later one. */
+static probe_past probe_past_at(const probe_state* state, double time_s) {
+  int k = state->newest, i;
+  probe_past at = state->past[k];
+  for (i = 1; i < state->n_pasts && at.time_s > time_s; ++i) {
+    const probe_past later = at;
+    k = (k + PROBE_PASTS - 1) % PROBE_PASTS;
+    at = state->past[k];
+    if (at.time_s <= time_s && later.time_s > at.time_s) {
+      const double share = (time_s - at.time_s) / (later.time_s - at.time_s);
+      at.prediction_um += share * (later.prediction_um - at.prediction_um);
+      if (at.time_s < time_s) at.correction_um = later.correction_um;
+      at.time_s = time_s;
+      return at;
+    }
+  }
+  return at;
+}
+
+static int probe_refuse(probe_state* state, int verdict) {
+  ++state->n_refused;
+  return state->verdict = verdict;
+}
+
+int probe_residual(const probe_process* process, probe_state* state, double residual_um) {
+  double jumped_bound_um;
+  state->off_um = 0.0;
+  state->bound_um = 0.0;
+  if (!probe_is_valid(process) || !isfinite(residual_um)) return probe_refuse(state, PROBE_NO_NUMBER);
+  if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
+  state->off_um = probe_off_um(process, &state->now, residual_um, &state->bound_um);
+  if (fabs(state->off_um) <= state->bound_um) {
+    probe_learn(process, &state->now, state->off_um);
+    state->has_jumped = 0;
+    ++state->n_taken;
+    return state->verdict = PROBE_TAKEN;
+  }
+  if (state->has_jumped) {
+    const double off_um = probe_off_um(process, &state->jumped, residual_um, &jumped_bound_um);
+    if (fabs(off_um) <= jumped_bound_um) {
+      state->now = state->jumped;
+      probe_learn(process, &state->now, off_um);
+      state->has_jumped = 0;
+      ++state->n_taken;
+      ++state->n_jumps;
+      return state->verdict = PROBE_JUMP;
+    }
+  }
+  state->jumped = state->now;
+  probe_begin_jumped(process, &state->jumped, residual_um);
+  state->has_jumped = 1;
+  return probe_refuse(state, PROBE_UNLIKELY);
+}
+
+int probe_drift(const probe_process* process, probe_state* state, double drift_um) {
+  const probe_past at = probe_past_at(state, state->time_s - process->lag_s);
+  return probe_residual(process, state, drift_um - at.prediction_um);
+}
+
+int probe_left(const probe_process* process, probe_state* state, double left_um) {
+  const probe_past at = probe_past_at(state, state->time_s - process->lag_s);
+  return probe_residual(process, state, left_um + at.correction_um - at.prediction_um);
+}
+
+/* The estimate ahead_s from now. */
+static probe_estimate probe_ahead(const probe_process* process, const probe_state* state, double ahead_s) {
+  probe_estimate e = state->now;
+  const double since_s = state->time_s < process->lag_s ? state->time_s : process->lag_s; /* of the estimate */
+  probe_wait(process, &e, since_s + probe_time_s(ahead_s));
+  return e;
+}
+
+double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s) {
+  probe_estimate e;
+  if (!state->has_begun || !probe_is_valid(process)) return 0.0;
+  e = probe_ahead(process, state, ahead_s);
+  return e.level_um + e.residual_um;
+}
+
+double probe_deviation_um(const probe_process* process, const probe_state* state, double ahead_s) {
+  probe_estimate e;
+  double um2;
+  if (!state->has_begun || !probe_is_valid(process)) return 0.0;
+  e = probe_ahead(process, state, ahead_s);
+  um2 = probe_sum_um2(&e);
+  return um2 > 0.0 ? sqrt(um2) : 0.0;
+}
+
+double probe_corrected_um(const probe_process* process, const probe_state* state, double prediction_um, double lowest_um,
+                          double highest_um) {
+  const double um = prediction_um + probe_expected_um(process, state, 0.0);
+  return um < lowest_um ? lowest_um : um > highest_um ? highest_um : um;
+}
+
+double probe_slewed_um(double before_um, double wanted_um, double most_rate_um_s, double dt_s) {
+  const double most_um = most_rate_um_s * probe_time_s(dt_s);
+  if (wanted_um > before_um + most_um) return before_um + most_um;
+  if (wanted_um < before_um - most_um) return before_um - most_um;
+  return wanted_um;
+}
