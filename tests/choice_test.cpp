@@ -172,6 +172,14 @@ TEST(Choice, IsAModelOfTheMachineWhereItIsAlike) {
   EXPECT_EQ(chosen_of({model_with_errors("modes", {1.6, 1.6, 1.6, 1.6}), model_with_errors("observer", {1.0, 1.0, 1.0, 1.0}),
                        blend}),
             "observer");
+  // and the one that is safer with a failed sensor
+  std::vector<DeployedPredictor> two = {model_with_errors("modes", {1.0, 1.0, 1.0, 1.0}),
+                                        model_with_errors("observer", {1.3, 1.3, 1.3, 1.3})};
+  two[0].failed_um = 16.7;
+  two[1].failed_um = 13.3;
+  EXPECT_EQ(chosen_of(two), "observer");
+  two[1].failed_um = 44.9;
+  EXPECT_EQ(chosen_of(two), "modes");
 }
 
 TEST(Choice, TakesTheSimplestWithinOneStandardErrorOfTheBest) {

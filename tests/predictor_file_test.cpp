@@ -83,7 +83,7 @@ TEST(PredictorFile, WhatProbingsNeedComesBack) {
   EXPECT_EQ(read.predictor.residual->time_constant_s, 7200.0 / 7.0);
   EXPECT_EQ(read.predictor.probe.noise_um, 0.3);
   EXPECT_EQ(read.predictor.probe.lag_s, 20.0);
-  Json earlier = predictor_json(formula(true), {}, {"1", "a test"});  // a file of a version without the key
+  Json earlier = predictor_json(formula(true), {"1", "a test"});  // a file of a version without the key
   earlier.erase("probing");
   earlier.erase("hash");
   EXPECT_FALSE(read_predictor(driftwright::write_file("earlier.json", with_hash(earlier).dump())).predictor.residual);
@@ -92,7 +92,7 @@ TEST(PredictorFile, WhatProbingsNeedComesBack) {
 TEST(PredictorFile, WrongNumbersForProbingsAreRefusedWithTheirKey) {
   PredictorFile file = formula(true);
   file.predictor.residual = {3.0, 7200.0, 0.1};
-  const Json good = predictor_json(file, {}, {"1", "a test"});
+  const Json good = predictor_json(file, {"1", "a test"});
   const auto refused = [&](const char* key, const Json& value, const char* word) {
     Json j = good;
     j["probing"][key] = value;

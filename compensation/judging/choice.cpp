@@ -14,6 +14,19 @@ namespace {
 constexpr double kNoError_um = 1e-6;  // smaller errors are rounding
 constexpr double kTellsApart = 2.0;   // standard errors of a difference; chance exceeds it in one of twenty cases
 
+/// Difference of the mean squares of two strategies in units of its standard error, fold by fold; both have the same folds.
+double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
+  const auto n = static_cast<double>(a.fold_errors.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < a.fold_errors.size(); ++k) {
+    const double more = std::pow(a.fold_errors[k].rms_um, 2) - std::pow(b.fold_errors[k].rms_um, 2);
+    sum += more;
+    squares += more * more;
+  }
+  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
+  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
 /// The first of the strategies that count whose mean square is within one standard error of one of them.
 const DeployedPredictor& simplest_near(std::span<const DeployedPredictor> list, const DeployedPredictor& best,
                                        const std::function<bool(const DeployedPredictor&)>& counts) {
@@ -40,18 +53,6 @@ double left_out_um(const DeployedPredictor& strategy) {
   return std::exp(logarithms / static_cast<double>(squares_of.size()));
 }
 
-double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
-  const auto n = static_cast<double>(a.fold_errors.size());
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t k = 0; k < a.fold_errors.size(); ++k) {
-    const double more = std::pow(a.fold_errors[k].rms_um, 2) - std::pow(b.fold_errors[k].rms_um, 2);
-    sum += more;
-    squares += more * more;
-  }
-  const double error = n > 1.0 ? std::sqrt(std::max(squares - sum * sum / n, 0.0) * n / (n - 1.0)) : 0.0;  // of the sum
-  return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
 Choice choose(std::span<const DeployedPredictor> strategies) {
   const DeployedPredictor *best = nullptr, *mean = nullptr;
   for (const DeployedPredictor& d : strategies) {
@@ -69,14 +70,17 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
   const auto rest = [&](const DeployedPredictor& d) {
     return &d == best ? std::string("the least of all") : said(*best) + ", with too small a difference to distinguish them";
   };
-  const auto model = std::find_if(strategies.begin(), strategies.end(), [&](const DeployedPredictor& d) {
-    return d.predictor && d.predictor->is_driven() && !d.fold_errors.empty() && is_alike(d);
-  });
-  if (model != strategies.end())
-    return because(*model,
-                   rest(*model) +
-                       "; it was preferred because a model of the machine also holds outside the training runs, and a "
-                       "simpler one depends on fewer sensors");
+  const DeployedPredictor* model = nullptr;
+  for (const DeployedPredictor& d : strategies) {
+    if (!d.predictor || !d.predictor->is_driven() || d.fold_errors.empty() || !is_alike(d)) continue;
+    if (!model || d.failed_um.value_or(0.0) < model->failed_um.value_or(0.0)) model = &d;
+  }
+  if (model)
+    return because(
+        *model, rest(*model) + "; it was preferred because a model of the machine also holds outside the training runs" +
+                    (model->failed_um
+                         ? fmt::format(", and with a failed sensor it leaves at most {:.3g} µm on them", *model->failed_um)
+                         : ""));
   if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return because(*mean, rest(*mean));
   const DeployedPredictor& simplest = simplest_near(strategies, *best, is_alike);
   return because(simplest, (&simplest == best ? "the least of all"

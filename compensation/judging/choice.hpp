@@ -19,17 +19,15 @@ inline constexpr const char* kBlend = "blend";
 /// geometric mean over the kinds, so that a factor counts the same in each kind. Infinite without folds.
 [[nodiscard]] double left_out_um(const DeployedPredictor& strategy);
 
-/// Difference of the mean squares of two strategies in units of its standard error, fold by fold. @pre both have the same folds
-[[nodiscard]] double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b);
-
 struct Choice {
   std::string name = {};  ///< "": nothing could be left out of the training runs
   std::string why = {};   ///< one sentence
 };
 
 /// Chooses in this order:
-/// - the simplest model of the machine that leaves at most kAlike times the smallest error of all, because its laws apply
-///   beyond the training data; a model without thermometers goes before an observer as good, because no sensor of it fails;
+/// - of the models of the machine that leave at most kAlike times the smallest error of all the one that leaves least on the
+///   training runs with a failed sensor (`failed_um`), or the simplest: the laws of a model apply beyond the training data, and
+///   alike models differ in the sensors that they depend on;
 /// - else the blend, unless another strategy leaves less than 1 / kAlike of the blend's error and the difference is
 ///   significant: two standard errors of the mean square, fold by fold;
 /// - else the simplest strategy whose mean square is within one standard error of the best one's.

@@ -173,10 +173,8 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
   const auto least = std::min_element(
       tried.begin(), tried.end(),
       [](const DeployedPredictor& a, const DeployedPredictor& b) { return left_out_um(a) < left_out_um(b); });
-  auto chosen = tried.begin();  // the smallest that is not worse beyond chance
-  while (chosen != least && standard_errors_above(*chosen, *least) > 1.0) ++chosen;
-  d.fold_errors = chosen->fold_errors;
-  return kRooms[chosen - tried.begin()];
+  d.fold_errors = least->fold_errors;
+  return kRooms[least - tried.begin()];
 }
 
 FailSafe fail_safe_of(const Predictor& predictor, std::span<const ObservedRun> training, const LeftOutSettings& s,

@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/median.hpp"
 #include "base/parallel.hpp"
+#include "compensation/judging/choice.hpp"
 #include "compensation/judging/folds.hpp"
 #include "compensation/judging/left_out.hpp"
 #include "compensation/predictors/blended_formula.hpp"
@@ -337,7 +338,7 @@ std::string words_of(const LinearisedModel& model) {
 }
 
 FittedStrategies fit_strategies(const StrategySettings& given, std::span<const ObservedRun> training) {
-  FittedStrategies result{.strategies = {}, .left_out = {}, .doubted = doubted_in(training, given), .choice = {}};
+  FittedStrategies result{.strategies = {}, .left_out = {}, .doubted = doubted_in(training, given)};
   StrategySettings settings = given;
   for (const DoubtedThermometer& d : result.doubted) {
     if (d.is_alone) std::erase(settings.candidates, d.name);
@@ -376,7 +377,6 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const O
     result.strategies.push_back(std::move(*mean));
   if (!settings.physics && !settings.without_physics.empty())
     result.left_out.push_back({"thermal modes, fitted model and observer", settings.without_physics});
-  result.choice = choose(result.strategies);
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "compensation/judging/choice.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/sensors/grey_relational.hpp"
@@ -62,7 +61,6 @@ struct FittedStrategies {
   std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first, the blend last
   std::vector<LeftOut> left_out;
   std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads those that are alone
-  Choice choice;                            ///< by choose()
 };
 
 /// Fits all of them. @param training  with the target among the readings

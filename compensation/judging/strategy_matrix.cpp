@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "base/errors.hpp"
@@ -377,6 +378,30 @@ std::optional<Score> probed(const Judgement& judged, const DeployedPredictor& st
   return score(left_um);
 }
 
+/// Sets what models of the machine leave on the training runs with failed sensors; the choice among them depends on it.
+void try_failures(const MatrixSettings& settings, const std::vector<ObservedRun>& training,
+                  std::vector<DeployedPredictor>& strategies) {
+  if (!settings.fails_at) return;
+  std::vector<DeployedPredictor*> models;
+  for (DeployedPredictor& d : strategies) {
+    if (d.predictor->is_driven() && !d.is_baseline) models.push_back(&d);
+  }
+  const std::string& target = settings.strategies.target;
+  std::vector<double> most_um(models.size() * training.size());
+  parallel_for(most_um.size(), [&](std::size_t job) {
+    const JudgedRunOfMachine run{"", settings.fails_in, "", training[job % training.size()]};
+    const std::vector<double> drift_um =
+        scored_readings(run.run, target, settings.strategies.count_from_start).at(target).values;
+    const DeployedPredictor& model = *models[job / training.size()];
+    for (const auto& [failed, with_failure] : conditions(settings, model, run))
+      most_um[job] = std::max(most_um[job], judge(model, with_failure, drift_um).scores.after.peak_abs);
+  });
+  for (std::size_t job = 0; job < most_um.size(); ++job) {
+    DeployedPredictor& model = *models[job / training.size()];
+    model.failed_um = std::max(model.failed_um.value_or(0.0), most_um[job]);
+  }
+}
+
 }  // namespace
 
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
@@ -385,13 +410,15 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
       .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
   FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
   matrix.left_out = std::move(fitted.left_out);
-  matrix.choice = std::move(fitted.choice);
+  try_failures(settings, matrix.training, fitted.strategies);
+  matrix.choice = choose(fitted.strategies);
   for (const DoubtedThermometer& d : fitted.doubted) {
     matrix.findings.push_back(fmt::format(
         "Thermometer '{}' {}: in {} from {:.0f} min on it differs by up to {:.2g} K from what the others lead to; usually "
         "the "
         "difference is {:.2g} K. {}",
-        d.name, d.is_alone ? "is left out of all strategies" : "is doubtful", d.record, d.from_s / 60.0, d.off_K, d.usual_K,
+        d.name, d.is_alone ? "is left out of all strategies" : "is doubtful",
+        std::filesystem::path(d.record).filename().string(), d.from_s / 60.0, d.off_K, d.usual_K,
         d.is_alone ? "Check whether it is broken or has come off."
                    : "Others differ in the same record, too: the machine may have been in an unusual state, or they share a "
                      "plug. All are used; leave them out of `sensors` if they are broken."));

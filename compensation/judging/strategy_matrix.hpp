@@ -2,6 +2,7 @@
 // Strategies x conditions: the drift that each leaves on runs that it was not fitted on, and whether it may be deployed on a
 // machine.
 
+#include "compensation/judging/choice.hpp"
 #include "compensation/judging/strategies.hpp"
 #include "compensation/predictors/score.hpp"
 #include "compensation/sensors/thermometers.hpp"
