@@ -73,8 +73,9 @@ std::string AxisProbing::words() const {
       return fmt::format("probing taken: {}", off);
     case PROBE_JUMP:
       return fmt::format(
-          "probing taken as a jump of the axis: {}, but the refused one before it agrees. Was the machine touched? If not, "
-          "check tool and probe",
+          "probing taken as a jump of the axis: {}, but so was the one before it. Was the machine touched? If not, check "
+          "tool "
+          "and probe",
           off);
     case PROBE_TOO_EARLY:
       return "probing refused: it was touched before the first row; probe again";

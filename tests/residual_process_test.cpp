@@ -182,12 +182,27 @@ TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {
   EXPECT_TRUE(feedback.probe_drift_um(0.8));  // the chip has gone
   EXPECT_FALSE(feedback.probe_drift_um(-30.0));
   EXPECT_FALSE(feedback.probe_drift_um(-60.0));  // another chip: they do not agree
+  EXPECT_TRUE(feedback.probe_drift_um(0.7));
   EXPECT_FALSE(feedback.probe_drift_um(-30.0));
   EXPECT_TRUE(feedback.probe_drift_um(-30.5));
   EXPECT_EQ(feedback.state().verdict, PROBE_JUMP);
   EXPECT_NEAR(feedback.estimate_um(), -30.25, 0.01);
   EXPECT_EQ(feedback.state().n_refused, 4);
   EXPECT_EQ(feedback.state().n_jumps, 1);
+}
+
+// A drift that is faster than the process ever was is not refused for ever: each third probing is taken, and what is left stays below
+// what the axis moves meanwhile.
+TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
+  ProbeFeedback feedback({2.0, 36000.0}, {.noise_um = 0.5}, true);
+  double most_um = 0.0;
+  for (int hour = 0; hour < 24; ++hour) {
+    feedback.row(0.0, 0.0, 3600.0);
+    (void)feedback.probe_drift_um(20.0 * hour);
+    most_um = std::max(most_um, std::abs(20.0 * hour - feedback.estimate_um()));
+  }
+  EXPECT_EQ(feedback.state().n_jumps, 7);
+  EXPECT_LT(most_um, 42.0);
 }
 
 // An axis that was knocked stays where it is: after a jump the filter is the joint distribution with a level of which nothing

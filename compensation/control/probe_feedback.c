@@ -116,6 +116,14 @@ static int probe_refuse(probe_state* state, int verdict) {
   return state->verdict = verdict;
 }
 
+static int probe_accept(probe_state* state, int verdict) {
+  state->has_jumped = 0;
+  state->n_in_row = 0;
+  ++state->n_taken;
+  if (verdict == PROBE_JUMP) ++state->n_jumps;
+  return state->verdict = verdict;
+}
+
 int probe_residual(const probe_process* process, probe_state* state, double residual_um) {
   double jumped_bound_um;
   state->off_um = 0.0;
@@ -125,24 +133,23 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
   state->off_um = probe_off_um(process, &state->now, residual_um, &state->bound_um);
   if (fabs(state->off_um) <= state->bound_um) {
     probe_learn(process, &state->now, state->off_um);
-    state->has_jumped = 0;
-    ++state->n_taken;
-    return state->verdict = PROBE_TAKEN;
+    return probe_accept(state, PROBE_TAKEN);
   }
   if (state->has_jumped) {
     const double off_um = probe_off_um(process, &state->jumped, residual_um, &jumped_bound_um);
     if (fabs(off_um) <= jumped_bound_um) {
       state->now = state->jumped;
       probe_learn(process, &state->now, off_um);
-      state->has_jumped = 0;
-      ++state->n_taken;
-      ++state->n_jumps;
-      return state->verdict = PROBE_JUMP;
+      return probe_accept(state, PROBE_JUMP);
     }
   }
   state->jumped = state->now;
   probe_begin_jumped(process, &state->jumped, residual_um);
   state->has_jumped = 1;
+  if (++state->n_in_row >= PROBE_IN_ROW) {
+    state->now = state->jumped;
+    return probe_accept(state, PROBE_JUMP);
+  }
   return probe_refuse(state, PROBE_UNLIKELY);
 }
 

@@ -13,7 +13,9 @@
  * second filter starts, for which the level has jumped to a value of which nothing was known before. The next probing that the first
  * filter refuses is taken if the second one expects it: two probings that agree with each other, within PROBE_REFUSED deviations
  * sqrt(2 noise^2 + 2 s^2 (1 - exp(-h / T))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
- * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one.
+ * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one. The third
+ * refused probing in a row is taken as a jump, too, though it agrees with none: the process is then faster than was known. If no
+ * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
  *
  * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter: Willsky &
  * Jones, IEEE Trans. Autom. Control 21 (1976) 108. */
@@ -25,6 +27,7 @@ extern "C" {
 #endif
 
 #define PROBE_REFUSED 4.0 /* deviations; one of 16,000 good probings is refused */
+#define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
 
 typedef struct {
@@ -39,7 +42,7 @@ typedef struct {
 enum {
   PROBE_NONE = 0,      /* there was none yet */
   PROBE_TAKEN = 1,     /* as expected */
-  PROBE_JUMP = 2,      /* it agrees with the one refused before it: both are right, and the axis has jumped */
+  PROBE_JUMP = 2,      /* it agrees with the one refused before it, or is the third in a row: the axis has jumped */
   PROBE_UNLIKELY = 3,  /* refused: too far from what is expected */
   PROBE_TOO_EARLY = 4, /* refused: touched before the first row, where there was no prediction */
   PROBE_NO_NUMBER = 5  /* refused: the probe missed, or a setting is out of its range */
@@ -67,6 +70,7 @@ typedef struct {
   double off_um;   /* of the last probing: read minus expected */
   double bound_um; /* by which they may differ */
   int n_taken, n_refused, n_jumps;
+  int n_in_row; /* unlikely ones since the last that was taken */
 } probe_state;
 
 /* Whether all settings are in their ranges. Otherwise the residual stays 0, and all probings are refused. */
