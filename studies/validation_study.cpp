@@ -318,7 +318,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   LinearPhysics physics = physics_for_records(scenario, all, records.train, how, listener);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
-  const Channel* elsewhere = how.ambient.empty() ? nullptr : records.test.front().readings.find(how.ambient);
+  const Channel* elsewhere = how.ambient.empty() ? nullptr : records.train.front().readings.find(how.ambient);
   if (elsewhere && !how.candidates.empty() && elsewhere->unit == training.front().at(how.candidates.front()).unit)
     settings.elsewhere = how.ambient;
   std::vector<compensation::JudgedRunOfMachine> judged;

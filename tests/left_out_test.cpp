@@ -6,22 +6,26 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 #include "compensation/predictors/formula_predictor.hpp"
 
 namespace driftwright::compensation::left_out_test {
 namespace {
 
-/// A bed that warms from 20 to 60 degC in 400 min, and a drift that follows it by a law [um] of its rise [K].
-FoldedRuns warming(const std::function<double(double)>& law) {
+const FoldSettings kFolds{.target = "tip_z", .from_start = false, .thermometers = {"bed"}, .speed = ""};
+
+/// A bed that warms from 20 to 60 degC in 400 min, and a drift that follows it by a law [um] of its rise [K], read every `step`
+/// rows.
+FoldedRuns warming(const std::function<double(double)>& law, int step = 1) {
   ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
   run.readings.channels = {{"bed", "degC", {}}, {"tip_z", "um", {}}};
   for (int i = 0; i <= 400; ++i) {
     run.readings.time_s.push_back(60.0 * i);
     run.readings.channels[0].values.push_back(20.0 + 0.1 * i);
-    run.readings.channels[1].values.push_back(law(0.1 * i));
+    run.readings.channels[1].values.push_back(i % step == 0 ? law(0.1 * i) : std::numeric_limits<double>::quiet_NaN());
   }
-  return folded(std::vector{run}, {.target = "tip_z", .from_start = false, .thermometers = {"bed"}, .speed = ""});
+  return folded(std::vector{run}, kFolds);
 }
 
 /// 1 um/K, whatever it is fitted to.
@@ -55,6 +59,37 @@ TEST(Margins, GrowWhereALeftOutPartShowsThatThePredictionHolds) {
   const FailSafe safe = fail_safe_of(*d.predictor, folds.runs, kSettings, 4.0);
   EXPECT_NEAR(safe.guards.front().high, 60.0 + 4.0 * 0.2 * 40.0, 1e-9);
   EXPECT_NEAR(safe.highest_um, 40.0 + 4.0 * 0.5 * 40.0, 1e-9);
+}
+
+TEST(Margins, AreTheSameWhereTheDriftIsReadLessOftenThanTheBed) {
+  DeployedPredictor each, fifth;
+  EXPECT_EQ(room_of(warming([](double rise_K) { return rise_K; }, 5), fifth),
+            room_of(warming([](double rise_K) { return rise_K; }), each));
+}
+
+TEST(Margins, AreOfCorrectionsWhoseMissingReadingsAreReplaced) {
+  // two thermometers of one body, one of which has no reading for ten of forty minutes
+  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
+  run.readings.channels = {{"bed", "degC", {}}, {"frame", "degC", {}}, {"tip_z", "um", {}}};
+  for (int i = 0; i <= 400; ++i) {
+    run.readings.time_s.push_back(60.0 * i);
+    run.readings.channels[0].values.push_back(20.0 + 0.1 * i);
+    run.readings.channels[1].values.push_back(i % 40 < 10 && i > 40 ? std::numeric_limits<double>::quiet_NaN()
+                                                                    : 20.0 + 0.1 * i);
+    run.readings.channels[2].values.push_back(0.1 * i);
+  }
+  const FoldedRuns folds = folded(std::vector{run}, kFolds);
+  DeployedPredictor d;
+  d.predictor =
+      std::make_shared<FormulaPredictor>(DriftModel{.kind = "two",
+                                                    .target = "tip_z",
+                                                    .target_unit = "um",
+                                                    .intercept = -20.0,
+                                                    .terms = {{.input = "bed", .unit = "degC", .coefficient = 0.5},
+                                                              {.input = "frame", .unit = "degC", .coefficient = 0.5}}});
+  d.target = "tip_z";
+  (void)set_left_out(d, FoldPredictors(folds.folds.size(), d.predictor), folds, kSettings);
+  EXPECT_LT(rms_of(d, "end"), 1.0);  // of 33 um
 }
 
 TEST(Margins, StayWhereThePredictionIsWrongBeyond) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/random.hpp"
 
@@ -82,6 +83,21 @@ TEST(Redundancy, FindsAFaultInASingleRecord) {
   Record one = day(0, 3000.0);
   add(one, "t5", 200, 240, 12.0);
   EXPECT_THAT(names(doubted_thermometers(std::vector{one}, kNames, {"speed"}, 0.1)), ElementsAre("t5"));
+}
+
+TEST(Redundancy, SaysNothingOfThreeRecordsWhichCannotOutvoteOne) {
+  std::vector<Record> days = week();
+  add(days[3], "t2", 100, 300, 30.0);
+  EXPECT_THAT(names(doubted_thermometers(days, kNames, {"speed"}, 0.1)), ElementsAre("t2"));
+  days.erase(days.begin(), days.begin() + 2);
+  EXPECT_THAT(doubted_thermometers(days, kNames, {"speed"}, 0.1), IsEmpty());
+}
+
+TEST(Redundancy, SaysNothingWhereNoRowHasAllReadings) {
+  std::vector<Record> days = week();
+  add(days[3], "t2", 100, 300, 30.0);
+  for (Record& day : days) add(day, "speed", 0, 300, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(doubted_thermometers(days, kNames, {"speed"}, 0.1), IsEmpty());
 }
 
 TEST(Redundancy, BlamesNoneIfMoreThanAThirdDepart) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInterval = 0.95;
 constexpr std::size_t kMostRows = 500;  // of a left-out part that a residual's process is fitted to
-// Beyond the last one the clamp would allow more than ten times the drift of the training runs.
+// With the last one the clamp allows five times the drift of the training runs.
 constexpr double kRooms[] = {1.0, 2.0, 4.0, 8.0};
 
 using PerFold = std::vector<std::vector<double>>;
@@ -82,11 +82,27 @@ Seen seen_in(const Predictor& predictor, std::span<const ObservedRun> training, 
   return seen;
 }
 
+/// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before the
+/// first target if that is hidden. Readings often come between targets.
+std::vector<bool> hidden_rows(const ObservedRun& run, const std::string& target, const std::vector<bool>& hidden) {
+  const std::vector<double>& drift = run.readings.at(target).values;
+  const auto is_target = [](double v) { return std::isfinite(v); };
+  const auto first =
+      std::find_if(drift.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift.end(), is_target) - drift.begin();
+  bool is_hidden = static_cast<std::size_t>(first) < hidden.size() && hidden[static_cast<std::size_t>(first)];
+  std::vector<bool> rows;
+  for (std::size_t i = 0; i < hidden.size(); ++i) {
+    if (i >= run.n_before && is_target(drift[i])) is_hidden = hidden[i];
+    rows.push_back(is_hidden);
+  }
+  return rows;
+}
+
 /// The same of the rows of a fold that are not hidden.
-Seen seen_in(const Predictor& predictor, const FoldedRuns& folds, std::size_t fold, bool from_start) {
-  Seen seen = seen_in(predictor, folds.runs, from_start);
+Seen seen_in(const Predictor& predictor, const FoldedRuns& folds, std::size_t fold, const LeftOutSettings& s) {
+  Seen seen = seen_in(predictor, folds.runs, s.from_start);
   for (std::size_t r = 0; r < folds.runs.size(); ++r) {
-    const std::vector<bool>& hidden = folds.folds[fold].hidden[r];
+    const std::vector<bool> hidden = hidden_rows(folds.runs[r], s.target, folds.folds[fold].hidden[r]);
     const std::size_t n_before = folds.runs[r].n_before;
     for (std::size_t i = n_before; i < hidden.size(); ++i) {
       if (!hidden[i]) continue;
@@ -95,6 +111,28 @@ Seen seen_in(const Predictor& predictor, const FoldedRuns& folds, std::size_t fo
     }
   }
   return seen;
+}
+
+/// Fail-safes of a fold with each room. Relations replace readings that are missing or jump; whether they would doubt sound
+/// ones is not tried.
+std::vector<FailSafe> fail_safes_of(const Seen& seen, const std::vector<std::string>& inputs, const LeftOutSettings& s) {
+  std::vector<FailSafe> list;
+  for (double room : kRooms)
+    list.push_back(learn_limits(seen.readings, inputs, seen.predicted_um, s.from_start, true, room));
+  try {
+    const FailSafe related =
+        learn_fail_safe(seen.readings, inputs, seen.predicted_um, s.from_start, true, 1.0, Redundancy::kReplaces);
+    for (FailSafe& safe : list) {
+      for (std::size_t k = 0; k < safe.guards.size(); ++k) {
+        safe.guards[k].others_intercept = related.guards[k].others_intercept;
+        safe.guards[k].others_coefficient = related.guards[k].others_coefficient;
+        safe.guards[k].most_apart = related.guards[k].most_apart;
+      }
+    }
+  } catch (const InputError&) {  // no row of the rest has all readings: nothing is replaced
+  }
+  for (FailSafe& safe : list) limit(safe, s.limits);
+  return list;
 }
 
 /// The runs of a fold that have hidden rows, as a predictor follows them.
@@ -158,15 +196,13 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
   const std::vector<std::string> inputs = names_of(guarded_inputs(*d.predictor));
   std::vector<DeployedPredictor> tried(std::size(kRooms));
   for (std::size_t k = 0; k < predictors.size(); ++k) {
-    const Seen seen = seen_in(*predictors[k], folds, k, s.from_start);
+    const std::vector<FailSafe> safes = fail_safes_of(seen_in(*predictors[k], folds, k, s), inputs, s);
     std::vector<std::pair<std::size_t, PredictedRun>> runs;
     for (std::size_t n = 0; n < tried.size(); ++n) {
-      FailSafe safe = learn_limits(seen.readings, inputs, seen.predicted_um, s.from_start, true, kRooms[n]);
-      limit(safe, s.limits);
       // without inputs to repair the prediction does not depend on the room
-      if (n == 0 || !inputs.empty()) runs = followed(*predictors[k], safe, folds, k);
+      if (n == 0 || !inputs.empty()) runs = followed(*predictors[k], safes[n], folds, k);
       FoldError error = d.fold_errors[k];
-      error.rms_um = score(left_um(runs, safe, folds, k)).rmse;
+      error.rms_um = score(left_um(runs, safes[n], folds, k)).rmse;
       tried[n].fold_errors.push_back(std::move(error));
     }
   }

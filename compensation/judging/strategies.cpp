@@ -373,8 +373,12 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const O
     if (list[i].is_blended && !in_folds[i].empty()) members.push_back({*fitted[i], in_folds[i]});
     result.strategies.push_back(std::move(*fitted[i]));
   }
-  if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training))
-    result.strategies.push_back(std::move(*mean));
+  try {
+    if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training))
+      result.strategies.push_back(std::move(*mean));
+  } catch (const InputError& e) {  // no row has the inputs of all members
+    result.left_out.push_back({kBlend, e.what()});
+  }
   if (!settings.physics && !settings.without_physics.empty())
     result.left_out.push_back({"thermal modes, fitted model and observer", settings.without_physics});
   return result;

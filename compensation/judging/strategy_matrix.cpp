@@ -384,7 +384,7 @@ void try_failures(const MatrixSettings& settings, const std::vector<ObservedRun>
   if (!settings.fails_at) return;
   std::vector<DeployedPredictor*> models;
   for (DeployedPredictor& d : strategies) {
-    if (d.predictor->is_driven() && !d.is_baseline) models.push_back(&d);
+    if (d.predictor->is_driven() && !d.is_baseline && !d.sensors.empty()) models.push_back(&d);
   }
   const std::string& target = settings.strategies.target;
   std::vector<double> most_um(models.size() * training.size());
@@ -394,7 +394,7 @@ void try_failures(const MatrixSettings& settings, const std::vector<ObservedRun>
         scored_readings(run.run, target, settings.strategies.count_from_start).at(target).values;
     const DeployedPredictor& model = *models[job / training.size()];
     for (const auto& [failed, with_failure] : conditions(settings, model, run))
-      most_um[job] = std::max(most_um[job], judge(model, with_failure, drift_um).scores.after.peak_abs);
+      if (!failed.empty()) most_um[job] = std::max(most_um[job], judge(model, with_failure, drift_um).scores.after.peak_abs);
   });
   for (std::size_t job = 0; job < most_um.size(); ++job) {
     DeployedPredictor& model = *models[job / training.size()];

@@ -153,7 +153,8 @@ FailSafe learn_limits(std::span<const Record> as_given, const std::vector<std::s
 }
 
 FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
-                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted, double room) {
+                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted, double room,
+                         Redundancy redundancy) {
   const std::vector<Record> training = counted(as_given, from_start && !is_counted);
   FailSafe safe = learn_limits(training, inputs, predicted, from_start, true, room);
   for (FailSafe::Guard& g : safe.guards) {
@@ -173,7 +174,9 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
       g.others_coefficient.push_back(at == others.end() ? 0.0
                                                         : r.coefficient[static_cast<std::size_t>(at - others.begin())]);
     }
-    g.most_apart = has_moved ? std::max(kApartRoom * most_apart(training, g.input, others), kLeastApart_K) : kNeverApart_K;
+    g.most_apart = has_moved && redundancy == Redundancy::kDoubts
+                       ? std::max(kApartRoom * most_apart(training, g.input, others), kLeastApart_K)
+                       : kNeverApart_K;
   }
   return safe;
 }

@@ -38,6 +38,10 @@ struct FailSafe {
   double stale_s = 300.0;  ///< an input without a reading for this long is doubted; until then its last reading applies
 };
 
+/// The use of relations between the inputs: they replace readings that are missing or jump, and those that are too far from
+/// what the others lead to.
+enum class Redundancy { kReplaces, kDoubts };
+
 /// @param training    as recorded
 /// @param inputs      channels of the model; drives (rpm) get a range only
 /// @param predicted   the model's values on each training record, per row
@@ -45,10 +49,12 @@ struct FailSafe {
 /// @param is_counted  they already do so in `training`, whose first rows may have been cut off since
 /// @param room        factor on the usual margins beyond the training records, which are a fifth of the width of an input's
 ///                    range, half of the width of the drift's, and once more its rate
+/// @param redundancy  kReplaces is much faster: the largest difference between an input and its relation is not learned
 /// @throws InputError  as complete_rows() and fit_regression(), and for training records of one row
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
                                        const std::vector<std::vector<double>>& predicted, bool from_start,
-                                       bool is_counted = false, double room = 1.0);
+                                       bool is_counted = false, double room = 1.0,
+                                       Redundancy redundancy = Redundancy::kDoubts);
 
 /// The same without relations between the inputs: nothing replaces a reading that is missing or jumps.
 [[nodiscard]] FailSafe learn_limits(std::span<const Record> training, const std::vector<std::string>& inputs,

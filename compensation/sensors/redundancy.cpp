@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRidge = 0.03;            // penalty of a relation, columns of unit deviation
 constexpr double kMedianToSigma = 1.4826;  // of a normal distribution
+constexpr std::size_t kLeastRecords = 4;   // the median of three relations is the fewest that outvotes one
 
 Relation relation_of(const ProductSums& sums, const Eigen::MatrixXd& rows) {
   std::vector<int> columns(static_cast<std::size_t>(sums.n_inputs()));
@@ -122,17 +123,6 @@ bool changes(std::span<const Record> records, const std::string& channel) {
   return high > low;
 }
 
-bool any_complete(std::span<const Record> records, const std::vector<std::string>& channels) {
-  for (const Record& record : records) {
-    for (std::size_t i = 0; i < record.n_samples(); ++i) {
-      if (std::all_of(channels.begin(), channels.end(),
-                      [&](const std::string& name) { return std::isfinite(record.at(name).values[i]); }))
-        return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 std::vector<double> Relation::predict(const Record& record, const std::vector<std::string>& others) const {
@@ -151,8 +141,8 @@ Relation relation(std::span<const Record> records, const std::string& input, con
 
 std::vector<DoubtedThermometer> doubted_thermometers(std::span<const Record> records, std::vector<std::string> thermometers,
                                                      const std::vector<std::string>& beside, double reading_K) {
+  if (records.size() > 1 && records.size() < kLeastRecords) return {};
   std::erase_if(thermometers, [&](const std::string& name) { return !changes(records, name); });
-  if (!any_complete(records, thermometers)) return {};
   const std::size_t most = thermometers.size() / 3;
   std::vector<DoubtedThermometer> doubted;
   while (thermometers.size() > 1) {
@@ -161,8 +151,12 @@ std::vector<DoubtedThermometer> doubted_thermometers(std::span<const Record> rec
       std::vector<std::string> others = thermometers;
       std::erase(others, name);
       others.insert(others.end(), beside.begin(), beside.end());
-      Judged j = judged(records, name, others, reading_K);
-      if (j.times > worst.times) worst = std::move(j);
+      try {
+        Judged j = judged(records, name, others, reading_K);
+        if (j.times > worst.times) worst = std::move(j);
+      } catch (const InputError&) {  // no row has all readings, or it never changes in those that have
+        continue;
+      }
     }
     if (!(worst.times > kDeparts)) break;
     if (doubted.size() == most) return {};

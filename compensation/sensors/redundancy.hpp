@@ -48,7 +48,8 @@ struct DoubtedThermometer {
 /// far from all records counts less. The worst is taken out, and the rest is judged again without it.
 ///
 /// If more than a third of the thermometers depart, nothing distinguishes them from the rest, and none is returned. None is
-/// either if no row has all readings. A thermometer that is wrong in all records is not noticed.
+/// either of two or three records, whose relations cannot outvote each other, and none that has no row in common with the
+/// others. A thermometer that is wrong in all records is not noticed.
 /// @param thermometers  channels of one unit
 /// @param beside        channels that help to predict them and are not judged: drive, ambient
 /// @param reading_K     standard deviation of a thermometer
