@@ -108,7 +108,7 @@ std::vector<std::pair<double, double>> rows(RowSource& source, std::size_t n, st
   return list;
 }
 
-// A probing is in one row, whether its message comes once or is asked for again and again; one from before is none.
+// A probing is in one row, whether its message comes once or is asked for again and again; one from before does not count.
 TEST(HeardValues, AProbingIsInOneRowAlone) {
   HeardValues values({{"t_degC", "t"}, {"probe_y_um", "p"}}, std::numeric_limits<double>::infinity());
   values.hear("t", "21");

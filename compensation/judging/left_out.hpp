@@ -31,7 +31,8 @@ struct LeftOutSettings {
 /// Sets `fold_errors`, `interval_um` and `residual` of a strategy, and returns the room of its fail-safe: the factor on the
 /// margins beyond the training data (learn_fail_safe()) with which its corrections leave the least on the folds. The
 /// smallest that is tried is 1; the least of four tries is a little too small. `rms_um` of a fold is that of the guarded
-/// correction, `within_um` and `interval_um` are those of the bare prediction. A baseline has no fail-safe and is judged by its predictions.
+/// correction, `within_um` and `interval_um` are those of the bare prediction. A baseline has no fail-safe and is judged by
+/// its predictions.
 double set_left_out(DeployedPredictor& strategy, const FoldPredictors& predictors, const FoldedRuns& folds,
                     const LeftOutSettings& settings);
 

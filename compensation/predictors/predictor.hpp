@@ -77,7 +77,7 @@ class Predictor {
 
   /// The formula that gives the same drift, for text, C, LinuxCNC and means of several; null: it is no formula of its inputs.
   [[nodiscard]] virtual const DriftModel* formula() const { return nullptr; }
-  /// The state observer in it, for a watch over the machine and for functional mock-up units; null: there is none.
+  /// The state observer in it, for a watch over the machine and for functional mock-up units; null if it has no observer.
   [[nodiscard]] virtual const Observer* observer() const { return nullptr; }
 
   /// A follower at the start of a run. The predictor must outlive it.

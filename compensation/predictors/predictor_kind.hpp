@@ -23,7 +23,7 @@ struct DriftTarget {
 struct PredictorKind {
   std::string key;  ///< value of the key `predictor`, and name of the key that holds the data
   /// Makes the predictor whose written() gave this content.
-  /// @throws InputError  naming the key, for content that is none
+  /// @throws InputError  naming the key, if the content is not a predictor of this kind
   std::shared_ptr<const Predictor> (*read)(const nlohmann::ordered_json& content, const DriftTarget& target) = nullptr;
 };
 
