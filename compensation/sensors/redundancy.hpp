@@ -34,8 +34,8 @@ inline constexpr double kDepartsFor_s = 600.0;
 struct DoubtedThermometer {
   std::string name, record;
   double from_s = 0.0;  ///< time in that record at which it begins
-  double off_K =
-      0.0;  ///< largest difference that lasts kDepartsFor_s, reduced where the relations scatter by more than usual_K
+  /// Largest difference that lasts kDepartsFor_s; reduced where the relations scatter by more than usual_K.
+  double off_K = 0.0;
   double usual_K = 0.0;  ///< standard deviation of the difference
   /// No other thermometer departs in that record. If several do, they have one cause: a state of the machine that the
   /// relations do not describe, or a plug or an amplifier that they share.
