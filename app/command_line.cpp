@@ -529,7 +529,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--dialect", schedule.dialect,
                    "of the program: linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
       ->check(CLI::IsMember(scenarios::kDialects));
-  verb->add_flag("--beyond", schedule.beyond, "plan for speeds above those that the scenario says anything of, too");
+  verb->add_flag("--beyond", schedule.beyond, "plan beyond the limits of the machine, too; corrections are held there");
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
   add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
   verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another [the scenario's, else 1]")

@@ -104,7 +104,7 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string policy;   ///< empty: the scenario's
   std::string dialect;  ///< empty: the scenario's
   bool split = false;   ///< divide blocks that cannot keep the tolerance
-  bool beyond = false;  ///< also plan at speeds above those that the scenario mentions
+  bool beyond = false;  ///< also plan beyond the limits of the machine, where corrections are then held
   std::string start;    ///< `start` to `model`: as in PredictOptions
   std::string after_pause;
   std::string model;
