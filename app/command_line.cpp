@@ -89,6 +89,9 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
       ->required();
   verb->add_option("--period", options.period, "travel of one signal period, such as '4 um'; for corrections in um");
   verb->add_option("--row-time", options.row_time, "time of one row, such as '1 ms'; for corrections by time");
+  verb->add_option("--limit", options.limit,
+                   "largest correction by size, such as '50 um' (`correction` of the scenario's `limits`); a larger one is "
+                   "held at it [none]");
   verb->add_option("--unit", options.unit, "of numbers from a FIFO")
       ->check(CLI::IsMember({"um", "count"}))
       ->capture_default_str();

@@ -108,9 +108,9 @@ void correct(MachineStudy& study, const Scenario& scenario) {
     const JudgedRun run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
                         settings.tolerance_um};
     const double margin_um = largest_miss_um(d, training);
-    for (CorrectedRun corrected :
-         {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
-          correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario))}) {
+    for (CorrectedRun corrected : {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
+                                   correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario),
+                                                       scenario.limits.correction)}) {
       corrected.predictor = d.name;
       corrected.channel = d.target;
       study.corrections.push_back(std::move(corrected));

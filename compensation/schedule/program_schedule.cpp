@@ -121,24 +121,18 @@ class AxisPlanner {
     return all;
   }
 
-  /// Replaces each correction beyond a limit by the one before, and notes it.
+  /// Holds corrections beyond a limit, and notes the steps of each stretch.
   void hold_within_limits() {
     is_held.assign(cells.size(), 0);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const double planned_um = correction_um[k], before_um = k > 0 ? correction_um[k - 1] : 0.0;
-      const bool too_large = std::abs(planned_um) > options_.limits.most_um + kInterpolation_um;
-      const bool too_far = k > 0 && std::abs(planned_um - before_um) > options_.limits.most_step_um + kInterpolation_um;
-      if (!too_large && !too_far) continue;
-      correction_um[k] = before_um;
-      is_held[k] = 1;
-      const auto [first, last] = steps_of(k);
-      const bool continues = k > 0 && is_held[k - 1] && held.back().is_step != too_large;
-      if (!continues)
-        held.push_back({.first = first, .is_step = !too_large, .planned_um = planned_um, .held_um = before_um});
+    for (const HeldCell& cell : hold_within(correction_um, options_.limits)) {
+      is_held[cell.cell] = 1;
+      const auto [first, last] = steps_of(cell.cell);
+      if (cell.cell == 0 || !is_held[cell.cell - 1] || held.back().is_step != cell.is_step)
+        held.push_back({.first = first, .is_step = cell.is_step, .planned_um = cell.planned_um, .held_um = cell.held_um});
       HeldCorrection& stretch = held.back();
       stretch.last = last;
-      const auto beyond_um = [&](double c_um) { return std::abs(stretch.is_step ? c_um - before_um : c_um); };
-      if (beyond_um(planned_um) > beyond_um(stretch.planned_um)) stretch.planned_um = planned_um;
+      const auto size_um = [&](double c_um) { return std::abs(stretch.is_step ? c_um - stretch.held_um : c_um); };
+      if (size_um(cell.planned_um) > size_um(stretch.planned_um)) stretch.planned_um = cell.planned_um;
     }
   }
 
