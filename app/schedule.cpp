@@ -94,17 +94,23 @@ void refuse_beyond(const CorrectedSeries& series, const scenarios::Scenario& sce
   if (series.beyond.empty()) return;
   using What = compensation::BlockBeyond::What;
   const compensation::BlockBeyond& block = series.beyond.front();
-  const bool is_stated = block.what != What::kSpeed || std::isfinite(scenario.limits.speed_rpm);
-  const char* key = block.what == What::kSpeed ? "speed" : block.what == What::kFeed ? "feed" : "travel";
-  const char* word = block.what == What::kSpeed ? "S word" : block.what == What::kFeed ? "F word" : "position";
+  const std::string_view word = block.what == What::kSpeed ? "S word" : block.what == What::kFeed ? "F word" : "position";
+  std::string whose;  // where the limit is written
+  if (block.what == What::kTravel) {
+    whose = "`travel` of `limits`";
+  } else if (block.what == What::kFeed) {
+    whose = std::isfinite(scenario.limits.feed_m_s) ? "`feed` of `limits`" : "as fast as `rapid` of `schedule`";
+  } else if (std::isfinite(scenario.limits.speed_rpm)) {
+    whose = "`speed` of `limits`";
+  }
   const std::string what =
-      is_stated
-          ? fmt::format("{} (`{}` of `limits` in {}). Correct the {}, or add --beyond, which holds the correction there",
-                        compensation::words_of(block), key, scenario.path, word)
+      !whose.empty()
+          ? fmt::format("{} ({} in {}). Correct the {}, or add --beyond, which holds the correction there",
+                        compensation::words_of(block), whose, scenario.path, word)
           : fmt::format(
-                "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift "
-                "planned there would be made up. Give a cyclogram that reaches it, correct the S word, or add "
-                "--beyond, which holds the correction there",
+                "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned "
+                "there would be made up. Give a cyclogram that reaches it, correct the S word, or add --beyond, "
+                "which holds the correction there",
                 block.value, scenario.path, block.limit);
   throw InputError(series.program.steps[block.step].where, what);
 }

@@ -90,6 +90,20 @@ TEST(AxisOffset, BeginsAtZeroWheneverTheMachineIsSwitchedOn) {
   EXPECT_EQ(axis.state.counts, -10);
 }
 
+TEST(AxisOffset, GoesNoFurtherThanItsLimit) {
+  for (const double sign : {-1.0, 1.0}) {
+    Axis axis;
+    axis.settings.sign = sign;
+    axis.settings.most_um = 7.0;
+    axis.run(200);
+    EXPECT_EQ(axis.state.offset_um, sign * 7.0);
+    EXPECT_EQ(axis.state.is_wrong, 0);
+    axis.settings.most_um = 0.0;  // none
+    axis.run(200);
+    EXPECT_EQ(axis.state.offset_um, sign * 20.0);
+  }
+}
+
 TEST(AxisOffset, TakesANewSignOrScaleOnlyAtZero) {
   Axis axis;
   axis.run(200);
