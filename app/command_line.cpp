@@ -89,6 +89,9 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
       ->required();
   verb->add_option("--period", options.period, "travel of one signal period, such as '4 um'; for corrections in um");
   verb->add_option("--row-time", options.row_time, "time of one row, such as '1 ms'; for corrections by time");
+  verb->add_option("--limit", options.limit,
+                   "largest correction by size, such as '50 um' (`correction` of the scenario's `limits`); a larger one is "
+                   "held at it [none]");
   verb->add_option("--unit", options.unit, "of numbers from a FIFO")
       ->check(CLI::IsMember({"um", "count"}))
       ->capture_default_str();
@@ -532,7 +535,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--dialect", schedule.dialect,
                    "of the program: linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
       ->check(CLI::IsMember(scenarios::kDialects));
-  verb->add_flag("--beyond", schedule.beyond, "plan for speeds above those that the scenario says anything of, too");
+  verb->add_flag("--beyond", schedule.beyond, "plan beyond the limits of the machine, too; corrections are held there");
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
   add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
   verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another [the scenario's, else 1]")

@@ -248,6 +248,7 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
   how.candidates = candidates;
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = true;
+  how.limits = scenario.limits.correction;
   how.image = study.image;
   how.speed = speed_channel(runs.front().readings);
   how.ambient = ambient_channel(scenario, runs.front().readings);
@@ -301,6 +302,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
     how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = study.count_from_start;
+  how.limits = scenario.limits.correction;
   how.image = study.image;
   how.speed = speed_channel(training.front());
   how.ambient = records.ambient;

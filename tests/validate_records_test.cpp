@@ -141,6 +141,34 @@ class ValidateRecords : public ::testing::Test {
   static inline std::string machine_, records_only_, oiled_;
 };
 
+// Corrections of tens of um are held to 4 um, and to half a micrometre from one reading to the next: as judged, as written
+// and on a control.
+TEST_F(ValidateRecords, TheLimitsOfTheScenarioAreInEachFile) {
+  const std::string limited =
+      write_file("limited.yaml", std::string("name: limited\n") + kStudy + "limits: {correction: 4 um, step: 0.5 um}\n");
+  const auto out = fresh_folder("limited") / "out";
+  const CommandOutcome judged = run_program("validate " + limited + " --train " + record("warm_up") + " --train " +
+                                            record("steps") + " --test " + record("to_and_fro") + " -o " + out.string());
+  ASSERT_EQ(judged.exit_code, 0) << judged.output;
+  int n_files = 0, n_components = 0;
+  for (const auto& file : std::filesystem::directory_iterator(out / "models")) {
+    if (file.path().extension() == ".comp") {
+      ++n_components;
+      EXPECT_THAT(read_text(file.path()), HasSubstr("param rw float most_um = 4"));
+    }
+    if (file.path().extension() != ".json") continue;
+    const Json predictor = Json::parse(read_text(file.path()));
+    if (!predictor.contains("fail_safe") || predictor["fail_safe"].is_null()) continue;
+    ++n_files;
+    const Json& safe = predictor["fail_safe"];
+    EXPECT_LE(safe["highest_um"].get<double>(), 4.0) << predictor["name"];
+    EXPECT_GE(safe["lowest_um"].get<double>(), -4.0) << predictor["name"];
+    EXPECT_LE(safe["most_rate_um_s"].get<double>() * safe["period_s"].get<double>(), 0.5 + 1e-12) << predictor["name"];
+  }
+  EXPECT_GT(n_files, 2);
+  EXPECT_GT(n_components, 0);
+}
+
 TEST_F(ValidateRecords, PhysicsIsJudgedOnRecordsOfAMachine) {
   expect_exact(validate(machine_, "to_and_fro"));
 }

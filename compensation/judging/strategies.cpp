@@ -329,6 +329,7 @@ void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const Obse
     readings.push_back(own_rows(s.count_from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
   }
   f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true, reach_of(f, s, folds));
+  limit(*f.fail_safe, s.limits);
 }
 
 /// Fits a strategy, without its errors on left-out rows and without fail-safe.

@@ -39,6 +39,7 @@ struct StrategySettings {
   std::string speed, ambient;       ///< channels; empty: none
   double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
   double drift_um = 1.0;            ///< 1 sigma of the indicator that measured the drift in the training runs
+  CorrectionLimits limits = {};     ///< of the machine; they narrow each fail-safe
   std::optional<Physics> physics;
   std::string without_physics = {};  ///< why there is none; empty: it was not requested
 };
