@@ -54,7 +54,7 @@ struct Followed {
 Followed followed(const compensation::DeployedPredictor& judged, const TrialMachine& machine,
                   const compensation::ObservedRun& run) {
   compensation::DeployedPredictor d = judged;
-  d.predictor = std::make_shared<compensation::Observer>(machine.deployed());
+  d.predictor = std::make_shared<compensation::Observer>(machine.observer());
   compensation::DeployedFollower follower(d);
   compensation::ObservedRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
   growing.readings.time_s.clear();

@@ -122,12 +122,14 @@ TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> senso
   const std::vector<std::string>& outputs = machine_.outputs.name;
   for (const std::string& name : sensors_)
     output_.push_back(std::find(outputs.begin(), outputs.end(), name) - outputs.begin());
+  std::vector<ObservedRun> tests;
   for (const double share : kTestedSpeeds) {
     const Cyclogram test{.name = "test",
                          .sections = {{kTestedFor_s, {.speed_rpm = share * settings.top_rpm}}, {kTestedFor_s, {}}}};
-    tests_.push_back(read(test, {{0.0}, {model_.start_ambient_K}}, {}, 100 * seed + tests_.size(), true));
+    tests.push_back(read(test, {{0.0}, {model_.start_ambient_K}}, {}, 100 * seed + tests.size(), true));
   }
-  observer_.learn(tests_);
+  observer_.learn(tests);
+  observer_ = observer_.calibrated(tests);
 }
 
 Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeSeries& ambient,

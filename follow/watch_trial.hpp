@@ -47,8 +47,6 @@ class TrialMachine {
   [[nodiscard]] double nats(double duration_s, const TrialFault& fault, std::uint64_t seed) const;
 
   [[nodiscard]] const compensation::Observer& observer() const { return observer_; }
-  /// The observer as `validate` would deploy it: it knows how far its thermometers were from its model in the tests.
-  [[nodiscard]] compensation::Observer deployed() const { return observer_.calibrated(tests_); }
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
   [[nodiscard]] const solver::ReducedSystem& system() const { return machine_; }
 
@@ -63,7 +61,6 @@ class TrialMachine {
   TrialSettings settings_;
   solver::ReducedSystem machine_;
   std::vector<Eigen::Index> output_;  // of each sensor
-  std::vector<compensation::ObservedRun> tests_;
   compensation::Observer observer_;
 };
 
