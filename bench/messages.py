@@ -43,7 +43,7 @@ ALLOWED = [
     ("scenarios/reader/read_outputs.cpp", "the indicator's stand moves"),         # a thing
     ("solver/springs.cpp", "no cell lies behind surface"),                        # a place
 ]
-NOT_YET = {"diagnosis"}  # rooms whose messages are not reviewed yet; --dialect leaves them out
+NOT_YET = set()  # rooms whose messages are not reviewed yet; --dialect leaves them out
 
 TOKEN = re.compile(
     r"""(?P<skip>//[^\n]*|/\*.*?\*/|\s+)
