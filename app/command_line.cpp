@@ -205,7 +205,8 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::Option* serve = verb->add_option("--serve", options.serve,
                                         "port at which a page for browsers is served (machine, drift, correction, trust, "
                                         "alarms), such as 8080; 0 takes any free port");
-  verb->add_option("--bind", options.bind, "address at which the page is served; any other than 127.0.0.1 requires --token")
+  verb->add_option("--bind", options.bind,
+                   "address at which the page is served; an address that other computers can reach requires --token")
       ->needs(serve)
       ->capture_default_str();
   verb->add_option("--token", options.token,
@@ -495,7 +496,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::mesh(mesh); });
   add_init(cli, init);
   verb = add_verb(cli, "simulate",
-                  "simulates cyclograms: temperatures, drift and heat flows, and fields if --cyclogram names one",
+                  "simulates cyclograms: temperatures, drift and heat flows; for a single cyclogram also fields",
                   "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
   verb->add_option("--cyclogram", simulate.cyclograms,
                    "cyclogram to simulate: a name in the scenario, or a record CSV with the column speed_rpm; may be "
