@@ -13,12 +13,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSharper = 0.9;   // noise without what the causes explain, over that with it: it is estimated anew
-constexpr double kLessSlow = 0.5;  // and its slow part: causes that come and go had been taken for noise that follows itself
-constexpr double kSeenSlow = 0.2;  // of the white part: a slow part below changes nothing
+constexpr double kSharper =
+    0.9;  // ratio of the noise without the explained part to that with it; below, the noise is estimated again
+constexpr double kLessSlow = 0.5;        // the same for its slow part: repeated causes had been taken for correlated noise
+constexpr double kSeenSlow = 0.2;        // share of the white part; a smaller slow part is ignored
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
 
-/// What the search leaves; the mesh's error is that of the machine with what was found.
+/// The part that the search leaves unexplained; the mesh's error is computed for the machine with the causes.
 std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Inquiry& of,
                                         Twin::Workspace& workspace) {
   const Fitter& fitter = *of.fitter;
@@ -34,7 +35,7 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   return unexplained_of(again, same, of.noise);
 }
 
-/// Searches again by what the model misses: as heat that comes and goes in its bodies, or as slow noise of its channels.
+/// Searches again with the model's error as process noise (heat in its bodies) or as slow noise of its channels.
 void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
                           const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
                           Twin::Workspace& workspace, const Listener& listener) {
@@ -54,7 +55,7 @@ void weigh_by_model_error(const InquiryGround& ground, const std::vector<Measure
   of.weighed_by_model_error = true;
 }
 
-/// Numbers that have gone too far are faults: they get the prior of one, and all are fitted anew.
+/// Numbers that moved too far are faults: they get the prior of a fault, and all numbers are fitted again.
 void widen_moved(Inquiry& of, Twin::Workspace& workspace) {
   Fitter& fitter = *of.fitter;
   for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
@@ -108,7 +109,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   of.fitter->set_noise(of.noise);
-  (void)has_solution([&] {  // what the scenario's own numbers explain is no noise
+  (void)has_solution([&] {  // the part explained by the scenario's own numbers is no noise
     Twin::Workspace workspace(ground.twin);
     const Fit fit = of.fitter->fit({}, Eigen::VectorXd(0), workspace);
     for (const auto& [name, noise] : estimate_noise(runs, fit.prediction, options.floor)) {

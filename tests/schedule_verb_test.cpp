@@ -508,8 +508,8 @@ TEST(ScheduleSeries, WritesOneProgramForEachPartThatDiffers) {
   EXPECT_THAT(read_text(s.folder / "summary.json"), HasSubstr("\"n_parts\": 4"));
 }
 
-// Behind ten hours at the program's speed the machine is as warm as it gets: parts agree, one program makes them all, and
-// it begins with the whole drift.
+// After ten hours at the program's speed the machine is in balance. All parts drift alike, so one program makes them all,
+// and it begins with the whole drift.
 TEST(ScheduleSeries, OfAWarmMachineIsOneProgram) {
   const std::string start = write_file("ten_hours.csv", "time_s,speed_rpm\n0,2000\n36000,0\n");
   const Scheduled s = run_schedule("series_warm", kShortPart, "--parts 5 --start " + start);
