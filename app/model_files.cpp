@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -45,14 +44,7 @@ void write_models(const compensation::StrategyMatrix& m, const std::vector<effec
   const Json conditions = output::section_json(findings::conditions_of(m));
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
-    std::string name;
-    for (char ch : s.fitted.name) {
-      if (std::isalnum(static_cast<unsigned char>(ch))) {
-        name += ch;
-      } else if (!name.empty() && name.back() != '_') {
-        name += '_';
-      }
-    }
+    const std::string name = findings::model_file_name(s.fitted.name);
     Json judged = conditions;
     for (const compensation::JudgedRunOfMachine& r : m.runs)
       judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
