@@ -13,6 +13,7 @@
 #include "compensation/predictors/observer.hpp"
 #include "compensation/predictors/score.hpp"
 #include "solver/model_factors.hpp"
+#include "solver/propagator.hpp"
 #include "tests/three_parts.hpp"
 
 namespace driftwright::compensation::observer_trust_test {
@@ -152,6 +153,121 @@ TEST(ObserverTrust, BlamesTheModelBeforeSeveralGoodThermometers) {
   const Followed f = follow(taught(), run);
   EXPECT_THAT(f.doubted, Contains(HasSubstr("the model")));
   EXPECT_LE(f.n_calm_and_wrong, 6);  // minutes
+}
+
+/// What the machine does in an ambient that changes, at rows of a minute, read with noise.
+ObservedRun run_in(const TimeSeries& ambient, const Cyclogram& cyclogram, std::uint64_t seed) {
+  const solver::ReducedSystem machine = three_parts();
+  ObservedRun run = run_of(machine, 60.0, 0.0, 0.0, seed, cyclogram);
+  run.ambient = ambient;
+  const Eigen::MatrixXd y =
+      solver::Propagator(machine).run(cyclogram, ambient, run.readings.time_s, Eigen::Vector3d::Zero()).outputs;
+  Random random(seed, 6);
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    std::vector<double>& values = run.readings.channels[static_cast<std::size_t>(j)].values;
+    for (Eigen::Index i = 0; i < y.cols(); ++i)
+      values[static_cast<std::size_t>(i)] = j < 3 ? y(j, i) + 20.0 + kNoise_K * random.normal() : 1e6 * y(j, i);
+  }
+  return run;
+}
+double rms_um(const std::vector<double>& drift_um, const ObservedRun& run, std::size_t from, std::size_t to) {
+  std::vector<double> off_um;
+  for (std::size_t i = from; i < to; ++i) off_um.push_back(drift_um[i] - run.readings.at("drift_y").values[i]);
+  return score(off_um).rmse;
+}
+/// Row by row: the drift, and which sensors are not used.
+struct Pass {
+  std::vector<double> drift_um, trust;
+  std::vector<std::vector<std::string>> given_up;
+};
+Pass passed(const Observer& observer, const ObservedRun& run) {
+  const std::unique_ptr<Follower> follower = observer.follow();
+  ObservedRun so_far = run;
+  so_far.readings.time_s.clear();  // values beyond the last time are not looked at
+  Pass p;
+  for (double t_s : run.readings.time_s) {
+    so_far.readings.time_s.push_back(t_s);
+    p.drift_um.push_back(follower->next(so_far));
+    p.trust.push_back(follower->deserved_trust());
+    p.given_up.push_back(follower->given_up());
+  }
+  return p;
+}
+Observer taught_observer() {
+  return *std::dynamic_pointer_cast<const Observer>(taught().predictor);
+}
+/// Three days: each with eight hours of work and a night.
+Cyclogram three_days() {
+  Cyclogram c{.name = "days", .sections = {}};
+  for (std::uint64_t d = 1; d <= 3; ++d) {
+    for (const auto& section : day(d).sections) c.sections.push_back(section);
+    c.sections.push_back({16 * 3600.0, {}});
+  }
+  return c;
+}
+
+// The ambient falls by 8 K within a minute, as where a gate is opened, and stays there: its thermometer is held for half an
+// hour and then believed, since the others contradict the old ambient.
+TEST(ObserverTrust, BelievesAnAmbientThatHasJumpedAndStays) {
+  const ObservedRun run = run_in({{0.0, 7200.0, 7260.0}, {0.0, 0.0, -8.0}}, day(5), 5);
+  const Pass p = passed(taught_observer(), run);
+  EXPECT_THAT(p.given_up[130], Contains(HasSubstr("ambient")));
+  EXPECT_THAT(p.given_up.back(), IsEmpty());
+  EXPECT_LT(rms_um(p.drift_um, run, 240, run.readings.n_samples()), 0.5);
+}
+
+// A thermometer that is wrong for two hours and then right again is used again after eight hours of agreement.
+TEST(ObserverTrust, UsesASensorAgainThatAgreesForLong) {
+  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 6);
+  std::vector<double>& t1 = run.readings.channels[0].values;
+  for (std::size_t i = 200; i < 320; ++i) t1[i] += 6.0;
+  const Pass p = passed(taught_observer(), run);
+  EXPECT_THAT(p.given_up[310], Contains(HasSubstr("T1")));
+  EXPECT_THAT(p.given_up[320 + 7 * 60], Contains(HasSubstr("T1")));
+  EXPECT_THAT(p.given_up.back(), IsEmpty());
+  EXPECT_LT(rms_um(p.drift_um, run, 0, run.readings.n_samples()), 0.5);
+}
+
+// One that is stuck where the machine rests at night agrees for all the night, and is not used again by day.
+TEST(ObserverTrust, DoesNotUseAStuckSensorAgainBecauseTheMachineRests) {
+  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 7);
+  std::vector<double>& t1 = run.readings.channels[0].values;
+  std::fill(t1.begin() + 100, t1.end(), 20.0);
+  const Pass p = passed(taught_observer(), run);
+  for (std::size_t i = 130; i < p.given_up.size(); ++i) ASSERT_THAT(p.given_up[i], Contains(HasSubstr("T1"))) << i;
+  EXPECT_LT(rms_um(p.drift_um, run, 0, run.readings.n_samples()), 0.5);
+}
+
+// A bad contact: every fifth reading is 850 degC for two hours. It moves neither the drift nor what is believed afterwards.
+TEST(ObserverTrust, SingleReadingsOf850DegCMoveNothing) {
+  ObservedRun run = run_in({{0.0}, {0.0}}, day(8), 8);
+  for (std::size_t i = 200; i < 320; i += 5) run.readings.channels[1].values[i] = 850.0;
+  const Pass p = passed(taught_observer(), run);
+  EXPECT_LT(rms_um(p.drift_um, run, 0, run.readings.n_samples()), 0.5);
+  EXPECT_GT(p.trust.back(), 0.99);
+}
+
+// Three hours without a row, at full speed before and at rest within: the readings after them correct the state at once.
+TEST(ObserverTrust, AGapLeavesOpenWhatTheMachineDid) {
+  const Cyclogram truth{.name = "gap", .sections = {{7200, {.speed_rpm = 3000}}, {10800, {}}, {7200, {.speed_rpm = 1500}}}};
+  ObservedRun run = run_in({{0.0}, {0.0}}, truth, 9);
+  run.cyclogram.sections = {{18000, {.speed_rpm = 3000}}, {7200, {.speed_rpm = 1500}}};  // the last speed that was known
+  const auto cut = [](auto& list) { list.erase(list.begin() + 121, list.begin() + 300); };
+  cut(run.readings.time_s);
+  for (Channel& c : run.readings.channels) cut(c.values);
+  const Pass p = passed(taught_observer(), run);
+  EXPECT_LT(rms_um(p.drift_um, run, 126, run.readings.n_samples()), 1.0);
+  for (std::size_t i = 126; i < p.trust.size(); ++i) EXPECT_GT(p.trust[i], 0.9) << i;
+}
+
+// A day with two of three thermometers exchanged, then right ones: the drift is right again two days later.
+TEST(ObserverTrust, ForgetsWhatWrongReadingsTaught) {
+  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 10);
+  for (std::size_t i = 100; i < 480; ++i) std::swap(run.readings.channels[0].values[i], run.readings.channels[2].values[i]);
+  const Pass p = passed(taught_observer(), run);
+  const std::size_t n = run.readings.n_samples();
+  EXPECT_LT(p.trust[300], 0.5);
+  EXPECT_LT(rms_um(p.drift_um, run, n - 1440, n), 1.0);
 }
 
 }  // namespace

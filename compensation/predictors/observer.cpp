@@ -33,22 +33,25 @@ constexpr std::size_t kStepsKept = 512;
 constexpr double kStart_K = 0.1;                    // uniform uncertainty of the start state
 constexpr double kAgreesFor_s = kRemembersDoubt_s;  // of agreement, before a sensor, or the model, counts as right again
 constexpr double kGap = 2.5;                        // intervals between rows, beyond which the drive in between is unknown
-const double kUniform = std::sqrt(12.0);            // range of a uniform number over its deviation
+constexpr double kWidest = 2.0;  // least range of a number over its deviation: at either end at random (Popoviciu)
 
 /// How long something has agreed with what is expected, and over which expected temperatures: a sensor that is stuck agrees
-/// only as long as nothing moves.
+/// only as long as nothing moves. Temperatures are means over as many rows as the innovations that agree.
 struct Agreement {
   double since_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: it does not
-  double low_K = 0.0, high_K = 0.0;
+  double mean_K = std::numeric_limits<double>::quiet_NaN();   ///< NaN: no row yet
+  double low_K = 0.0, high_K = 0.0;                           ///< of mean_K
 
   void take(bool agrees, double t_s, double expected_K) {
+    mean_K = std::isnan(mean_K) ? expected_K : kMemory * mean_K + (1.0 - kMemory) * expected_K;
     if (!agrees) {
       since_s = std::numeric_limits<double>::quiet_NaN();
     } else if (std::isnan(since_s)) {
-      *this = {t_s, expected_K, expected_K};
+      since_s = t_s;
+      low_K = high_K = mean_K;
     } else {
-      low_K = std::min(low_K, expected_K);
-      high_K = std::max(high_K, expected_K);
+      low_K = std::min(low_K, mean_K);
+      high_K = std::max(high_K, mean_K);
     }
   }
   [[nodiscard]] bool is_long(double t_s, double moved_K) const {
@@ -85,8 +88,9 @@ class Observer::Run final : public ObserverFollower {
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
     agreement_.assign(o_.sensors_.size(), {});
-    least_W_.setConstant(n_sources_, std::numeric_limits<double>::infinity());
-    most_W_ = -least_W_;
+    least_W_.resize(n_sources_);
+    for (Eigen::Index s = 0; s < n_sources_; ++s) least_W_(s) = s_.sources[static_cast<std::size_t>(s)].power_W({});
+    most_W_ = least_W_;  // at rest
     dropped_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
     last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -180,7 +184,7 @@ class Observer::Run final : public ObserverFollower {
                              ambient_doubted_s_,
                              static_cast<double>(is_model_wrong_),
                              last_step_s_};
-    const auto add = [&](const Agreement& a) { m.insert(m.end(), {a.since_s, a.low_K, a.high_K}); };
+    const auto add = [&](const Agreement& a) { m.insert(m.end(), {a.since_s, a.mean_K, a.low_K, a.high_K}); };
     add(model_agreement_);
     for (std::size_t k = 0; k < live_.size(); ++k) {
       m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
@@ -198,7 +202,7 @@ class Observer::Run final : public ObserverFollower {
   void recall(std::span<const double> memory) override {
     const auto n = belief_.mean.size();
     const std::size_t n_sensors = live_.size();
-    if (memory.size() != 11 + 7 * n_sensors + static_cast<std::size_t>(2 * n_sources_ + n_ + n + n * (n + 1) / 2))
+    if (memory.size() != 12 + 8 * n_sensors + static_cast<std::size_t>(2 * n_sources_ + n_ + n + n * (n + 1) / 2))
       throw std::logic_error("the memory of another observer");
     auto at = memory.begin();
     const auto take = [&] { return *at++; };
@@ -213,6 +217,7 @@ class Observer::Run final : public ObserverFollower {
     const auto taken_agreement = [&] {
       Agreement a;
       a.since_s = take();
+      a.mean_K = take();
       a.low_K = take();
       a.high_K = take();
       return a;
@@ -335,12 +340,21 @@ class Observer::Run final : public ObserverFollower {
     }
     if (followed() <= held) {
       history_.clear();
+      for (std::size_t k = 0; k < live_.size(); ++k) {  // what was judged by the held ambient is judged again
+        if (!live_[k] && dropped_s_[k] >= ambient_doubted_s_) take_back(k);
+      }
       return;
     }
     restore(before);
     ambient_K_ = held_K;
     is_ambient_doubted_ = was_doubted;
     ambient_doubted_row_ = row_;  // asked again after as many rows
+  }
+
+  void take_back(std::size_t sensor) {
+    live_[sensor] = true;
+    dropped_s_[sensor] = std::numeric_limits<double>::quiet_NaN();
+    mean_innovation_[sensor] = 0.0;
   }
 
   /// A sensor that has agreed again for long enough, over temperatures that moved by more than a stuck one could agree with,
@@ -350,10 +364,7 @@ class Observer::Run final : public ObserverFollower {
     for (std::size_t k = 0; k < live_.size(); ++k) {
       expected_K += expected_K_of(k, row_) / static_cast<double>(live_.size());
       const double moved_K = 2.0 * kFlag * kMeanDeviation * spread_K_[k];
-      if (live_[k] || !agreement_[k].is_long(t_s, moved_K)) continue;
-      live_[k] = true;
-      dropped_s_[k] = std::numeric_limits<double>::quiet_NaN();
-      mean_innovation_[k] = 0.0;
+      if (!live_[k] && agreement_[k].is_long(t_s, moved_K)) take_back(k);
     }
     if (live_.empty()) return;
     model_agreement_.take(apart() <= o_.settings_.most_apart, t_s, expected_K);
@@ -575,8 +586,8 @@ class Observer::Run final : public ObserverFollower {
     }
     if (unseen_.size() == 0) return;
     unseen_ = now.decay * unseen_;
-    for (Eigen::Index s = 0; s < n_sources_; ++s)  // any power between the extremes of this run, the same for the whole gap
-      unseen_.col(s) += now.gain * s_.sources[static_cast<std::size_t>(s)].load * ((most_W_(s) - least_W_(s)) / kUniform);
+    for (Eigen::Index s = 0; s < n_sources_; ++s)  // between the extremes of rest and of this run
+      unseen_.col(s) += now.gain * s_.sources[static_cast<std::size_t>(s)].load * ((most_W_(s) - least_W_(s)) / kWidest);
   }
 
   /// Factors change at random. While the drift is measured this is a random walk; later they also return to what was
