@@ -118,7 +118,7 @@ TEST(ObserverTrust, FallsWhereTheModelIsWrongInOneNumber) {
     n_calm_and_wrong += f.n_calm_and_wrong;
     EXPECT_LT(f.rms_left_um, 1.05 * f.rms_before_um) << wrong << " by " << by;
   }
-  // 1.5 % when this was written; 21 % where a sensor is given up and the model never doubted. What is left are the first
+  // 1.4 % when this was written; 21 % where a sensor is given up and the model never doubted. What is left are the first
   // minutes of heat, which no reading shows yet.
   EXPECT_LE(n_calm_and_wrong, n / 60) << n;
 }
