@@ -48,6 +48,34 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   return smooth;
 }
 
+/// H s = g, no further than bounds let the first of x go: those that the step would carry beyond end there, and the others are solved for anew.
+/// @param x, most  of the first numbers: where they are, and how far from zero they may be
+Eigen::VectorXd bounded_step(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& x,
+                             const Eigen::VectorXd& most) {
+  Eigen::VectorXd step = hessian.llt().solve(gradient);
+  Eigen::VectorXd ends = Eigen::VectorXd::Zero(gradient.size());  // steps of those that end at their bound
+  std::vector<Eigen::Index> bound;
+  for (Eigen::Index turn = 0; turn < x.size(); ++turn) {
+    const std::size_t n_before = bound.size();
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      if (!(std::abs(x[i] + step[i]) > most[i]) || std::find(bound.begin(), bound.end(), i) != bound.end()) continue;
+      bound.push_back(i);
+      ends[i] = std::copysign(most[i], x[i] + step[i]) - x[i];
+    }
+    if (bound.size() == n_before) break;
+    Eigen::MatrixXd h = hessian;
+    Eigen::VectorXd g = gradient - hessian * ends;
+    for (Eigen::Index i : bound) {
+      h.row(i).setZero();
+      h.col(i).setZero();
+      h(i, i) = 1.0;
+      g[i] = ends[i];
+    }
+    step = h.llt().solve(g);
+  }
+  return step;
+}
+
 bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); });
@@ -110,6 +138,7 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       runs_(runs),
       scatter_(other.scatter_),
       linear_(other.linear_),
+      most_sigmas_(other.most_sigmas_),
       nuisance_(other.nuisance_),
       differences_(other.differences_),
       written_differences_(other.written_differences_) {
@@ -180,11 +209,14 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
   return prediction;
 }
 
+Eigen::VectorXd Fitter::of_machine(Eigen::VectorXd x) const {
+  x.segment(static_cast<Eigen::Index>(scatter_.size()), static_cast<Eigen::Index>(linear_.size())).setZero();
+  return x;
+}
+
 Prediction Fitter::predict_machine(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
                                    Twin::Workspace& workspace) const {
-  Eigen::VectorXd alone = x;
-  alone.segment(static_cast<Eigen::Index>(scatter_.size()), static_cast<Eigen::Index>(linear_.size())).setZero();
-  return predict(hypothesis, alone, workspace);
+  return predict(hypothesis, of_machine(x), workspace);
 }
 
 Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,
@@ -257,12 +289,13 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
   KeptRuns about;
   {
     Twin::Workspace workspace(twin_);
-    base = predict(hypothesis, x, workspace);
+    base = predict_machine(hypothesis, x, workspace);
     about = kept_runs(state(hypothesis, x), workspace);
   }
+  const Eigen::VectorXd at = of_machine(x);
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
-      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, about, i, workspace); },
+      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, at, base, about, i, workspace); },
       listener);
   differences_ = std::move(differences);
 }
@@ -306,15 +339,18 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) const {
   Eigen::MatrixXd slopes = slopes_;
   KeptRuns about;
+  Prediction base;
+  const Eigen::VectorXd x = of_machine(at.x);
   {
     Twin::Workspace workspace(twin_);  // as new as those that are held against it
-    about = kept_runs(state(hypothesis, at.x), workspace);
+    base = predict(hypothesis, x, workspace);
+    about = kept_runs(state(hypothesis, x), workspace);
   }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
       [&](std::size_t i, Twin::Workspace& own) {
         slopes.col(static_cast<Eigen::Index>(i)) =
-            comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, own));
+            comparison_->whitened(slope(hypothesis, x, base, about, i, own));
       });
   return slopes;
 }
@@ -323,17 +359,18 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
                 double of_interest) const {
   Eigen::VectorXd x(n_nuisance() + start.size());
   x << nuisance_, start;
-  return climb(hypothesis, std::move(x), -1, workspace, of_interest);
+  return climb(hypothesis, std::move(x), -1, workspace, of_interest, Slopes::kTakenAnew);
 }
 
 Fit Fitter::fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                       Twin::Workspace& workspace, double of_interest) const {
-  return climb(hypothesis, start, held, workspace, of_interest);
+                       Twin::Workspace& workspace, double of_interest, Slopes slopes) const {
+  return climb(hypothesis, start, held, workspace, of_interest, slopes);
 }
 
 Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held, Twin::Workspace& workspace,
-                  double of_interest) const {
-  const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
+                  double of_interest, Slopes slopes) const {
+  const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k,
+                     n_scatter = static_cast<Eigen::Index>(scatter_.size());
   const std::vector<const Knob*> knobs = knobs_of(hypothesis);
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   const Eigen::VectorXd sd = prior_sd(hypothesis);
@@ -341,7 +378,12 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const auto to_bound = [](const Knob& knob, double& number) {  // beyond it a number has no slope
       if (const double value = knob.value(number); value == knob.low || value == knob.high) number = knob.x(value);
     };
-    for (std::size_t i = 0; i < scatter_.size(); ++i) to_bound(scatter_[i], x[static_cast<Eigen::Index>(i)]);
+    for (std::size_t i = 0; i < scatter_.size(); ++i) {
+      double& number = x[static_cast<Eigen::Index>(i)];
+      const double most = most_sigmas_ * scatter_[i].prior_sd;
+      number = std::clamp(number, -most, most);
+      to_bound(scatter_[i], number);
+    }
     for (Eigen::Index k = 0; k < n_k; ++k) {
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];
       to_bound(knob, x[n_n + k]);
@@ -377,7 +419,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   Eigen::VectorXd taken_at = nuisance_;
   int n_retakes = 0;
   const auto retake = [&](double promised) {
-    if (n_n == 0) return false;
+    if (n_n == 0 || slopes == Slopes::kKept) return false;
     const Eigen::VectorXd gone = (f.x.head(n_n) - taken_at).cwiseQuotient(sd.head(n_n));
     const double far = gone.cwiseAbs().maxCoeff();
     const bool are_here = n_retakes > 0 && far == 0.0;
@@ -458,7 +500,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     for (Eigen::Index k = 0; k < n_k && times_wait; ++k) {
       if (knobs[static_cast<std::size_t>(k)]->is_time) hold(n_n + k);
     }
-    const Eigen::VectorXd step = hessian.llt().solve(gradient);
+    const Eigen::VectorXd step = bounded_step(hessian, gradient, f.x.head(n_scatter), most_sigmas_ * sd.head(n_scatter));
     const double before = f.misfit;
     for (double share : {1.0, 0.4, 0.1}) {
       Fit tried;
