@@ -48,7 +48,7 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   verb->add_option(input, options.scenario, input + " YAML")->required();
   add_results(verb, options, "<name of the " + input + ">", example);
   verb->add_flag("--strict", options.strict,
-                 "refuse what no machine has or does in place of warning of it (docs/scenario.md, Plausibility)");
+                 "refuse implausible values instead of warning about them (docs/reference/scenario.md, Plausibility)");
   return verb;
 }
 
@@ -75,7 +75,7 @@ void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause
   CLI::Option* record = verb->add_option("--start", start,
                                          "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
                                          "of the scenario: the model runs it first [cold]");
-  verb->add_option("--after-pause", after_pause, "time at rest behind it, such as '30 min' [none]")->needs(record);
+  verb->add_option("--after-pause", after_pause, "time at rest after it, such as '30 min' [none]")->needs(record);
   verb->add_option("--model", model, "reduced or full [reduced; full for lumped nodes alone where the scenario has it]")
       ->check(CLI::IsMember({"reduced", "full"}));
 }
@@ -103,11 +103,12 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
                    "of a table of several columns [predicted_um], or axis of lines that `follow` writes [the only one]");
   CLI::Option* on_fault =
       verb->add_option("--on-fault", options.on_fault,
-                       "what a row or a correction from a FIFO that is none does: hold what was before it, or "
-                       "bypass: the correction is withdrawn until the next good one")
+                       "what happens at an invalid row, or at an invalid correction from a FIFO: hold (the value before it "
+                       "holds) or bypass (the correction is withdrawn until the next good one)")
           ->check(CLI::IsMember({"hold", "bypass"}))
           ->capture_default_str();
-  verb->add_flag("--strict", options.strict, "it ends the run, with exit code 2")->excludes(on_fault);
+  verb->add_flag("--strict", options.strict, "an invalid row or correction ends the run, with exit code 2")
+      ->excludes(on_fault);
   verb->add_flag("--bypass", options.bypass, "pass all bytes on as they are");
   verb->add_flag("--clocked", options.clocked,
                  "one row out for each row in, as in a running simulation; else inserted rows are added");
@@ -124,7 +125,7 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
   verb->footer(
       "Example:\n  driftwright inject --correction scenarios/records/drift.csv --period '4 um' --row-time '1 ms' < "
       "scenarios/records/encoder_rows.txt > injected_rows.txt\n"
-      "  with drift.csv: 'time_s,drift_um', then '0,0', '0.5,6', ... (docs/injector.md)");
+      "  with drift.csv: 'time_s,drift_um', then '0,0', '0.5,6', ... (docs/how-to/injector.md)");
   verb->callback([&] { app::inject(options); });
 }
 
@@ -132,7 +133,7 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
 void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "follow",
-      "rows of a running machine from standard input, its correction after each to standard output (docs/follow.md)");
+      "rows of a running machine from standard input, its correction after each to standard output (docs/how-to/follow.md)");
   verb->add_option("model", options.models,
                    "a file models/NAME.json that `validate` has written, or a scenario; several for several axes")
       ->required();
@@ -140,7 +141,9 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       "--columns", options.columns,
       "scenario whose key `columns` says how the rows are written [as records], or `topics` where they come from");
   CLI::Option* replay = verb->add_option("--replay", options.replay, "rows from a file in place of standard input");
-  verb->add_option("--pace", options.pace, "so many times as fast as its rows say [as fast as it goes]")->needs(replay);
+  verb->add_option("--pace", options.pace,
+                   "speed of the replay, as a multiple of the pace of its rows [as fast as possible]")
+      ->needs(replay);
   CLI::Option* mqtt =
       verb->add_option("--mqtt", options.mqtt, "MQTT broker HOST or HOST:PORT in place of standard input")->excludes(replay);
   CLI::Option* from =
@@ -157,7 +160,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
           ->excludes(replay)
           ->excludes(mqtt);
   verb->add_flag("--sample", options.sample,
-                 "of the agent all observations (/sample), at their own times, not what it tells now")
+                 "read all observations of the agent (/sample) at their own times, not only the latest ones")
       ->needs(agent);
   verb->add_option("--topic", options.topics,
                    "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, the id or name of "
@@ -167,29 +170,32 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();
   verb->add_option("--to", options.to, "topic that lines go to beside standard output")->needs(mqtt);
   verb->add_option("--state", options.state,
-                   "file that keeps what is known, every second, and that a new start goes on from");
-  verb->add_option("--record", options.record, "record CSV of the rows that were taken");
+                   "file in which the state is saved every second, and from which a restart continues");
+  verb->add_option("--record", options.record, "record CSV into which the rows that were used are written");
   CLI::Option* serve =
       verb->add_option("--serve", options.serve,
                        "port of a page for browsers: machine, drift, correction, trust, alarms; 0: any that is free");
-  verb->add_option("--bind", options.bind, "address that the page is served at; beyond loopback it wants --token")
+  verb->add_option("--bind", options.bind, "address that the page is served at; beyond loopback --token is required")
       ->needs(serve)
       ->capture_default_str();
   verb->add_option("--token", options.token,
-                   "word that each request for the page has to bring, or @FILE, whose first line it is")
+                   "token that each request for the page must contain, or @FILE, whose first line is the token")
       ->needs(serve);
   verb->add_option("--slew", options.slew,
                    "how fast a correction may change, such as '0.5 um/s' [as the model was fitted, else 1 um/s]");
-  verb->add_option("--hold", options.hold,
-                   "so long without a row a correction holds, such as '5 min' [as the model was fitted, else 5 min]");
-  verb->add_option("--fade", options.fade, "time constant with which it fades then [as the model was fitted, else 10 min]");
+  verb->add_option(
+      "--hold", options.hold,
+      "time for which a correction holds without a new row, such as '5 min' [as the model was fitted, else 5 min]");
+  verb->add_option("--fade", options.fade,
+                   "time constant with which it fades afterwards [as the model was fitted, else 10 min]");
   CLI::Option* watch = verb->add_option(
-      "--watch", options.watch, "limits of a watch: says while it runs that the machine is not as modelled; of an observer");
+      "--watch", options.watch,
+      "limits of a watch, which reports during the run that the machine is not as modelled; for an observer");
   CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
-                                            "writes such limits, by simulation, and follows nothing")
+                                            "compute such limits by simulation and write them; nothing is followed")
                                ->excludes(watch)
                                ->excludes(replay);
-  verb->add_option("--top-speed", options.top_speed, "of the spindle, that they are simulated to, such as '2500 rpm'")
+  verb->add_option("--top-speed", options.top_speed, "top speed of the spindle in these simulations, such as '2500 rpm'")
       ->needs(calibrate);
   verb->footer(
       "Example:\n  driftwright follow scenarios/fp3_spindle.yaml --replay scenarios/records/monday.csv > lines.txt\n  "
@@ -201,7 +207,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
 /// A model for other programs: one file.
 void add_export(CLI::App& cli, app::ExportOptions& options) {
   CLI::App* verb =
-      cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/fmu.md)");
+      cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/how-to/fmu.md)");
   verb->add_option("scenario", options.scenario, "scenario YAML")->required();
   verb->add_flag("--fmu", options.fmu, "as a functional mock-up unit (FMI), C sources and linux64 binary inside");
   verb->add_option("-o,--out", options.out, "file NAME.fmu [results/<name of the scenario>.fmu]");
@@ -224,7 +230,8 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
 
 void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "identify", "a network of bodies from records alone, as a scenario that every verb runs (docs/identification.md)");
+      "identify",
+      "a network of bodies from records alone, as a scenario that every verb runs (docs/how-to/identification.md)");
   verb->add_option("--record", options.records,
                    "record CSV or logger's file with what drives the machine (rpm, W, V, %), its ambient and readings "
                    "(degC, um); may be repeated")
@@ -235,10 +242,10 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
           "--drive", options.drives,
           "channel that drives the machine though its unit does not say so, such as a bed's temperature; may be repeated")
       ->allow_extra_args(false);
-  verb->add_option(
-          "--prior", options.prior,
-          "a scenario to begin with: what it misses of the records is learned beside its physics and written as "
-          "extended.yaml, where rows that were kept out speak for it; --ambient and --drive then are the scenario's")
+  verb->add_option("--prior", options.prior,
+                   "a scenario to start from: what it does not explain of the records is learned in addition to its physics "
+                   "and written as extended.yaml, where rows that were kept out confirm it; --ambient and --drive are then "
+                   "those of the scenario")
       ->excludes("--ambient")
       ->excludes("--drive");
   add_results(verb, options, "<name of the first record>",
@@ -252,16 +259,17 @@ void add_identify(CLI::App& cli, app::IdentifyOptions& options) {
 
 void add_import(CLI::App& cli, app::ImportOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
+      "import",
+      "a logger's file as a record CSV of the same name, with what was understood of it (docs/reference/record.md)");
   verb->add_option("file", options.scenario,
-                   "of a logger or a control: text with cells, in any of the forms of docs/record.md")
+                   "of a logger or a control: text with cells, in any of the forms of docs/reference/record.md")
       ->required();
   CLI::Option* by = verb->add_option(
       "--by", options.by,
       "YAML with the key `columns`: a scenario, or the columns.yaml of an import before [guessed from the file]");
   verb->add_option("--zone", options.zone, "time zone of its stamps, such as Europe/Berlin [a clock that is never set]")
       ->excludes(by);
-  verb->add_option("--interval", options.interval, "from row to row, such as '10 s', where no column tells the time")
+  verb->add_option("--interval", options.interval, "from row to row, such as '10 s', where no column holds the time")
       ->excludes(by);
   verb->add_option("--every", options.every,
                    "from row to row of the record, such as '10 s', of a log with a tag in each row [at each time]")
@@ -276,7 +284,7 @@ void add_import(CLI::App& cli, app::ImportOptions& options) {
 /// The machine in a browser: one file.
 void add_view(CLI::App& cli, app::ViewOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/view.md)");
+      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/how-to/view.md)");
   verb->add_option("scenario", options.scenario, "scenario YAML")->required();
   verb->add_option("-o,--out", options.out, "file NAME.html [results/<name of the scenario>.html]");
   verb->add_option("--cyclogram", options.cyclogram,
@@ -301,7 +309,7 @@ void add_init(CLI::App& cli, app::InitOptions& options) {
   verb->add_option("--from", options.from, "a drawing or mesh (.step, .msh, .inp, .vtu), which is copied, or lumped")
       ->capture_default_str();
   verb->add_option("--units", options.units,
-                   "of a mesh, or of a drawing that says a wrong one: mm, cm, m or inch [by its size]");
+                   "unit of a mesh, or of a drawing whose stated unit is wrong: mm, cm, m or inch [by its size]");
   verb->footer(
       "Example:\n  driftwright init results/mill --from scenarios/parts/vertical_mill.step\n  driftwright init "
       "results/two_nodes");
@@ -422,7 +430,7 @@ int app::command_line(int argc, const char* const* argv) {
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
   add_verb(cli, "check",
-           "read and mesh a scenario, place its sensors, say what no machine has; lumped nodes are run, a mesh is not",
+           "read and mesh a scenario, place its sensors, report implausible values; lumped nodes are run, a mesh is not",
            "check scenarios/fp3_spindle.yaml", check)
       ->callback([&] { app::check(check); });
   CLI::App* verb =
@@ -447,11 +455,11 @@ int app::command_line(int argc, const char* const* argv) {
                   "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
                   "predict scenarios/fp3_spindle.yaml --cyclogram scenarios/records/plan.csv -o results/plan", predict);
   verb->add_option("--cyclogram", predict.cyclogram,
-                   "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
+                   "name in the scenario, or a record CSV with the column speed_rpm (docs/how-to/cyclograms.md)")
       ->required();
   add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
-  verb = add_verb(cli, "warmup", "the shortest warm-up behind which a job keeps its tolerance (docs/warmup.md)",
+  verb = add_verb(cli, "warmup", "the shortest warm-up after which a job keeps its tolerance (docs/how-to/warmup.md)",
                   "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
   verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
   verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
@@ -470,7 +478,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--channel", warmup.channels, "displacement that counts; may be repeated [all]")->allow_extra_args(false);
   add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);
   verb->callback([&] { app::warmup(warmup); });
-  verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/placement.md)",
+  verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/how-to/placement.md)",
                   "place scenarios/fp3_spindle.yaml --count 4 --exclude table -o results/place", place);
   verb->add_option("--count", place.count, "thermometers to place, 1 to 12 [the study's, else 4]");
   verb->add_option("--region", place.regions,
@@ -494,9 +502,10 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
   add_shards(verb, place, "the work");
   verb->callback([&] { app::place(place); });
-  verb = add_verb(cli, "plan-test",
-                  "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
-                  "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
+  verb =
+      add_verb(cli, "plan-test",
+               "before anything is measured: the test after which most faults would be named (docs/how-to/test_planning.md)",
+               "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
   verb->add_option("--interval", plan_test.interval,
@@ -510,7 +519,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
-  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")
+  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/how-to/schedule.md)")
       ->required();
   verb->add_option("--policy", schedule.policy,
                    "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
@@ -551,9 +560,9 @@ int app::command_line(int argc, const char* const* argv) {
                    "a file models/NAME.json that `validate` has written, or modes; through the frame modes, observer, "
                    "regression")
       ->required();
-  verb->add_option(
-          "--through", compensate.through,
-          "injector (docs/injector.md), schedule, frame (docs/table.md), or none: the correction as `validate` judges it")
+  verb->add_option("--through", compensate.through,
+                   "injector (docs/how-to/injector.md), schedule, frame (docs/how-to/table.md), or none: the correction as "
+                   "`validate` judges it")
       ->required()
       ->check(CLI::IsMember({"none", "injector", "schedule", "frame"}));
   verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
@@ -566,7 +575,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
                   "calibrate scenarios/fp3_spindle.yaml --measured scenarios/records/good.csv -o results/calibration",
                   calibrate);
-  verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")
+  verb->add_option("--measured", calibrate.measured, "record CSV (docs/reference/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
   verb->callback([&] { app::calibrate(calibrate); });
@@ -574,7 +583,7 @@ int app::command_line(int argc, const char* const* argv) {
                   "diagnose scenarios/fp3_spindle.yaml --measured scenarios/records/monday.csv --measured "
                   "scenarios/records/tuesday.csv -o results/diagnosis",
                   diagnose);
-  verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
+  verb->add_option("--measured", diagnose.measured, "record CSV (docs/reference/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
   verb->add_flag("--causes-only", diagnose.causes_only,
@@ -583,7 +592,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   verb->callback([&] { app::diagnose(diagnose); });
   verb = add_verb(
-      cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
+      cli, "sweep", "many variants of one scenario, one table (docs/how-to/sweep.md)",
       "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 1/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --shard 2/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --merge -o results/shards",
@@ -607,8 +616,9 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("what", schema.what, "scenario; sweep: its study; diagnosis or calibration: their JSON")
       ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
-  verb->add_flag("--markdown", schema.markdown,
-                 "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
+  verb->add_flag(
+      "--markdown", schema.markdown,
+      "as tables, which docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 

@@ -57,7 +57,7 @@ void require_inputs(const Scenario& scenario, const DeployedPredictor& d, const 
     const std::string unit = is_temperature ? "degC" : input.name == "speed" ? "rpm" : input.unit;
     if (input.unit != unit)
       throw InputError(
-          fmt::format("{}: it reads '{}' in {}, which {} tells in {}", path, input.name, input.unit, scenario.path, unit));
+          fmt::format("{}: it reads '{}' in {}, but {} gives it in {}", path, input.name, input.unit, scenario.path, unit));
   }
 }
 
@@ -108,15 +108,15 @@ void require_continues(const Scenario& scenario, const CompensateOptions& option
 /// What the injector wants, before any work.
 void require_axis(const Scenario& scenario, const std::string& target) {
   if (!scenario.axis_loop) {
-    throw InputError(
-        scenario.study->where,
-        "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
+    throw InputError(scenario.study->where,
+                     "--through injector requires the block `axis_loop`, which describes encoder, injector and servo "
+                     "(docs/how-to/injector.md)");
   }
   if (target != scenario.axis_loop->displacement)
-    throw InputError(scenario.axis_loop->where,
-                     fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
-                                 "another --model",
-                                 scenario.axis_loop->displacement, target, target));
+    throw InputError(
+        scenario.axis_loop->where,
+        fmt::format("the axis corrects '{}', but the predictor gives '{}'; set `displacement: {}`, or take another --model",
+                    scenario.axis_loop->displacement, target, target));
 }
 
 std::string corrected_csv(const studies::CorrectionStudy& o, const std::vector<std::string>& comments) {
@@ -144,7 +144,8 @@ std::string frame_csv(const studies::FrameStudy& study) {
 }
 
 void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
-  if (!scenario.table) throw InputError(scenario.machine->where, "--through frame wants the block `table` (docs/table.md)");
+  if (!scenario.table)
+    throw InputError(scenario.machine->where, "--through frame requires the block `table` (docs/how-to/table.md)");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::FrameStudy study = studies::correct_through_frame(scenario, options.model, progress.listener());
@@ -157,12 +158,13 @@ void require_options_that_go_together(const CompensateOptions& options) {
   const bool is_measured = !options.measured.empty(), through_frame = options.through == "frame";
   if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
     throw InputError(
-        "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
-  if (!options.after.empty() && !is_measured) throw InputError("--after goes with --measured, the record that continues it");
+        "--measured is allowed only with --through none and a predictor's file, and without --cyclogram: a record says what "
+        "happened");
+  if (!options.after.empty() && !is_measured) throw InputError("--after requires --measured, the record that continues it");
   const auto& frame_models = studies::kFrameModels;
   if (through_frame && std::find(frame_models.begin(), frame_models.end(), options.model) == frame_models.end())
     throw InputError(
-        fmt::format("--model {}: through the frame go {}; a table has six errors and more, and a model.json one",
+        fmt::format("--model {}: --through frame allows only {}; a table has six errors and more, and a model.json one",
                     options.model, fmt::join(frame_models, ", ")));
 }
 

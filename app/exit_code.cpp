@@ -52,7 +52,7 @@ ExitCode exit_code_of(const std::exception_ptr& failure) {
     say("error: a file or folder cannot be used: ", e.what());
     return kWrongInput;
   } catch (const std::system_error& e) {
-    say("error: the system cannot do what is wanted: ", e.what());
+    say("error: the system cannot do what the program asks of it: ", e.what());
     return kWrongInput;
   } catch (const std::exception& e) {
     say("internal error: ", e.what());

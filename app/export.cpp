@@ -101,8 +101,8 @@ fs::path target_of(const ExportOptions& options, const std::string& name) {
   const fs::path target =
       options.out.empty() ? fs::path("results") / (output::model_identifier(name) + ".fmu") : fs::path(options.out);
   if (target.extension() != ".fmu")
-    throw InputError(fmt::format("-o '{}': an FMU is one file; a name that ends with .fmu is wanted", target.string()));
-  if (fs::is_directory(target)) throw InputError(fmt::format("-o '{}' is a folder; a file is wanted", target.string()));
+    throw InputError(fmt::format("-o '{}': an FMU is one file; its name must end with .fmu", target.string()));
+  if (fs::is_directory(target)) throw InputError(fmt::format("-o '{}' is a folder; it must be a file", target.string()));
   std::error_code failed;
   if (target.has_parent_path()) fs::create_directories(target.parent_path(), failed);
   if (failed) throw InputError(fmt::format("-o '{}': {}", target.string(), failed.message()));
@@ -112,12 +112,12 @@ fs::path target_of(const ExportOptions& options, const std::string& name) {
 }  // namespace
 
 void export_model(const ExportOptions& options) {
-  if (!options.fmu) throw InputError("export: say what is wanted: --fmu, a functional mock-up unit (FMI)");
+  if (!options.fmu) throw InputError("export: no format is given; write --fmu for a functional mock-up unit (FMI)");
   const bool of_observer = options.of == "observer";
   if (of_observer == options.model.empty())
     throw InputError(of_observer
-                         ? "--of observer wants --model FILE, an observer as `validate` writes it (models/observer.json)"
-                         : "--model names the file of an observer; it goes with --of observer");
+                         ? "--of observer requires --model FILE, an observer as `validate` writes it (models/observer.json)"
+                         : "--model names the file of an observer; it requires --of observer");
   scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "export");
   output::require_exportable(scenario);

@@ -50,7 +50,7 @@ std::optional<double> quantity(const char* option, const std::string& text, cons
   if (text.empty()) return std::nullopt;
   const double value = option_quantity(option, text, unit);
   if (value > 0.0 && std::isfinite(value)) return value;
-  throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
+  throw InputError(fmt::format("{} '{}' must be above 0", option, text));
 }
 
 double seconds_since(Clock::time_point then) {
@@ -83,9 +83,10 @@ std::optional<ColumnMap> columns_of(const std::string& path) {
   if (path.empty()) return std::nullopt;
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
   if (!scenario.columns && scenario.topics.empty())
-    throw InputError(fmt::format(
-        "--columns {}: it has neither a key `columns` (docs/record.md), which says what the columns are, nor `topics`",
-        path));
+    throw InputError(
+        fmt::format("--columns {}: it has neither a key `columns` (docs/reference/record.md), which says what the columns "
+                    "are, nor `topics`",
+                    path));
   return scenario.columns;
 }
 
@@ -153,7 +154,7 @@ class Following {
     if (!options_.mtconnect.empty()) {
       if (!makes_rows)
         throw InputError(
-            "--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name, or `topics` in the "
+            "--mtconnect requires --topic CHANNEL=ITEM for each channel, with a data item's id or name, or `topics` in the "
             "scenario");
       const auto say = [where = options_.mtconnect](const std::string& words) {
         (void)std::fputs(fmt::format("{}: {}\n", where, words).c_str(), stderr);
@@ -170,7 +171,7 @@ class Following {
     if (!options_.sparkplug.empty()) node.emplace(follow::read_sparkplug_address(options_.sparkplug));
     if (node ? !makes_rows : makes_rows != options_.from.empty())
       throw InputError(
-          "--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel, or --sparkplug "
+          "--mqtt requires --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel, or --sparkplug "
           "GROUP/NODE with --topic CHANNEL=METRIC for each channel; a scenario's key `topics` says the same");
     std::vector<std::string> topics;
     for (const follow::ChannelOrigin& o : origins) topics.push_back(o.from);
@@ -244,7 +245,8 @@ class Following {
       if (!why.empty() && !link_)
         throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
       if (!why.empty()) {  // whoever may write to the topic has written it, and the source of the rows may write yet
-        (void)std::fputs(fmt::format("{}: {}; a header or a JSON row is waited for\n", options_.from, why).c_str(), stderr);
+        (void)std::fputs(fmt::format("{}: {}; `follow` waits for a header or a JSON row\n", options_.from, why).c_str(),
+                         stderr);
         ++n_before_header_;
       }
       return false;
@@ -299,10 +301,12 @@ class Following {
     if (n_before_header_ > 0)
       (void)std::fputs(fmt::format("follow: {} lines before the header could not be read\n", n_before_header_).c_str(),
                        stderr);
-    if (n_unheard_ > 0) (void)std::fputs(fmt::format("follow: {} lines found no broker\n", n_unheard_).c_str(), stderr);
+    if (n_unheard_ > 0)
+      (void)std::fputs(
+          fmt::format("follow: {} lines could not be sent, because no broker was connected\n", n_unheard_).c_str(), stderr);
     if (link_ && link_->n_lost() > 0)
-      (void)std::fputs(fmt::format("follow: {} messages came faster than they could be taken\n", link_->n_lost()).c_str(),
-                       stderr);
+      (void)std::fputs(
+          fmt::format("follow: {} messages came faster than they could be processed\n", link_->n_lost()).c_str(), stderr);
   }
 
   const FollowVerbOptions& options_;
@@ -329,7 +333,7 @@ namespace {
 void calibrate_watch(const FollowVerbOptions& options) {
   const std::optional<double> top_rpm = quantity("--top-speed", options.top_speed, "rpm");
   if (!top_rpm)
-    throw InputError("--calibrate-watch wants --top-speed, such as '2500 rpm': the speeds that the machine works at");
+    throw InputError("--calibrate-watch requires --top-speed, such as '2500 rpm': the speeds that the machine works at");
   if (options.models.size() != 1) throw InputError("--calibrate-watch: limits are those of one observer; name one file");
   const std::string& path = options.models.front();
   const output::PredictorFile file = output::read_predictor(path);
@@ -354,10 +358,10 @@ void calibrate_watch(const FollowVerbOptions& options) {
 
 void follow_stream(const FollowVerbOptions& options) {
   if (!options.topics.empty() && options.mqtt.empty() && options.mtconnect.empty())
-    throw InputError("--topic says where a channel's numbers come from, which wants --mqtt HOST or --mtconnect ADDRESS");
+    throw InputError("--topic names where a channel's numbers come from, which requires --mqtt HOST or --mtconnect ADDRESS");
   if (!options.calibrate_watch.empty()) return calibrate_watch(options);
-  if (options.pace < 0.0) throw InputError("--pace: 0 (as fast as it goes) or more is wanted");
-  if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace goes with --replay FILE");
+  if (options.pace < 0.0) throw InputError("--pace must be 0 (as fast as it goes) or more");
+  if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace requires --replay FILE");
   if (options.serve) (void)page_address(options);  // before a machine is meshed
   Following(options).run();
 }

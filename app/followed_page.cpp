@@ -54,7 +54,7 @@ std::string followed_page(const FollowVerbOptions& options, const follow::Sessio
   for (const auto& m : session.models()) names.push_back(std::filesystem::path(m.path).filename().string());
   output::LivePage page{.name = fmt::format("{}", fmt::join(names, ", ")),
                         .subtitle = "Beside the running machine.",
-                        .made_by = fmt::format("Driftwright {}, docs/follow.md.", kVersion)};
+                        .made_by = fmt::format("Driftwright {}, docs/how-to/follow.md.", kVersion)};
   for (const auto& m : session.models()) {
     if (!m.followed->model() || page.surface || page.network) continue;
     add_picture(page, m.path, *m.followed->model());

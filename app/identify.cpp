@@ -69,10 +69,10 @@ void identify(const IdentifyOptions& asked) {
       identification::identify(records, {options.ambient, options.drives}, progress.listener());
   progress.begin("writing");
   std::vector<std::string> head = {
-      fmt::format("{}: a network from records alone, by `driftwright identify` (docs/identification.md)", name)};
+      fmt::format("{}: a network from records alone, by `driftwright identify` (docs/how-to/identification.md)", name)};
   for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
   head.emplace_back(
-      "Bodies stand side by side; names say what warms them, not what they are. Rename them, or put in what you know.");
+      "Bodies lie side by side; their names say what warms them, not what they are. Rename them, or put in what you know.");
   head.emplace_back("");
   for (std::size_t i = 0; i < records.size(); ++i)
     folder.write_text(files[i], record_csv(identification::run_record(records[i], network.roles),

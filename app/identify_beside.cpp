@@ -26,7 +26,7 @@ void identify_beside(const IdentifyOptions& asked) {
       identification::extend(beside.measured, beside.roles, beside.simulated, progress.listener());
   progress.begin("writing");
   std::vector<std::string> head = {
-      fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/identification.md)",
+      fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/how-to/identification.md)",
                   clean_name(options.prior))};
   for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
   head.emplace_back("");

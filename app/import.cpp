@@ -15,12 +15,13 @@ void import_file(const ImportOptions& options) {
   const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
   output::ResultsFolder folder = open_results(options, file_name(stem, ""));
   Progress progress(options.quiet);
-  // Named after the logger's file, so that several imports can be told apart where each record goes by its name.
+  // Named after the logger's file, so that several imports can be distinguished where each record goes by its name.
   folder.write_text(file_name(stem, ".csv"), record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
   folder.write_text(
       "columns.yaml",
-      fmt::format("# How {} was read; the same key in a scenario makes every verb read such files (docs/record.md).\n{}",
-                  stem, yaml_text(import.map)));
+      fmt::format(
+          "# How {} was read; the same key in a scenario makes every verb read such files (docs/reference/record.md).\n{}",
+          stem, yaml_text(import.map)));
   finish(findings::document_of(import, folder.made_by()), folder, progress, options);
 }
 

@@ -76,7 +76,7 @@ void init(const InitOptions& options) {
   if (!is_name(name))
     throw InputError(fmt::format("'{}' names no scenario; letters, digits, '_' and '-' are allowed, 200 at most", name));
   const bool is_lumped = options.from == "lumped";
-  if (is_lumped && !options.units.empty()) throw InputError("--units goes with a mesh file");
+  if (is_lumped && !options.units.empty()) throw InputError("--units is allowed only with a mesh file");
   NewFolder folder(target);
   Progress progress(false);
   const std::string file = name + ".yaml";
@@ -102,7 +102,8 @@ void init(const InitOptions& options) {
   folder.keep();
   for (const std::string& remark : remarks) fmt::print(stderr, "note: {}\n", remark);
   if (!wrong.empty())
-    throw InputError(fmt::format("{} is written, and wants your hand before it runs: {}", (target / file).string(), wrong));
+    throw InputError(
+        fmt::format("{} is written, and needs changes by hand before it runs: {}", (target / file).string(), wrong));
   if (!is_lumped) fmt::print("{} shows which region is which.\n", (target / kPicture).string());
   fmt::print("{} is written. What it says is a guess where a comment says so.\n  driftwright run {}\n",
              (target / file).string(), (target / file).string());

@@ -39,7 +39,7 @@ double positive_quantity(const std::string& option, const std::string& text, con
   if (text.empty()) return 0.0;
   const double value = option_quantity(option, text, unit);
   if (value > 0.0) return value;
-  throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
+  throw InputError(fmt::format("{} '{}' must be above 0", option, text));
 }
 
 constexpr double kMostRowsBehind = 1e7;   // the end of the input
@@ -82,8 +82,7 @@ class RowInjector {
     if (n_rows > kMostRowsBehind)
       throw InputError(
           fmt::format("--separation {}: {} edges still wait when the input ends, which would take {:.3g} rows more; at most "
-                      "{:.0e} are written behind "
-                      "the end. The rows hold edges that are closer than the separation allows",
+                      "{:.0e} are written after the end. The rows hold edges that are closer than the separation allows",
                       separation_, std::abs(timed_->waiting()), n_rows, kMostRowsBehind));
     while (timed_->waiting() != 0 && edges_.empty()) {
       timed_->advance(++n_rows_, edges_);
@@ -143,7 +142,7 @@ void require_own_files(const InjectOptions& options) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = i + 1; j < files.size(); ++j) {
       if (!files[i].second->empty() && !files[j].second->empty() && same_file(*files[i].second, *files[j].second))
-        throw InputError(fmt::format("{} {} and {} {} are the same file; each wants its own", files[i].first,
+        throw InputError(fmt::format("{} {} and {} {} are the same file; each requires a file of its own", files[i].first,
                                      *files[i].second, files[j].first, *files[j].second));
     }
   }
@@ -269,13 +268,13 @@ class Filter {
     const std::string how_much =
         injector_.inserted() == 0 ? "nothing was inserted" : fmt::format("{} of the counts wished are missing", missing);
     if (injector_.room() > 0 && longest_ < injector_.room()) {
-      tell(
-          fmt::format("inject: {}: an insertion wants {} rows {}, and the longest stretch had {}; sample the encoder more "
-                      "often, drive more slowly, or lower "
-                      "--separation\n",
-                      how_much, injector_.room(), where, longest_));
+      tell(fmt::format(
+          "inject: {}: an insertion requires {} rows {}, but the longest stretch had {}; sample the encoder more "
+          "often, drive more slowly, or lower "
+          "--separation\n",
+          how_much, injector_.room(), where, longest_));
     } else if (injector_.inserted() == 0) {
-      tell(fmt::format("inject: {}: in no row {} was there room before the input ended\n", how_much, where));
+      tell(fmt::format("inject: {}: no row {} left room for an insertion before the input ended\n", how_much, where));
     }
   }
 
@@ -327,12 +326,12 @@ class Filter {
       if (!hal) throw InputError(fmt::format("{}: cannot be written", options_.hal));
     }
     if (n_bad_rows_ > 0 || n_bad_corrections_ > 0)
-      tell(fmt::format("inject: {} rows and {} corrections were none; {}\n", n_bad_rows_, n_bad_corrections_,
+      tell(fmt::format("inject: {} rows and {} corrections were invalid; {}\n", n_bad_rows_, n_bad_corrections_,
                        options_.on_fault == "bypass" ? "the correction was withdrawn until the next good one"
-                                                     : "what was before them held"));
+                                                     : "the value before them held"));
     if (encoder.n_jumps() > 0)
       tell(fmt::format("inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
-                       rules_.bypass ? "" : "; the correction waited a period behind each"));
+                       rules_.bypass ? "" : "; the correction waited a period after each"));
     if (injector_.n_too_fast() > 0)
       tell(fmt::format("inject: {} edges of the encoder came closer than {} rows and were held back\n",
                        injector_.n_too_fast(), options_.separation));

@@ -72,10 +72,10 @@ void list_scenarios(const std::string& folder) {
 
 void list(const ListOptions& options) {
   if (options.markdown && options.what != "effects" && options.what != "ranges")
-    throw InputError("--markdown goes with effects and ranges; the others are plain text");
+    throw InputError("--markdown is allowed only for effects and ranges; the others are plain text");
   const bool of_a_scenario = options.what == "joints" || options.what == "cyclograms";
   if (of_a_scenario && options.of.empty())
-    throw InputError(fmt::format("of which scenario? driftwright list {} SCENARIO", options.what));
+    throw InputError(fmt::format("a scenario is required: driftwright list {} SCENARIO", options.what));
   if (!options.of.empty() && !of_a_scenario && options.what != "scenarios")
     throw InputError(fmt::format("'{}' is not looked at: {} are the same for all scenarios", options.of, options.what));
   const output::Provenance made_by{kVersion, options.of};

@@ -27,7 +27,8 @@ mesh::Mesh read_file(const MeshOptions& options) {
 scenarios::Geometry geometry_of(const MeshOptions& options, bool is_file) {
   if (is_file) return {clean_name(std::filesystem::path(options.scenario).stem().string()), {}};
   if (!options.units.empty())
-    throw InputError("--units goes with a mesh file; a scenario says the unit of its mesh itself (`machine: units`)");
+    throw InputError(
+        "--units is allowed only with a mesh file; a scenario says the unit of its mesh itself (`machine: units`)");
   scenarios::Geometry geometry = scenarios::read_geometry(options.scenario);
   if (std::holds_alternative<scenarios::LumpedMachine>(geometry.machine.mesh))
     throw InputError(geometry.machine.where, "a lumped machine has no mesh");

@@ -32,7 +32,7 @@ namespace {
 void refuse_unusual(const std::string& path, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
   throw InputError(
-      fmt::format("{}: --strict refuses what no machine has or does\n  {}", clean_name(path), fmt::join(warnings, "\n  ")));
+      fmt::format("{}: --strict refuses implausible values\n  {}", clean_name(path), fmt::join(warnings, "\n  ")));
 }
 
 }  // namespace

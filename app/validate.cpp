@@ -62,7 +62,7 @@ void validate(const RecordOptions& options) {
   const bool on_records = !options.train.empty() || !options.test.empty();
   for (const auto& [list, name] : {std::pair{&options.train, "--train"}, std::pair{&options.test, "--test"}}) {
     if (on_records && list->empty())
-      throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
+      throw InputError(fmt::format("`validate` on records requires {} too, at least once", name));
   }
   scenarios::Scenario scenario = read_scenario(options);
   if (!options.target.empty()) {
@@ -79,8 +79,8 @@ void validate(const RecordOptions& options) {
     if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "validate");
     if (!scenario.programme && !scenario.validation) {
       throw InputError(fmt::format(
-          "{}: `validate` wants records (--train, --test), or the key `validation` or `programme` in the scenario "
-          "(docs/validation.md, docs/prediction.md)",
+          "{}: `validate` requires records (--train, --test), or the key `validation` or `programme` in the scenario "
+          "(docs/how-to/validation.md, docs/how-to/prediction.md)",
           scenario.path));
     }
     return validate_machine(scenario, options);

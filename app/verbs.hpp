@@ -160,14 +160,15 @@ void diagnose(const DiagnoseOptions& options);
 struct ListOptions {
   std::string what = "effects";  ///< materials, scenarios, joints, cyclograms
   std::string of;                ///< scenario, of joints and cyclograms; folder, of scenarios; empty: scenarios/
-  bool markdown = false;         ///< effects with places, keys and laws, as docs/effects.md has them
+  bool markdown = false;         ///< effects with places, keys and laws, as docs/reference/effects.md has them
 };
 /// Prints what there is to choose from.
 void list(const ListOptions& options);
 
 struct SchemaOptions {
   std::string what = "scenario";  ///< or "sweep", "diagnosis", "calibration"
-  bool markdown = false;          ///< tables, as docs/scenario.md, docs/sweep.md and docs/diagnosis.md have them
+  bool markdown =
+      false;  ///< tables, as docs/reference/scenario.md, docs/reference/sweep.md and docs/reference/diagnosis.md have them
 };
 /// Prints what a file may hold, as JSON Schema.
 void schema(const SchemaOptions& options);

@@ -29,9 +29,10 @@ Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
   if (is_known || path.extension() == ".csv" || !std::filesystem::is_regular_file(path))
     return studies::named_cyclogram(scenario, then);
   if (!scenario.schedule)
-    throw InputError(fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
-                                 "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
-                                 then));
+    throw InputError(
+        fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
+                    "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
+                    then));
   const scenarios::ScheduleSettings& settings = *scenario.schedule;
   Cyclogram job = scenarios::cyclogram_of(read_nc_program(then, settings.nc), path.stem().string(), settings.resolution_s,
                                           settings.cutting_power_W);
@@ -72,7 +73,7 @@ void warmup(const WarmUpVerbOptions& options) {
   }
   folder.write_text(
       "record.csv",
-      record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
+      record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} after its {}", job.name, what))));
   output::Document document = findings::document_of(plan, scenario, job, options.then, folder.made_by());
   findings::add_plausibility(document.body, scenario, scenarios::unusual_values(plan.job_at_once));
   finish(document, folder, progress, options);

@@ -23,7 +23,7 @@ Json parse_json(std::string_view text) {
     const std::string_view before = text.substr(0, e.byte > 0 ? e.byte - 1 : 0);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-    throw InputError(fmt::format("this is no JSON from line {}, column {} on", line, column));
+    throw InputError(fmt::format("this is not valid JSON from line {}, column {} on", line, column));
   } catch (const Json::out_of_range&) {
     throw InputError("a number in it is beyond 1.8e308, which is the most");
   }

@@ -118,7 +118,7 @@ ConfigSteps find_address(const ConfigNode& root, const std::string& address, con
     if (rest.starts_with('[')) {
       const std::size_t end = rest.find(']');
       if (end == std::string::npos || end == 1)
-        walk.fail(fmt::format("'{}' wants a number or name between [ and ]", address));
+        walk.fail(fmt::format("'{}': a number or a name is required between [ and ]", address));
       if (!walk.node->is_list()) walk.fail(fmt::format("{} is no list", walk.here()));
       const std::string inside = rest.substr(1, end - 1);
       const bool is_number = inside.find_first_not_of("0123456789") == std::string::npos;
@@ -134,9 +134,9 @@ ConfigSteps find_address(const ConfigNode& root, const std::string& address, con
     walk.node = walk.node->items[steps.back()].get();
     if (rest.starts_with('.')) {
       rest.erase(0, 1);
-      if (rest.empty() || rest[0] == '[') walk.fail(fmt::format("'{}': a key is wanted after each dot", address));
+      if (rest.empty() || rest[0] == '[') walk.fail(fmt::format("'{}': a key is required after each dot", address));
     } else if (!rest.empty() && rest[0] != '[') {
-      walk.fail(fmt::format("'{}': a dot is wanted before '{}'", address, rest));
+      walk.fail(fmt::format("'{}': a dot is required before '{}'", address, rest));
     }
   }
   return steps;

@@ -43,7 +43,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 namespace {
 
 std::string not_known(const std::string& word, const std::vector<std::string>& allowed) {
-  return fmt::format("'{}' is not known here; one of {} is wanted.{}", word, fmt::join(allowed, ", "),
+  return fmt::format("'{}' is not known here; write one of {} instead.{}", word, fmt::join(allowed, ", "),
                      did_you_mean(word, allowed));
 }
 
@@ -55,7 +55,7 @@ ConfigMap ConfigMap::read_file(const std::string& path) {
 
 ConfigMap ConfigMap::of_tree(ConfigNodePtr root) {
   if (!root->is_map()) {
-    throw InputError(fmt::format("{}: the file holds no map of keys; a scenario is wanted", root->source->path));
+    throw InputError(fmt::format("{}: the file holds no map of keys, but must be a scenario", root->source->path));
   }
   std::shared_ptr<const ConfigSource> source = root->source;
   return {std::move(source), std::move(root), ""};
@@ -89,13 +89,14 @@ ConfigMap ConfigMap::described_by(const std::vector<schema::Map>& descriptions) 
     if (is_there && (d.when_word.empty() || text(d.when_key) == d.when_word)) {
       for (const schema::Map& other : descriptions) {  // behind it: two forms at once
         if (&other > &d && other.when_word.empty() && holds(other.when_key) && !d.find(other.when_key))
-          fail(other.when_key, fmt::format("either `{}` or `{}` is wanted, not both", d.when_key, other.when_key));
+          fail(other.when_key,
+               fmt::format("`{}` and `{}` exclude each other; write only one of them", d.when_key, other.when_key));
       }
       return described_by(d);
     }
     (d.when_word.empty() ? keys : words).push_back(d.when_word.empty() ? d.when_key : d.when_word);
   }
-  if (words.empty()) fail("", fmt::format("a map with one of the keys {} is wanted", fmt::join(keys, ", ")));
+  if (words.empty()) fail("", fmt::format("this must be a map with one of the keys {}", fmt::join(keys, ", ")));
   const std::string& key = descriptions.back().when_key;
   (void)choice(key, words);
   throw std::logic_error("no description is chosen by " + key);
@@ -217,7 +218,7 @@ const ConfigNode& ConfigMap::child(const std::string& key) const {
 }
 
 std::string ConfigMap::scalar(const ConfigNode& node, const std::string& key) const {
-  if (!node.is_scalar()) throw InputError(node.where(path_of(key)), "a single value is wanted here, not a list or a map");
+  if (!node.is_scalar()) throw InputError(node.where(path_of(key)), "this must be a single value, not a list or a map");
   return node.text;
 }
 
@@ -280,10 +281,10 @@ std::string ConfigMap::choice(const std::string& key, const std::vector<std::str
 
 std::vector<std::string> ConfigMap::texts(const std::string& key) const {
   const ConfigNode& node = child(key);
-  if (!node.is_list()) fail(key, "a list [a, b, ...] is wanted");
+  if (!node.is_list()) fail(key, "this must be a list [a, b, ...]");
   const schema::Value& as = way(key, schema::Value::Kind::kList);
   if (node.items.size() < as.least)
-    fail(key, fmt::format("the list has {} entries; at least {} are wanted", node.items.size(), as.least));
+    fail(key, fmt::format("the list has {} entries; at least {} are required", node.items.size(), as.least));
   std::vector<std::string> values;
   const std::vector<std::string>& allowed = as.items.front().options;
   for (const ConfigNodePtr& item : node.items) {
@@ -309,7 +310,7 @@ int ConfigMap::integer(const std::string& key) const {
     used = 0;
   }
   if (used != value.size() || number < as.low || number > as.high)
-    fail(key, fmt::format("'{}' is no whole number from {:.0f} to {:.0f}", value, as.low, as.high));
+    fail(key, fmt::format("'{}' must be a whole number from {:.0f} to {:.0f}", value, as.low, as.high));
   return number;
 }
 
@@ -347,7 +348,7 @@ Eigen::Vector3d ConfigMap::vector3(const std::string& key) const {
   const std::string& unit = as.items.front().unit;
   const ConfigNode& node = child(key);
   if (!node.is_list() || node.items.size() != 3) {
-    fail(key, fmt::format("three quantities in {} are wanted, such as [10 {}, 0 {}, 0 {}]", unit, unit, unit, unit));
+    fail(key, fmt::format("these must be three quantities in {}, such as [10 {}, 0 {}, 0 {}]", unit, unit, unit, unit));
   }
   Eigen::Vector3d v;
   for (std::size_t i = 0; i < 3; ++i) v[static_cast<Eigen::Index>(i)] = read_quantity(*node.items[i], key, as.items[i]);
@@ -358,7 +359,7 @@ std::vector<double> ConfigMap::quantities(const std::string& key) const {
   const schema::Value& as = way(key, schema::Value::Kind::kList);
   const ConfigNode& node = child(key);
   if (!node.is_list() || node.items.size() < as.least) {
-    fail(key, fmt::format("a list of quantities in {} is wanted, at least {}", as.items.front().unit,
+    fail(key, fmt::format("this must be a list of quantities in {}, at least {}", as.items.front().unit,
                           as.least == 1 ? "one" : std::to_string(as.least)));
   }
   std::vector<double> values;
@@ -374,7 +375,7 @@ std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const s
   const ConfigNode& node = child(key);
   std::vector<std::string> units;
   for (const schema::Value& c : columns) units.push_back(c.unit);
-  const std::string wanted = fmt::format("rows of [{}] are wanted", fmt::join(units, ", "));
+  const std::string wanted = fmt::format("this must be rows of [{}]", fmt::join(units, ", "));
   if (!node.is_list() || node.items.size() == 0) fail(key, wanted + ", at least one");
   std::vector<std::vector<double>> rows;
   for (const ConfigNodePtr& row : node.items) {
@@ -397,7 +398,7 @@ ConfigMap ConfigMap::below(const std::string& key, const ConfigNodePtr& node, st
 
 ConfigMap ConfigMap::map(const std::string& key) const {
   const ConfigNode& node = child(key);
-  if (!node.is_map()) fail(key, "a map of keys is wanted");
+  if (!node.is_map()) fail(key, "this must be a map of keys");
   return below(key, value(key), path_of(key));
 }
 
@@ -410,11 +411,11 @@ std::vector<ConfigMap> ConfigMap::maps(const std::string& key) const {
   std::vector<ConfigMap> maps;
   if (!has(key)) return maps;
   const ConfigNode& node = child(key);
-  if (!node.is_list()) fail(key, "a list of maps is wanted");
+  if (!node.is_list()) fail(key, "this must be a list of maps");
   if (const std::size_t least = description_ ? way(key, schema::Value::Kind::kList).least : 0; node.items.size() < least)
-    fail(key, fmt::format("the list has {} entries; at least {} are wanted", node.items.size(), least));
+    fail(key, fmt::format("the list has {} entries; at least {} are required", node.items.size(), least));
   for (std::size_t i = 0; i < node.items.size(); ++i) {
-    if (!node.items[i]->is_map()) throw InputError(node.items[i]->where(path_of(key)), "a map of keys is wanted");
+    if (!node.items[i]->is_map()) throw InputError(node.items[i]->where(path_of(key)), "this must be a map of keys");
     maps.push_back(below(key, node.items[i], fmt::format("{}[{}]", path_of(key), i)));
   }
   return maps;

@@ -40,7 +40,7 @@ class ConfigMap {
   [[nodiscard]] Where where() const;
   /// The file of the whole tree, which paths in it are relative to; values put in from elsewhere tell their own in where().
   [[nodiscard]] const std::string& file() const;
-  /// The value of a key as it stands. @throws InputError  when the key is missing
+  /// The value of a key as it is. @throws InputError  when the key is missing
   [[nodiscard]] const ConfigNodePtr& value(const std::string& key) const;
 
   [[nodiscard]] std::string text(const std::string& key) const;

@@ -49,7 +49,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchors_.find(anchor);
     if (known == anchors_.end())
-      throw InputError(where_in(*source_, mark.line + 1, mark.column + 1, ""), "an alias stands inside its own anchor");
+      throw InputError(where_in(*source_, mark.line + 1, mark.column + 1, ""), "an alias is used inside its own anchor");
     add(known->second.node, 0, known->second.extent);
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string& value) override {
@@ -99,7 +99,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (extent.size > kMostNodes)
       throw InputError(
           where_in(*source_, node.line, node.column, ""),
-          fmt::format("with what its aliases stand for, this holds more than {} values, which is the most", kMostNodes));
+          fmt::format("with its aliases written out, this holds more than {} values, which is the most", kMostNodes));
     if (extent.depth > kDeepest) throw InputError(where_in(*source_, node.line, node.column, ""), too_deep());
   }
 
@@ -161,7 +161,7 @@ ConfigNodePtr read_config_tree(const std::string& path) {
   for (const char* geometry : {".step", ".stp", ".msh", ".inp", ".vtu"}) {
     if (extension == geometry)
       throw InputError(fmt::format(
-          "{}: this is a machine's geometry, and a scenario is wanted; `driftwright init NAME --from {}` makes one of it",
+          "{}: this is a machine's geometry, but must be a scenario; `driftwright init NAME --from {}` makes one of it",
           path, path));
   }
   return read_config_text(read_text_file(path), path);
@@ -188,7 +188,7 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
       const std::size_t tab = at.find('\t');
       if (tab < at.find_first_not_of(" \t"))
         throw InputError(where_in(*source, n + 1, static_cast<int>(tab) + 1, ""),
-                         "a tab stands in front of this line; YAML is indented by blanks alone");
+                         "this line begins with a tab; YAML allows only blanks as indentation");
     }
     throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), "this is not valid YAML: " + e.msg);
   } catch (const YAML::Exception& e) {

@@ -195,7 +195,7 @@ double parse_number(const std::string& text, char decimal) {
   }
   if (n_points > 1 || n_commas > 1 || (n_points == 1 && n_commas == 1))
     refuse("has more than one point or comma; write numbers without thousands separators");
-  if (decimal == '.' && n_commas == 1) refuse("has a decimal comma; `decimal: \",\"` is wanted in `columns`");
+  if (decimal == '.' && n_commas == 1) refuse("has a decimal comma; write `decimal: \",\"` in `columns`");
   if (decimal == ',' && n_points == 1) refuse("has a decimal point, and `columns` says `decimal: \",\"`");
   std::replace(number.begin(), number.end(), ',', '.');
   if (number.starts_with('+') || number.starts_with('-'))  // "+  23.4"
@@ -205,7 +205,7 @@ double parse_number(const std::string& text, char decimal) {
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error == std::errc::result_out_of_range) refuse("is out of range");
   if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value))
-    refuse("is not a finite number; if it stands for a missing reading, name it in `missing`");
+    refuse("is not a finite number; if it marks a missing reading, name it in `missing`");
   return value;
 }
 

@@ -70,7 +70,8 @@ Eigen::MatrixXd latin_hypercube(int n_samples, int n_variables, std::uint64_t se
 }
 
 double normal_quantile(double p) {
-  if (!(p > 0.0 && p < 1.0)) throw RangeError(fmt::format("no normal number has probability {:g}; 0 < p < 1 is wanted", p));
+  if (!(p > 0.0 && p < 1.0))
+    throw RangeError(fmt::format("no normal number has probability {:g}; it must be above 0 and below 1", p));
   const double q = p - 0.5;
   if (std::abs(q) <= 0.425) {
     const double r = 0.180625 - q * q;

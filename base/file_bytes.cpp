@@ -17,7 +17,8 @@ constexpr std::streamsize kMostOfDevice = 1 << 20;  // more than anybody types a
 std::string read_device(std::istream& device, const std::filesystem::path& path) {
   std::string bytes(static_cast<std::size_t>(kMostOfDevice), '\0');
   device.read(bytes.data(), kMostOfDevice);
-  if (device.gcount() == kMostOfDevice) throw InputError(fmt::format("{}: is a device that gives bytes without end; a file is wanted", path.string()));
+  if (device.gcount() == kMostOfDevice)
+    throw InputError(fmt::format("{}: this is a device that gives bytes without end; it must be a file", path.string()));
   bytes.resize(static_cast<std::size_t>(device.gcount()));
   return bytes;
 }
@@ -27,7 +28,7 @@ std::string read_device(std::istream& device, const std::filesystem::path& path)
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown))
-    throw InputError(fmt::format("{}: is a folder; a file is wanted", path.string()));
+    throw InputError(fmt::format("{}: this is a folder; it must be a file", path.string()));
   std::ifstream file(path, std::ios::binary);
   if (file && (std::filesystem::is_character_file(path, unknown) || std::filesystem::is_block_file(path, unknown)))
     return read_device(file, path);

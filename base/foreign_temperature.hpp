@@ -20,7 +20,7 @@ inline constexpr std::array<TemperatureScale, 2> kForeignScales = {{{"degF", 32.
 inline constexpr double kFarBeside_K = 25.0;  ///< over a whole record: no machine, and no model of one, is so far off
 inline constexpr double kFarBetter = 5.0;     ///< is what is left after the conversion
 
-/// Unit that temperatures under a degC header look like, or none: as they stand their median lies more than kFarBeside_K beside what is
+/// Unit that temperatures under a degC header look like, or none: as they are their median lies more than kFarBeside_K beside what is
 /// known of them, read as degF or kelvin at most 1/kFarBetter as far.
 /// @param readings  in the header's degC, NaN where missing  @param low_C, high_C  where they should lie
 [[nodiscard]] std::optional<std::string> foreign_temperature(const std::vector<double>& readings, double low_C,

@@ -75,7 +75,7 @@ std::vector<std::string> joined(const LoggerSheet& sheet, const std::vector<std:
   return stamps;
 }
 
-/// By name, or by position where the name is not there or is there twice.
+/// By name, or by position where the name does not exist or is there twice.
 ColumnPlace place(const LoggerSheet& sheet, std::size_t c) {
   const std::string& name = sheet.names[c];
   const bool by_name = !name.empty() && std::count(sheet.names.begin(), sheet.names.end(), name) == 1;
@@ -106,7 +106,8 @@ bool guess_stamps(const LoggerSheet& sheet, const GuessHints& hints, bool is_tag
     time.format = formats.front();
     time.zone = hints.zone;
     if (formats.size() > 1 && formats[0].find("%d/%m") == 0 && formats[1].find("%m/%d") == 0)
-      guessed.guesses.push_back("days and months cannot be told apart in the time; the day is taken to stand first");
+      guessed.guesses.push_back(
+          "the time does not show which number is the day and which the month; the first is taken to be the day");
     return true;
   }
   return false;
@@ -230,7 +231,8 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
   try {
     channel.unit = record_unit(channel.written_unit);
   } catch (const RangeError&) {
-    guessed.guesses.push_back(fmt::format("'{}' is left out: records have no channel for {}", header, channel.written_unit));
+    guessed.guesses.push_back(
+        fmt::format("'{}' is left out, because records have no channel for {}", header, channel.written_unit));
     return false;
   }
   if (channel.unit == "K" && are_absolute_K(cells, guessed.map.decimal)) {
@@ -240,7 +242,8 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
         fmt::format("'{}' is taken to be an absolute temperature in kelvin: 273.15 K are taken off", header));
   } else if (channel.unit == "K") {
     guessed.guesses.push_back(fmt::format(
-        "'{}' is taken to be a difference of temperatures; an absolute one wants `unit: degC, offset: -273.15 K`", header));
+        "'{}' is taken to be a difference of temperatures; for an absolute one write `unit: degC, offset: -273.15 K`",
+        header));
   }
   if (words.unit.empty())
     guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}", header,
@@ -272,7 +275,8 @@ void add_channels(const std::vector<NumberColumn>& columns, char decimal, Guesse
   }
   if (!speed)
     guessed.guesses.push_back(
-        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm (docs/record.md)");
+        "no column was taken for the spindle speed; `columns` names one as the channel speed_rpm "
+        "(docs/reference/record.md)");
 }
 
 /// @throws InputError  for a second column of times in numbers that tells others than the first: which channels go by which?
@@ -284,11 +288,11 @@ void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::
     if (sheet.names[c] != sheet.names[first] || unit_of(c).unit != unit_of(first).unit) continue;
     for (const LoggerSheet::Row& row : sheet.rows) {
       if (row[c].empty() || row[c] == row[first]) continue;
-      throw InputError(
-          fmt::format("{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
-                      "channels behind it go by it. Split the "
-                      "file into one for each time, or name in `columns` what goes by one of them (docs/record.md)",
-                      path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
+      throw InputError(fmt::format(
+          "{}: column {} '{}' is a time too, and another than that of column {} ('{}' beside '{}'): the "
+          "channels to the right of it go by it. Split the "
+          "file into one for each time, or name in `columns` what goes by one of them (docs/reference/record.md)",
+          path, c + 1, sheet.names[c], first + 1, row[c], row[first]));
     }
   }
 }
@@ -334,8 +338,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
              !guess_numbers(sheet, true, guessed, used)) {
     const std::string stamp = stamp_like_cell(sheet);
     throw InputError(fmt::format(
-        "{}: no column tells the time in a way that is known; there are '{}' in line {}{}. --interval '10 s' counts rows, "
-        "--zone Europe/Berlin tells clocks that are set, and `columns` says any other format (docs/record.md)",
+        "{}: no column holds the time in a known format; the columns are '{}' in line {}{}. --interval '10 s' counts rows, "
+        "--zone Europe/Berlin is for clocks that are set, and `columns` says any other format (docs/reference/record.md)",
         path, fmt::join(sheet.names, "', '"), header_line, stamp.empty() ? "" : fmt::format("; {}", stamp)));
   }
   std::set<std::string> missing;
@@ -356,8 +360,9 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
   if (!missing.empty())
     guessed.guesses.push_back(fmt::format("'{}' are taken to be readings that are missing", fmt::join(missing, "', '")));
   if (guessed.map.channels.empty())
-    throw InputError(
-        fmt::format("{}: no column of numbers is made out beside the time; say `columns` (docs/record.md)", path));
+    throw InputError(fmt::format(
+        "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/reference/record.md)",
+        path));
   // Names find the header in the next file of the logger, too, however long its head is; numbers of columns need the line.
   const bool by_name = std::all_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                                    [](const auto& c) { return c.column.position == 0; }) &&

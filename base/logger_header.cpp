@@ -49,8 +49,8 @@ LoggerHeader header_of(const std::string& path, const std::vector<std::string>& 
   const std::vector<ColumnPlace> places = places_of(map);
   const bool is_given = map.header == ColumnMap::Header::kAtLine;
   if (is_given && static_cast<std::size_t>(map.header_line) > lines.size())
-    throw InputError(
-        fmt::format("{}: the header is wanted in line {}; the file has {} lines", path, map.header_line, lines.size()));
+    throw InputError(fmt::format("{}: the header is expected in line {}, but the file has {} lines", path, map.header_line,
+                                 lines.size()));
   const std::size_t first = is_given ? static_cast<std::size_t>(map.header_line) - 1 : 0,
                     last = is_given ? first + 1 : std::min(kMostBeforeHeader, lines.size());
   LoggerHeader best;

@@ -54,7 +54,9 @@ char find_separator(const std::string& path, const std::vector<std::string>& lin
       if (static_cast<double>(usual_width(body, separator).second) >= share * n_filled) return separator;
     }
   }
-  throw InputError(fmt::format("{}: no rows of cells are made out; say `columns` in a scenario (docs/record.md)", path));
+  throw InputError(fmt::format(
+      "{}: no rows of cells were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)",
+      path));
 }
 
 char find_decimal(const std::vector<std::string>& lines, char separator) {
@@ -142,17 +144,20 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
     if (next >= lines.size() || is_data(cells_of(lines[next], sheet.separator), sheet.decimal)) break;
   }
   if (first >= lines.size())
-    throw InputError(fmt::format("{}: no rows of numbers are made out; say `columns` in a scenario (docs/record.md)", path));
+    throw InputError(fmt::format(
+        "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)",
+        path));
   std::vector<std::size_t> above;  // lines of cells over the rows, the nearest first
   for (std::size_t i = first; i-- > 0 && above.size() < 4;) {
     const Row row = cells_of(lines[i], sheet.separator);
     if (row.size() >= 2 && 2 * row.size() >= width && !lines[i].starts_with('#')) above.push_back(i);
   }
   if (above.empty())
-    throw InputError(fmt::format(
-        "{}: there is no line of names over the rows, which begin in line {}; say `columns` with `header_line: none` "
-        "(docs/record.md)",
-        path, first + 1));
+    throw InputError(
+        fmt::format("{}: there is no line of names over the rows, which begin in line {}; describe the file by `columns` "
+                    "with `header_line: none` "
+                    "(docs/reference/record.md)",
+                    path, first + 1));
   std::size_t header = above.front();
   if (above.size() > 1 && are_units(cells_of(lines[header], sheet.separator)) &&
       !are_units(cells_of(lines[above[1]], sheet.separator))) {

@@ -153,7 +153,7 @@ ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
   }
   if (rows.n_rows() == 0 && first_failure) throw *first_failure;
   if (rows.n_rows() < 2)
-    throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path, rows.n_rows()));
+    throw InputError(fmt::format("{}: the record has {} rows of data; at least two are required", path, rows.n_rows()));
   if (!passed_over.empty())
     rows.note(fmt::format("{}: between header and rows is passed over: {}", path, fmt::join(passed_over, "; ")));
   return rows.take();

@@ -17,7 +17,7 @@ Shard read_shard(const std::string& text) {
     const Shard shard{std::stoul(first), std::stoul(second)};
     if (shard.number >= 1 && shard.number <= shard.of) return shard;
   }
-  throw InputError(fmt::format("--shard '{}': i/n with 1 <= i <= n is wanted, such as 3/8", text));
+  throw InputError(fmt::format("--shard '{}' must be i/n with 1 <= i <= n, such as 3/8", text));
 }
 
 Pieces Pieces::from(std::size_t first) const {

@@ -63,7 +63,7 @@ bool carries_angle(const UnitPtr& unit) {
 ConverterPtr make_converter(const std::string& from, const std::string& to) {
   const UnitPtr a = parse_unit(from), b = parse_unit(to);
   if (ut_are_convertible(a.get(), b.get()) == 0 || carries_angle(a) != carries_angle(b)) {
-    throw RangeError(fmt::format("wrong unit '{}': a quantity in {} is wanted{}", from, to, meant_by(from)));
+    throw RangeError(fmt::format("wrong unit '{}': the value must be a quantity in {}{}", from, to, meant_by(from)));
   }
   return ConverterPtr(ut_get_converter(a.get(), b.get()));
 }
@@ -112,19 +112,19 @@ const char* likely_unit_of(double number, const std::string& unit) {
 double parse_quantity(const std::string& text, const std::string& unit) {
   const auto [number, given] = split(text, unit);
   if (given.empty() && unit != "1") {
-    throw RangeError(fmt::format("'{}' has no unit: a quantity in {} is wanted, such as '{} {}'", text, unit, text,
+    throw RangeError(fmt::format("'{}' has no unit; it must be a quantity in {}, such as '{} {}'", text, unit, text,
                                  likely_unit_of(number, unit)));
   }
   const cv_converter* c = converter(given.empty() ? "1" : given, unit);
   if (unit == "K" && has_offset(given)) {
-    throw RangeError(fmt::format("'{}' is a temperature; a temperature difference in K is wanted", text));
+    throw RangeError(fmt::format("'{}' is a temperature; it must be a temperature difference in K", text));
   }
   return cv_convert_double(c, number);
 }
 
 double parse_temperature_K(const std::string& text) {
   const auto [number, given] = split(text, "degC");
-  if (given.empty()) throw RangeError(fmt::format("'{}' has no unit: a temperature such as '20 degC' is wanted", text));
+  if (given.empty()) throw RangeError(fmt::format("'{}' has no unit; it must be a temperature such as '20 degC'", text));
   if (given == "C" || given == "F")  // coulomb and farad
     throw RangeError(fmt::format("'{}' is no temperature; write '{:g} deg{}'", text, number, given));
   return cv_convert_double(converter(given, "K"), number);

@@ -1,5 +1,5 @@
 #pragma once
-// Quantities with units, as they stand in files: "24 degC", "10 W/(m^2 K)", "80 mm".
+// Quantities with units, as they are in files: "24 degC", "10 W/(m^2 K)", "80 mm".
 // Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens. Threads may call
 // everything here at once.
 
@@ -13,7 +13,7 @@ namespace driftwright {
 /// @param unit  the unit wanted, in UDUNITS syntax: "m", "W/(m^2 K)", "rpm", "1"
 /// @throws RangeError  when the number or unit cannot be read, is not finite, has another dimension (an angle counts as
 ///                     one: Hz or 1/min is no rpm), or when a
-///                     temperature with an offset (degC) is given where a temperature difference (K) is wanted
+///                     temperature with an offset (degC) is given where a temperature difference (K) is required
 [[nodiscard]] double parse_quantity(const std::string& text, const std::string& unit);
 
 /// Converts an absolute temperature, "24 degC" or "297.15 K", to kelvin.

@@ -62,14 +62,15 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
   if (header == "time_min") return 60.0;
   if (header == "time_h") return 3600.0;
   if (header.find(';') != std::string::npos || header.find('\t') != std::string::npos) {
-    throw InputError(where,
-                     "columns are separated by ';' or tabs; commas are wanted, with decimal points. `driftwright import` "
-                     "makes such a record of a "
-                     "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: "
-                     "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
-                     "{t_housing: {column: NAME, unit: degC}}}");
+    throw InputError(
+        where,
+        "columns are separated by ';' or tabs; they must be separated by commas, with decimal points. `driftwright import` "
+        "makes such a record of a "
+        "logger's file; or the scenario says how the file is written (docs/reference/record.md): columns: {separator: "
+        "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
+        "{t_housing: {column: NAME, unit: degC}}}");
   }
-  throw InputError(where, fmt::format("the first column is '{}'; time_s, time_min or time_h is wanted", header));
+  throw InputError(where, fmt::format("the first column is '{}'; it must be time_s, time_min or time_h", header));
 }
 
 }  // namespace
@@ -120,8 +121,9 @@ Record read_record_csv(const std::string& path) {
         if (std::any_of(cells[i].begin(), cells[i].end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }))
           throw InputError(where(i), fmt::format("column {:?} has a control character in its name", cells[i]));
         if (channel.unit.empty()) {
-          throw InputError(where(i), fmt::format("column '{}' names no unit; '<channel>_<unit>' is wanted with one of {}",
-                                                 cells[i], fmt::join(unit_table(), ", ")));
+          throw InputError(where(i),
+                           fmt::format("column '{}' names no unit; it must be called '<channel>_<unit>' with one of {}",
+                                       cells[i], fmt::join(unit_table(), ", ")));
         }
         if (record.find(channel.header())) {
           throw InputError(where(i), fmt::format("column '{}' appears twice", channel.header()));
@@ -131,10 +133,11 @@ Record read_record_csv(const std::string& path) {
       continue;
     }
     if (cells.size() != record.channels.size() + 1) {
-      throw InputError(where(0), fmt::format("{} cells where the header has {}", cells.size(), record.channels.size() + 1));
+      throw InputError(
+          where(0), fmt::format("this row has {} cells, but the header has {}", cells.size(), record.channels.size() + 1));
     }
     const double time_s = parse_cell(cells[0], where(0)) * seconds;
-    if (!std::isfinite(time_s)) throw InputError(where(0), "a row without a time");
+    if (!std::isfinite(time_s)) throw InputError(where(0), "this row has no time");
     if (!record.time_s.empty() && !(time_s > record.time_s.back())) {
       throw InputError(
           where(0), fmt::format("time {} s does not follow {} s; rows must increase in time", time_s, record.time_s.back()));
@@ -143,7 +146,7 @@ Record read_record_csv(const std::string& path) {
     for (std::size_t i = 1; i < cells.size(); ++i) record.channels[i - 1].values.push_back(parse_cell(cells[i], where(i)));
   }
   if (record.n_samples() < 2) {
-    throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path, record.n_samples()));
+    throw InputError(fmt::format("{}: the record has {} rows of data; at least two are required", path, record.n_samples()));
   }
   require_possible_span(path, record.time_s.front(), record.time_s.back());
   return record;

@@ -16,11 +16,10 @@ Where place_of(const std::string& path, const std::vector<Cell>& cells, std::siz
 const Cell& cell_of(const std::string& path, const std::vector<Cell>& cells, std::size_t i, int line,
                     const std::string& key) {
   if (i < cells.size()) return cells[i];
-  throw InputError(
-      Where{path, line, 1, key, ""},
-      fmt::format("{} cells; column {} is wanted. A row that was cut short can be taken out, and `end` names the "
-                  "first line behind the rows",
-                  cells.size(), i + 1));
+  throw InputError(Where{path, line, 1, key, ""},
+                   fmt::format("this row has {} cells, but column {} is required. A row that was cut short can be taken "
+                               "out, and `end` names the first line after the rows",
+                               cells.size(), i + 1));
 }
 
 bool is_missing(const ColumnMap& map, const std::string& text) {

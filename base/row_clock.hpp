@@ -37,7 +37,7 @@ class RowClock {
 /// @throws InputError  where a row is too short
 [[nodiscard]] const Cell& cell_of(const std::string& path, const std::vector<Cell>& cells, std::size_t i, int line,
                                   const std::string& key);
-/// It stands for a reading that is not there.
+/// It stands for a reading that does not exist.
 [[nodiscard]] bool is_missing(const ColumnMap& map, const std::string& text);
 
 }  // namespace driftwright

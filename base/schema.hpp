@@ -1,6 +1,6 @@
 #pragma once
 // What the maps of a YAML file may hold, as plain data: a reader describes its keys once, and ConfigMap reads by that, `driftwright schema` prints
-// it, docs/scenario.md has it as tables. A key that stands in no description cannot be read, and one that nobody reads cannot stand there.
+// it, docs/reference/scenario.md has it as tables. A key that stands in no description cannot be read, and one that nobody reads cannot stand there.
 
 #include <limits>
 #include <optional>
@@ -67,7 +67,7 @@ struct Group {
   };
   Rule rule;
   std::vector<std::string> keys;
-  std::string message;  ///< what is wanted, for errors
+  std::string message;  ///< what is required, for errors
 };
 
 /// Keys of a map. Where several maps may stand in one place, `when` says which it is: the one that has that key, with that word.

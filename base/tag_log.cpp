@@ -55,7 +55,8 @@ class Log {
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.time_s < b.time_s; });
     ReadRecord read{held(), {}};
     if (read.record.n_samples() < 2)
-      throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path_, read.record.n_samples()));
+      throw InputError(
+          fmt::format("{}: the record has {} rows of data; at least two are required", path_, read.record.n_samples()));
     if (!others_.empty()) {
       read.notes.push_back(fmt::format("{}: not named in `columns` and not read: tag{} '{}'", path_,
                                        others_.size() > 1 ? "s" : "", fmt::join(others_, "', '")));
@@ -96,8 +97,9 @@ class Log {
       if (last_s_[c] > -1e300) continue;
       const ColumnPlace& place = map_.channels[c].column;
       const std::vector<std::string> others(others_.begin(), others_.end());
-      throw InputError(place.where, fmt::format("no tag {} in {}; the tags that nobody names are '{}'.{}", place.words(),
-                                                path_, fmt::join(others, "', '"), did_you_mean(place.name, others)));
+      throw InputError(place.where,
+                       fmt::format("there is no tag {} in {}; the tags that nobody names are '{}'.{}", place.words(), path_,
+                                   fmt::join(others, "', '"), did_you_mean(place.name, others)));
     }
   }
 

@@ -95,9 +95,9 @@ TimeStamps::TimeStamps(std::string format, const std::string& zone) : format_(st
   has_offset_ = without != format_;
   format_ = without;
   if (has_any(format_, "z") || format_.find("%Ez") != std::string::npos)
-    throw RangeError("%z, the offset to UTC, stands at the end of a format or nowhere");
+    throw RangeError("%z, the offset to UTC, is allowed only at the end of a format");
   if (zone.empty()) return;
-  if (!has_date_) throw RangeError("a zone wants stamps with a date; this format has none");
+  if (!has_date_) throw RangeError("a zone requires stamps with a date, but this format has none");
   try {
     zone_ = date::locate_zone(zone);
   } catch (const std::runtime_error&) {
@@ -112,7 +112,7 @@ nanoseconds TimeStamps::read(const std::string& text) {
   if (is_iso_ && told && told->stamp.find(':') == std::string::npos) told.reset();  // 2024-03-01: a date
   if (has_offset_ && !told)
     throw RangeError(fmt::format(
-        "'{}' has no offset to UTC at its end, which %z wants: such as +01:00, +0100, +01, Z, UTC or CET", text));
+        "'{}' has no offset to UTC at its end, which %z requires: such as +01:00, +0100, +01, Z, UTC or CET", text));
   if (told) {
     stamp = told->stamp;
     offset = told->offset;

@@ -17,7 +17,7 @@ while getopts n:o:j:t:s: option; do
   esac
 done
 if ! [[ $shard =~ ^([1-9][0-9]*)/([1-9][0-9]*)$ ]] || ((BASH_REMATCH[1] > BASH_REMATCH[2])); then
-  echo "-s $shard: i/n with 1 <= i <= n is wanted, such as 3/8" >&2
+  echo "-s $shard must be i/n with 1 <= i <= n, such as 3/8" >&2
   exit 2
 fi
 part=$((BASH_REMATCH[1] - 1)) parts=${BASH_REMATCH[2]}

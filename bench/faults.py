@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every verb under faults of the environment; prints the table of docs/verification.md.
+"""Every verb under faults of the environment; prints the table of docs/theory/verification_faults.md.
 
     bench/faults.py [PROGRAM] [--meshed [--cell MM]] [--kills N] [--verbs simulate,diagnose,...]
     bench/faults.py build/asan/app/driftwright --sanitized      each verb once, undisturbed, by a program with sanitizers in it, and what they report

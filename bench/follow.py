@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How soon `driftwright follow` answers a row, and how much memory it takes over many (docs/follow.md).
+"""How soon `driftwright follow` answers a row, and how much memory it takes over many (docs/how-to/follow.md).
 
     follow.py PROGRAM latency RECORD.csv [rows] -- MODEL...    each row said when the one before it is answered: quantiles of the time between
     follow.py PROGRAM memory  RECORD.csv ROWS   -- MODEL...    the record again and again, its time going on: resident memory on the way

@@ -11,7 +11,7 @@ file(WRITE ${FOLDER}/changelog "driftwright (${VERSION}) unstable; urgency=mediu
 
   * CHANGELOG.md of the sources says what is new.
 
- -- The Driftwright developers <driftwright@localhost>  Mon, 23 Nov 2026 00:00:00 +0000
+ -- The Driftwright developers <driftwright@localhost>  Sun, 29 Nov 2026 00:00:00 +0000
 ")
 foreach(name driftwright.1 changelog)
   execute_process(COMMAND gzip -9nf ${FOLDER}/${name} COMMAND_ERROR_IS_FATAL ANY)

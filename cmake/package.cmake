@@ -1,5 +1,5 @@
 # Debian packages of what cmake/install.cmake installs: `cmake --build build/package --target package` after `cmake --preset package`
-# (any x86-64; a build for this machine's processor makes packages that say so). docs/library.md
+# (any x86-64; a build for this machine's processor makes packages that say so). docs/how-to/library.md
 set(CPACK_GENERATOR DEB)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_PACKAGE_VENDOR "The Driftwright developers")

@@ -118,7 +118,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
   return causes;
 }
 
-/// Of one record of a machine that is wrong in a way that nothing explains: what was fitted to it held for its own rows alone wherever that was tried (docs/measured.md).
+/// Of one record of a machine that is wrong in a way that nothing explains: what was fitted to it held for its own rows alone wherever that was tried (docs/theory/measured.md).
 void write_nothing(Diagnosis& d, const std::string& why) {
   d.written.keeps_numbers = false;
   d.written.why_nothing = why;

@@ -219,12 +219,13 @@ std::string why_of(const Experiment& e, const Open& open, bool once_only) {
     return fmt::format(
         "{} each happened in one record only, which a new one does not show again; {}", of,
         e.extra_sensor && e.extra_sensor->discrimination >= kTells
-            ? fmt::format("if it happens again, a thermometer on {} tells them apart ({:.0f} times the noise)",
+            ? fmt::format("if it happens again, a thermometer on {} distinguishes them ({:.0f} times the noise)",
                           e.extra_sensor->region, e.extra_sensor->discrimination)
-            : "no further thermometer would tell them apart either");
+            : "no further thermometer would distinguish them either");
   }
   const std::string check =
-      e.n_simulated > 0 ? fmt::format("; of {} such records simulated, {} told which it was", e.n_simulated, e.n_told) : "";
+      e.n_simulated > 0 ? fmt::format("; of {} such records simulated, {} showed which it was", e.n_simulated, e.n_told)
+                        : "";
   if (e.by_sensor) {
     return fmt::format(
         "{} differ by {:.1f} times the noise in the best cyclogram of the family, and by {:.1f} with a "
@@ -232,7 +233,7 @@ std::string why_of(const Experiment& e, const Open& open, bool once_only) {
         of, e.discrimination, e.extra_sensor->discrimination, e.extra_sensor->region, check);
   }
   if (e.discrimination < kTells) {
-    return fmt::format("no cyclogram of the family surely tells {} apart (at best {:.1f} times the noise){}", of,
+    return fmt::format("no cyclogram of the family surely distinguishes {} (at best {:.1f} times the noise){}", of,
                        e.discrimination, check);
   }
   return fmt::format("{} then differ by {:.0f} times the noise, what is not known of their numbers taken off{}", of,

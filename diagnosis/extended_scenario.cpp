@@ -213,7 +213,7 @@ class Writer {
   void add_cyclogram(const std::string& name) {
     if (std::find(cyclograms_.begin(), cyclograms_.end(), name) != cyclograms_.end()) return;
     const auto run = std::find_if(runs_.begin(), runs_.end(), [&](const MeasuredRun& r) { return r.name == name; });
-    if (run == runs_.end()) throw std::logic_error("extended_scenario: a change in a run that is not there, " + name);
+    if (run == runs_.end()) throw std::logic_error("extended_scenario: a change in a run that does not exist, " + name);
     const std::string written = cyclogram_of(*run);
     const ConfigNode* list = yaml_.root().find("cyclograms");
     if (!yaml_.append(*list, fmt::format("{}: {}", name, written), "diagnosis: the measured run")) in_one_piece_ = true;

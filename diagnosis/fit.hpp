@@ -135,7 +135,7 @@ class Fitter {
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;
-  /// x with further columns at zero.
+  /// x with further columns at zero: their amplitudes have no part in slopes of the machine.
   [[nodiscard]] Eigen::VectorXd of_machine(Eigen::VectorXd x) const;
   /// Slope of the readings by one of scatter's numbers. @param x  of_machine(). @param base, about  there
   [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,

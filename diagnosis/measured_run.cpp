@@ -224,7 +224,7 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
     for (std::size_t i = s.first; i <= s.last; ++i) channel.values[i] = std::nan("");
     const bool leaves_out = n_readings() < std::max<std::ptrdiff_t>(kFewestLeft, n_there / 5);
     findings.push_back({channel.name,
-                        fmt::format("{} stands still at {:g} {} {} ({}); {}", channel.name, value, channel.unit, when, why,
+                        fmt::format("{} stays at {:g} {} {} ({}); {}", channel.name, value, channel.unit, when, why,
                                     leaves_out ? "too little else is there: it is left out" : "these readings are left out"),
                         leaves_out});
     if (leaves_out) return;
@@ -301,7 +301,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   const std::string& path = whole.source;
   if (whole.n_samples() < 3) {
     throw InputError(
-        fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, whole.n_samples()));
+        fmt::format("{}: {} rows; a diagnosis needs at least three, better a hundred", path, whole.n_samples()));
   }
   MeasuredRun run;
   run.path = path;

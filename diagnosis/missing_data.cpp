@@ -76,7 +76,7 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
     row_min = std::max(row_min, run.time_s.back() / 60.0 / static_cast<double>(run.time_s.size() - 1));
   }
   std::string text =
-      fmt::format("{} of {} are too few to tell an effect from scatter; at least {} are wanted.",
+      fmt::format("{} of {} are too few to distinguish an effect from scatter; at least {} are required.",
                   plural(static_cast<std::size_t>(n_readings), "reading"), plural(recorded.size(), "channel"), n_wanted);
   const auto& model = twin.augmented().model;
   const std::size_t n_own = model.sensors.size() + model.displacements.size();
@@ -91,7 +91,8 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
     std::vector<std::string> bodies;
     for (const auto& part : twin.machine().system.parts) bodies.push_back(part.body);
     text += fmt::format(
-        " No temperature of the machine is recorded: heat cannot be told from expansion. Wanted: a thermometer on each of "
+        " No temperature of the machine is recorded: heat cannot be distinguished from expansion. Required: a thermometer "
+        "on each of "
         "{} "
         "(under `sensors` in the scenario, a column NAME_degC in the record).",
         fmt::join(bodies, ", "));
@@ -101,7 +102,8 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
   const bool is_heated = !twin.balance(twin.as_written()).heats.empty();
   if (is_heated && speeds_rpm.size() < 2) {
     text += fmt::format(
-        " The spindle runs at {:g} rpm throughout: heat cannot be told from what carries it off. Wanted: two speeds and a "
+        " The spindle runs at {:g} rpm throughout: heat cannot be distinguished from what carries it off. Required: two "
+        "speeds and a "
         "rest.",
         speeds_rpm.empty() ? 0.0 : *speeds_rpm.begin());
   }
@@ -109,8 +111,8 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
   const std::size_t n_channels = std::max<std::size_t>(1, recorded.size() + absent.size());
   const double fills_h = n_wanted * kRow_min / 60.0 / static_cast<double>(n_channels);
   if (row_min > kRow_min)
-    text += fmt::format(" A row comes every {:.0f} min; one every {:.0f} min is wanted.", row_min, kRow_min);
-  text += fmt::format(" Wanted: {:.0f} h of it (the machine takes {:.2g} h to settle).",
+    text += fmt::format(" A row comes every {:.0f} min; one every {:.0f} min is required.", row_min, kRow_min);
+  text += fmt::format(" Required: {:.0f} h of it (the machine takes {:.2g} h to settle).",
                       std::ceil(std::max(fills_h, kSettlings * settles_h)), settles_h);
   return text;
 }

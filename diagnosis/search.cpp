@@ -147,6 +147,7 @@ bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
 struct FittedClaim {
   Claim claim;
   Fit fit;
+  double hoped = 0.0;     ///< what linear theory said that it brings [nats]
   bool is_rough = false;  ///< with scatter's slopes as they were taken elsewhere
 };
 
@@ -219,16 +220,18 @@ struct Trials {
     Eigen::VectorXd start = base_fit.x.head(ground.fitter.n_nuisance());
     if (have_moved(ground.fitter, base_fit)) start.setZero();
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
+    std::vector<double> hoped;
     for (const Score& s : laws) {
       Hypothesis tried = with(base, claim_of(ground.candidates, s));
       if (const FittedClaim* fit = known ? known->find(tried) : nullptr) {
-        fitted.push_back({tried.back(), fit->fit, fit->is_rough});
+        fitted.push_back({tried.back(), fit->fit, s.gain, fit->is_rough});
       } else {
         jobs.emplace_back(std::move(tried), joined(base_x, s.start));
+        hoped.push_back(s.gain);
       }
     }
     std::vector<Fit> fits = fit_all(ground.fitter, jobs, start, base_fit.misfit, Fitter::Slopes::kKept);
-    for (std::size_t i = 0; i < jobs.size(); ++i) fitted.push_back({jobs[i].first.back(), std::move(fits[i]), true});
+    for (std::size_t i = 0; i < jobs.size(); ++i) fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();
   }
   /// Those that may come near the best are fitted on with scatter's slopes taken where they ended.
@@ -237,7 +240,8 @@ struct Trials {
     for (const FittedClaim& f : fitted) best = std::max(best, gain(f));
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-      if (fitted[i].is_rough && gain(fitted[i]) > kHopeless * best - kHope) near.push_back(i);
+      const FittedClaim& f = fitted[i];
+      if (f.is_rough && !f.fit.prediction.empty() && std::max(gain(f), f.hoped) > kHopeless * best - kHope) near.push_back(i);
     }
     for_each_index(
         near.size(), [&] { return Twin::Workspace(ground.fitter.twin()); },

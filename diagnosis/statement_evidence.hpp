@@ -31,7 +31,7 @@ struct StatementOptions {
   double explained = 0.0;  ///< what claims that they stand beside explain already [nats]
   int beam = 6;            ///< sets that are taken further; 12 name the same
   /// Share of what it does that a law is off by: what a set explains, E nats, then leaves 2 law_error² E squares that no noise makes, and evidence counts 1 / (1 + 2 law_error² E) of
-  /// itself. Of 0, 0.05, 0.07, 0.1 and 0.14 the one whose probabilities came true on simulated machines (docs/diagnosis.md).
+  /// itself. Of 0, 0.05, 0.07, 0.1 and 0.14 the one whose probabilities came true on simulated machines (docs/theory/diagnosis.md).
   double law_error = 0.05;
   /// Whether what the best explanation leaves over is asked how far laws are off: then evidence between statements counts as that tells.
   bool observed = false;

@@ -58,8 +58,8 @@ void StatementBuilder::readings() {
       const bool drives = i > 0 && i < n_drives_;
       for (double lag_s : kDriveLags_s) {
         if (lag_s > 0.0 && !drives) break;
-        say(course.follows, lag_s > 0.0 ? fmt::format("{}, {:g} min behind", course.law, lag_s / 60) : course.law, c.swing,
-            c.unit, by_run([&](std::size_t r) -> Row {
+        say(course.follows, lag_s > 0.0 ? fmt::format("{}, with a lag of {:g} min", course.law, lag_s / 60) : course.law,
+            c.swing, c.unit, by_run([&](std::size_t r) -> Row {
               Row row = course.at_row[r];
               if (lag_s > 0.0) {
                 row[0] = 0.0;
@@ -101,7 +101,7 @@ void StatementBuilder::readings() {
         for (const Row& w : warm) rms = std::max(rms, (w.array() - w[0]).abs().maxCoeff());
         if (!(rms > 1e-9)) continue;
         for (double lag_s : {0.0, 600.0, 2400.0}) {
-          say("temperature of " + body.name, lag_s > 0.0 ? fmt::format("{:g} min behind", lag_s / 60) : "at once",
+          say("temperature of " + body.name, lag_s > 0.0 ? fmt::format("with a lag of {:g} min", lag_s / 60) : "at once",
               c.swing / rms, c.unit + "/K", by_run([&](std::size_t r) -> Row {
                 Row w = warm[r].array() - warm[r][0];
                 if (lag_s > 0.0) effects::lag_behind(w, machine_[r].time_s(), lag_s);

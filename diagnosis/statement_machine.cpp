@@ -226,7 +226,7 @@ void StatementBuilder::by_a_third(const Statement& of_both, const Body& a, const
   says.follows = "body between";
   for (double lag_s : kBetween_s) {
     says.law = "through a body between them that loses heat, too";
-    if (lag_s > 0.0) says.law += fmt::format(", {:g} min behind", lag_s / 60.0);
+    if (lag_s > 0.0) says.law += fmt::format(", with a lag of {:g} min", lag_s / 60.0);
     say(
         lag_s, [](const Row& of_a, const Row& of_b, const Row& air) -> Row { return (of_a + of_b + air) / 3.0; },
         [](const Row& third, const Row& of_a, const Row& of_b) { return std::pair<Row, Row>(third - of_a, third - of_b); });
@@ -275,7 +275,7 @@ void StatementBuilder::capacities() {
       Statement says{.quantity = StatedQuantity::kCapacity,
                      .place = {material.body.name},
                      .follows = lag_s > 0.0 ? "lagged" : "constant",
-                     .law = lag_s > 0.0 ? fmt::format("a body {:g} min behind", lag_s / 60.0) : "its own",
+                     .law = lag_s > 0.0 ? fmt::format("a body with a lag of {:g} min", lag_s / 60.0) : "its own",
                      .in_run = {},
                      .unit_size = material.capacity_J_K,
                      .unit = "J/K"};

@@ -58,14 +58,15 @@ void change_drive(const Effect& e, DriveChange& change) {
 void check(const Effect& e, const ConfigMap& in) {
   const bool is_off = in.has("offset") || in.has("ramp");
   if (!is_off && !in.has("late") && !in.has("lag") && !in.has("with_speed"))
-    in.fail("offset", "one of `offset`, `ramp`, `late`, `lag` and `with_speed` is wanted");
+    in.fail("offset", "one of `offset`, `ramp`, `late`, `lag` and `with_speed` is required");
   for (const char* key : {"from", "until"}) {
-    if (in.has(key) && !is_off) in.fail(key, "is of `offset` and `ramp`; `late`, `lag` and `with_speed` hold all along");
+    if (in.has(key) && !is_off)
+      in.fail(key, "this key is allowed only with `offset` and `ramp`; `late`, `lag` and `with_speed` hold all along");
   }
   for (const char* key : {"at_speed", "behind"}) {
-    if (in.has(key) && !in.has("with_speed")) in.fail(key, "is of `with_speed`, which is not there");
+    if (in.has(key) && !in.has("with_speed")) in.fail(key, "this key is allowed only beside `with_speed`, which is missing");
   }
-  if (!(e["until"] > e["from"])) in.fail("until", "ends before it begins `from`");
+  if (!(e["until"] > e["from"])) in.fail("until", "`until` must be later than `from`");
 }
 
 Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, double trial) {
@@ -111,7 +112,7 @@ void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
   lag.high = kMostLag_min;
   list.push_back(doubt("recorded by a slow thermometer", "", lag, 3.0));
   if (!s.turns) return;
-  Doubt warmed = doubt(fmt::format("warmer or colder with the speed, behind one lag, at {:.0f} rpm", s.typical_rpm), "",
+  Doubt warmed = doubt(fmt::format("warmer or colder with the speed, with one lag, at {:.0f} rpm", s.typical_rpm), "",
                        doubted("with_speed", "K", 2.0, 0.3), 0.5);
   warmed.added[0].set("at_speed", s.typical_rpm);
   DoubtedNumber behind{
@@ -162,7 +163,7 @@ EffectKind kind() {
           .law =
               "T_ambient = recorded + offset + ramp (t - from) from a time on, until another one; recorded(t + late) in its "
               "place, or "
-              "recorded + lag d(recorded)/dt; behind a lag, with_speed n / at_speed more",
+              "recorded + lag d(recorded)/dt; with a lag, with_speed n / at_speed more",
           .places = {Place::kAmbient},
           .parameters = {{"offset", "K", -50.0, 50.0, 0.0, "true minus recorded"},
                          {"ramp", "K/h", -50.0, 50.0, 0.0, "its growth"},

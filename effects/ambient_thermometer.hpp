@@ -12,7 +12,7 @@ namespace driftwright::effects {
 /// @param lag_s  >= 0
 [[nodiscard]] TimeSeries of_slow_thermometer(const TimeSeries& recorded, double lag_s);
 
-/// An ambient that is off by size n / at_speed behind a first-order lag, from nothing at the start of the cyclogram.
+/// An ambient that is off by size n / at_speed with a first-order lag, from nothing at the start of the cyclogram.
 /// @param lag_s  > 0
 [[nodiscard]] TimeSeries warmed_with_speed(const TimeSeries& recorded, const Cyclogram& cyclogram, double size_K,
                                            double at_speed_rpm, double lag_s);

@@ -29,16 +29,19 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   const bool at_40 = e.has("viscosity_40"), at_100 = e.has("viscosity_100");
   if (e.has("viscosity") == (at_40 || at_100)) {
-    in.fail("viscosity", "one of two is wanted: `viscosity`, held constant, or `viscosity_40` with `viscosity_100`");
+    in.fail("viscosity",
+            "exactly one of the two is required: `viscosity`, held constant, or `viscosity_40` with `viscosity_100`");
   }
-  if (at_40 != at_100) in.fail(at_40 ? "viscosity_40" : "viscosity_100", "`viscosity_40` and `viscosity_100` go together");
+  if (at_40 != at_100)
+    in.fail(at_40 ? "viscosity_40" : "viscosity_100", "`viscosity_40` and `viscosity_100` must be given together");
   if (at_40 && !(e["viscosity_40"] > e["viscosity_100"])) {
     in.fail("viscosity_100", "an oil is thinner at 100 degC than at 40 degC");
   }
   if (e.references.contains("oil") && !at_40) in.fail("oil", "only `viscosity_40` with `viscosity_100` looks at the oil");
   for (const char* ring : {"inner", "outer"}) {
     if (e.references.contains(ring) != e.has("preload_growth")) {
-      in.fail(e.references.contains(ring) ? ring : "preload_growth", "`preload_growth`, `inner` and `outer` go together");
+      in.fail(e.references.contains(ring) ? ring : "preload_growth",
+              "`preload_growth`, `inner` and `outer` must be given together");
     }
   }
 }

@@ -34,7 +34,7 @@ void change_drive(const Effect& e, DriveChange& change) {
 void check(const Effect& e, const ConfigMap& in) {
   if (e.body() == e.references.at("to")) in.fail("to", "a link joins two bodies");
   if (e["runs_on"] > 0.0 && !goes_with_spindle(e))
-    in.fail("runs_on", "it is of what goes with the spindle: `runs: while_spindle_turns`");
+    in.fail("runs_on", "this key is allowed only for what goes with the spindle: `runs: while_spindle_turns`");
 }
 
 /// Air that films lie in. Regions meet it by their surfaces' films, which are doubted as such.

@@ -1,5 +1,5 @@
 #pragma once
-// The catalogue as a table for people: docs/effects.md is made of it, and so is what `driftwright list` prints.
+// The catalogue as a table for people: docs/reference/effects.md is made of it, and so is what `driftwright list` prints.
 
 #include <string>
 

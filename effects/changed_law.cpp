@@ -394,18 +394,18 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
       e["growth_beyond"] == 1.0 && e["factor_below"] == 1.0 && e["difference_exponent"] == 0.0)
     in.fail("factor",
-            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
-            "`decay`, "
-            "`difference_exponent`, `warmer` is wanted");
+            "the entry changes nothing; give one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
+            "`decay`, `difference_exponent`, `warmer` another value");
   if (e.references.contains("over") && e["decay"] == 0.0)
-    in.fail("over", "it is what the temperature of the law's body counts over where there is a `decay`");
+    in.fail("over", "`over` is allowed only where there is a `decay`; it names the body that the temperature counts over");
   if (e.references.contains("over") && in.has("at_temperature"))
     in.fail("at_temperature",
             "with `over` it is the other body's temperature that the law's body counts over; leave this out");
   if (in.has("beyond") != in.has("growth_beyond"))
-    in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
+    in.fail("beyond",
+            "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, must be given together");
   if (in.has("below") != in.has("factor_below"))
-    in.fail("below", "`below`, a speed, and `factor_below`, what the law is times below it, go together");
+    in.fail("below", "`below`, a speed, and `factor_below`, the factor on the law below it, must be given together");
 }
 
 EffectKind kind() {

@@ -61,8 +61,7 @@ EffectKind kind() {
           .title = "readings logged late or early against drive and ambient",
           .law =
               "reading(t) = reading taken at t - offset, temperatures and displacements, from from_time on; the first and "
-              "the last "
-              "one stand in beyond the ends",
+              "the last one are used beyond the ends",
           .places = {Place::kClock},
           .parameters = {{"offset", "min", -1e4, 1e4, {}, "> 0: a reading carries a later time than it was taken at"},
                          {"from_time", "min", 0.0, 1e7, 0.0, "from which time of the record on"}},

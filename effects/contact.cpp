@@ -15,9 +15,11 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   const bool has_table = e.tables.contains(kTable);
   if (e.has("conductance") == has_table) {
-    in.fail("conductance", "one of two is wanted: `conductance`, or `conductance_over_pressure` with `pressure`");
+    in.fail("conductance",
+            "exactly one of the two is required: `conductance`, or `conductance_over_pressure` with `pressure`");
   }
-  if (e.has("pressure") != has_table) in.fail("pressure", "`conductance_over_pressure` and `pressure` go together");
+  if (e.has("pressure") != has_table)
+    in.fail("pressure", "`conductance_over_pressure` and `pressure` must be given together");
   if (!has_table) return;
   const std::vector<double>& pressure_Pa = e.tables.at(kTable).time_s;
   if (!(e["pressure"] >= pressure_Pa.front() && e["pressure"] <= pressure_Pa.back())) {

@@ -46,15 +46,16 @@ void contribute(const Effect& e, HeatBalance& balance) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.references.contains("tank")) {
-    if (e.references.at("tank").name == kAmbientName) in.fail("tank", "a name of its own is wanted; the ambient is no tank");
-    if (!e.has("volume")) in.fail("volume", "`tank` and `volume` go together");
+    if (e.references.at("tank").name == kAmbientName)
+      in.fail("tank", "the tank must have a name of its own; the ambient is no tank");
+    if (!e.has("volume")) in.fail("volume", "`tank` and `volume` must be given together");
     if (e.has("set_point") != (e["cooling_power"] > 0.0))
-      in.fail("set_point", "`set_point` and `cooling_power` go together");
+      in.fail("set_point", "`set_point` and `cooling_power` must be given together");
     return;
   }
   if (!e.has("set_point")) in.fail("set_point", "a circuit without `tank` is held at its `set_point`");
   for (const char* of_tank : {"volume", "tank_exchange", "pump_power", "cooling_power", "hysteresis"}) {
-    if (in.has(of_tank)) in.fail(of_tank, std::string("`") + of_tank + "` is one of a `tank`, which is not named");
+    if (in.has(of_tank)) in.fail(of_tank, std::string("`") + of_tank + "` is allowed only with a `tank`, which is missing");
   }
 }
 

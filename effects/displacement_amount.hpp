@@ -5,7 +5,7 @@
 
 namespace driftwright::effects {
 
-/// Two parameters of which one is wanted: `name` [um] and `tilt` [urad].
+/// Two parameters of which one is required: `name` [um] and `tilt` [urad].
 [[nodiscard]] inline std::vector<Parameter> amount_parameters(const std::string& name, const std::string& meaning,
                                                               std::vector<Parameter> further) {
   further.insert(further.begin(), {{name, "um", -1e5, 1e5, kNotGiven, meaning + " of a displacement"},
@@ -30,7 +30,7 @@ namespace driftwright::effects {
 }
 inline void check_amount(const Effect& effect, const ConfigMap& in, const std::string& name) {
   if (effect.has(name) == effect.has("tilt")) {
-    in.fail(name, "one of two is wanted: `" + name + "` of a displacement (um) or `tilt` of a tilt (urad)");
+    in.fail(name, "exactly one of the two is required: `" + name + "` of a displacement (um) or `tilt` of a tilt (urad)");
   }
 }
 

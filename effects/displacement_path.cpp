@@ -69,11 +69,12 @@ void check(const Effect& e, const ConfigMap& in) {
   const std::string &column = e.words.at("column"), &of = e.words.at("of");
   if ((e.references.contains("body") ? 1 : 0) + (column.empty() ? 0 : 1) + (of.empty() ? 0 : 1) != 1)
     in.fail("body",
-            "one of three is wanted: the `body` that it follows, a `column`, or another displacement that it reads a share "
-            "`of`");
-  if (of.empty() == e.has("share")) in.fail("share", "`of` and `share` go together: which displacement, and how much of it");
+            "exactly one of the three is required: the `body` that it follows, a `column`, or another displacement that it "
+            "reads a share `of`");
+  if (of.empty() == e.has("share"))
+    in.fail("share", "`of` and `share` must be given together: which displacement, and how much of it");
   if (!of.empty()) {
-    if (of == e.place) in.fail("of", "another displacement is wanted");
+    if (of == e.place) in.fail("of", "this must be another displacement");
     for (const char* key : {"sensitivity", "tilt", "gain"}) {
       if (e.has(key)) in.fail(key, "what reads a share of another displacement has no sensitivity, tilt or gain");
     }
@@ -81,17 +82,18 @@ void check(const Effect& e, const ConfigMap& in) {
   }
   if (e.has("gain")) {
     if (e.has("sensitivity") || e.has("tilt"))
-      in.fail("gain", "one of them is wanted: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
-    if (column.empty()) in.fail("gain", "it is of a `column`");
-    if (in.has("zero")) in.fail("zero", "it is of a column of temperatures; a `gain` multiplies what the column says");
+      in.fail("gain", "exactly one of them is required: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
+    if (column.empty()) in.fail("gain", "`gain` is allowed only beside a `column`");
+    if (in.has("zero"))
+      in.fail("zero", "this key is allowed only beside a column of temperatures; a `gain` multiplies what the column says");
     return;
   }
   check_amount(e, in, "sensitivity");
   if (is_drive_channel(column))
-    in.fail("column", "a column of temperatures is wanted; this one is of the drive: `gain` states what it does");
+    in.fail("column", "this must be a column of temperatures, but it is one of the drive; write its effect as `gain`");
 }
 
-/// At once, where the displacement does not follow it yet, and behind a lag.
+/// At once, where the displacement does not follow it yet, and with a lag.
 /// @param path  what its size is set in by `size`
 void add_paths(const DoubtScene::Displacement& d, const Effect& path, const DoubtedNumber& size, const std::string& follows,
                bool at_once, std::vector<Doubt>& list) {
@@ -105,7 +107,7 @@ void add_paths(const DoubtScene::Displacement& d, const Effect& path, const Doub
   DoubtedNumber lag = doubted("lag", "min", 20.0, 0.5, 20.0);
   lag.low = 1.0;
   lag.high = 240.0;
-  doubt.law += " behind a lag";
+  doubt.law += " with a lag";
   doubt.added[0].set("lag", lag.nominal);
   doubt.numbers.push_back(lag);
   doubt.grid = {{-10.0}, {20.0}};
@@ -190,8 +192,8 @@ EffectKind kind() {
            {"gain", "1", -1e9, 1e9, kNotGiven,
             "or: um (of a tilt: urad) per unit of a column that is no temperature: a force, a pressure", 0.1,
             "displacement_path", Doubted::kFactor},
-           {"share", "1", -10.0, 10.0, kNotGiven, "or: of another displacement, of an indicator that stands askew"},
-           {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind what it follows"},
+           {"share", "1", -10.0, 10.0, kNotGiven, "or: of another displacement, of an indicator that is mounted askew"},
+           {"lag", "min", 0.0, 1e5, 0.0, "first-order lag to what it follows"},
            {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0, "of a column of temperatures: where it moves nothing"}},
       .timing = Timing::kInRecord,
       .change_readings = change_readings,

@@ -94,7 +94,7 @@ void read_timing(const ConfigMap& in, Effect& effect) {
   if (effect.kind->timing != Timing::kInTime) return;
   effect.from_s = in.quantity("from");
   effect.until_s = in.quantity("until");
-  if (!(effect.until_s > effect.from_s)) in.fail("until", "a time behind `from` is wanted");
+  if (!(effect.until_s > effect.from_s)) in.fail("until", "`until` must be later than `from`");
 }
 
 void read_table(const ConfigMap& in, const Table& t, Effect& effect) {

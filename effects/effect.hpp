@@ -36,7 +36,7 @@ struct Parameter {
   double high = 0.0;
   std::optional<double> fallback;  ///< value when the key is missing; compulsory without one; kNotGiven: may be left out
   std::string meaning;
-  /// How well a user knows it: standard deviation of its logarithm. 0: a condition or a dimension, taken as it stands.
+  /// How well a user knows it: standard deviation of its logarithm. 0: a condition or a dimension, taken as it is.
   double scatter = 0.0;
   std::string finding = {};  ///< key of the effect that a value far outside its scatter is called
   Doubted doubted = Doubted::kNo;
@@ -165,7 +165,7 @@ struct Effect {
 
 /// Every effect there is, in the order of the documentation.
 [[nodiscard]] const std::vector<EffectKind>& catalogue();
-/// @throws std::logic_error  for a key that is not there
+/// @throws std::logic_error  for a key that does not exist
 [[nodiscard]] const EffectKind& kind_of(const std::string& key);
 
 /// The place that a body is.

@@ -48,7 +48,7 @@ void add_place(const EffectKind& kind, schema::Map& map) {
   }
   if (keys.size() < 2) return;
   map.groups.push_back(
-      {Group::Rule::kExactlyOne, keys, fmt::format("{} wants one place: {}", kind.key, fmt::join(keys, " or "))});
+      {Group::Rule::kExactlyOne, keys, fmt::format("{} requires exactly one place: {}", kind.key, fmt::join(keys, " or "))});
 }
 
 Key key_of(const Parameter& p) {
@@ -66,7 +66,7 @@ Key key_of(const Reference& r) {
     body.name += " " + keys.back();
     body.keys.push_back(schema::optional(keys.back(), text(), "its name"));
   }
-  body.groups = {{Group::Rule::kExactlyOne, keys, fmt::format("a map with one of {} is wanted", fmt::join(keys, ", "))}};
+  body.groups = {{Group::Rule::kExactlyOne, keys, fmt::format("this must be a map with one of {}", fmt::join(keys, ", "))}};
   body.about = fmt::format("Another body that an effect names; a bare name is a {}.", keys.front());
   Key key = compulsory(r.name, Ways{text(), schema::map(body)}, r.meaning);
   key.is_compulsory = !r.fallback;

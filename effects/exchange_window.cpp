@@ -22,7 +22,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   if (e.has("conductance") != is_total(e) || e.has("film") == is_total(e)) {
     in.fail(is_total(e) ? "conductance" : "film",
-            "a region or node wants `conductance`, in W/K; a surface or joint `film`, in W/(m^2 K)");
+            "a region or node requires `conductance`, in W/K; a surface or joint requires `film`, in W/(m^2 K)");
   }
   check_windows(e, in);
 }

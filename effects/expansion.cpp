@@ -9,8 +9,9 @@ void change_material(const Effect& e, MaterialFactor& factor) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.place_kind != Place::kRegion && e.words.at("displacement").empty())
-    in.fail("displacement",
-            "only a region has a material that expands; elsewhere the displacement is wanted whose sensitivity it is about");
+    in.fail(
+        "displacement",
+        "only a region has a material that expands; elsewhere `displacement` must name the one whose sensitivity is meant");
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {

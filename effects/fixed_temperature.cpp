@@ -11,8 +11,9 @@ void contribute(const Effect& e, HeatBalance& balance) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.tables.contains("temperature") == (e.words.at("follows") == kAmbientName)) {
-    in.fail("temperature",
-            "one of two is wanted: `temperature`, a value or rows of [time, temperature], or `follows: ambient`");
+    in.fail(
+        "temperature",
+        "exactly one of the two is required: `temperature`, a value or rows of [time, temperature], or `follows: ambient`");
   }
 }
 

@@ -38,8 +38,8 @@ void change_paths(const Effect& e, HeatBalance& balance) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.references.at("air") == ambient_node())
-    in.fail("air", "a lumped node is wanted, which has a way of its own to the ambient");
-  if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard is another node than the body in it");
+    in.fail("air", "this must be a lumped node with an exchange of its own with the ambient");
+  if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard must be another node than the body in it");
 }
 
 /// What a body exchanges with the ambient at the typical speed [W/K].
@@ -141,10 +141,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind kind() {
   return {.key = "guard",
-          .title = "a body that stands behind a guard: what it loses to the ambient goes to the air in the guard",
+          .title = "a body inside a guard: what it loses to the ambient goes to the air in the guard",
           .law =
               "films, links and radiation of the body to the ambient lead to `air`, a node with a link of its own to the "
-              "ambient; one entry for each body behind the guard",
+              "ambient; one entry for each body inside the guard",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {},
           .change_paths = change_paths,

@@ -77,21 +77,23 @@ void change_drive(const Effect& e, DriveChange& change) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.has("runs_on") && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
-    in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
+    in.fail(
+        "runs_on",
+        "this key is allowed only for constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
   if (e.has("lasts") && !runs_at_rest(e))
-    in.fail("lasts", "it is of heat behind each stop of the spindle: `runs: while_spindle_stands`");
+    in.fail("lasts", "this key is allowed only for heat after each stop of the spindle: `runs: while_spindle_stands`");
   if (e.has("lasts") && (e.has("fades") || e.has("period")))
-    in.fail("lasts", "heat behind each stop neither fades nor comes in waves");
+    in.fail("lasts", "heat after each stop neither fades nor comes in waves");
   if (runs_at_rest(e) && e["exponent"] != 0.0 && !e.has("lasts"))
-    in.fail("exponent", "heat while the spindle stands does not grow with speed");
+    in.fail("exponent", "heat while the spindle is at rest does not grow with speed");
   if (e.has("fades") && e.has("period"))
-    in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
+    in.fail("fades", "`fades` and `period` exclude each other; write heat that fades, or a wave with a `period`");
   if (e.has("period")) {
-    if (e.until_s >= kNever_s) in.fail("period", "a wave is cut into steps: `until` is wanted, when it ends");
+    if (e.until_s >= kNever_s) in.fail("period", "a wave is cut into steps, so `until` is required, the time when it ends");
     if (e.until_s - e.from_s > kMostPeriods * e["period"])
-      in.fail("until", fmt::format("at most {:.0f} periods between `from` and `until` are wanted", kMostPeriods));
+      in.fail("until", fmt::format("at most {:.0f} periods are allowed between `from` and `until`", kMostPeriods));
   } else if (e["mean"] != 0.0) {
-    in.fail("mean", "only a wave has a mean; `power` is what is wanted");
+    in.fail("mean", "only a wave has a mean; write `power` instead");
   }
 }
 
@@ -137,16 +139,16 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
     const Doubt while_turning = list.back();
     if (s.starts_and_stops) {
-      add("constant heat while the spindle stands", {}).added[0].words["runs"] = "while_spindle_stands";
+      add("constant heat while the spindle is at rest", {}).added[0].words["runs"] = "while_spindle_stands";
       Doubt of_stops = list.back();
-      of_stops.law = "constant heat for some minutes behind each stop";
+      of_stops.law = "constant heat for some minutes after each stop";
       of_stops.added[0].set("lasts", kUsualOfStop_min);
       of_stops.numbers.push_back(doubted_run_on(kUsualOfStop_min));
       of_stops.numbers.back().name = "lasts";
       of_stops.grid = {{-1.0}, {0.0}, {1.0}};
       list.push_back(of_stops);
       of_stops.law = fmt::format(
-          "heat for some minutes behind each stop, by the square of the speed before it, at {:.0f} rpm", s.typical_rpm);
+          "heat for some minutes after each stop, by the square of the speed before it, at {:.0f} rpm", s.typical_rpm);
       of_stops.added[0].set("at_speed", s.typical_rpm);
       of_stops.added[0].set("exponent", 2.0);  // what turned has given back
       of_stops.at_speed_rpm = s.typical_rpm;
@@ -234,9 +236,9 @@ EffectKind kind() {
             "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
            {"runs_on", "min", 0.0, 1e4, kNotGiven, "for how long what goes with the spindle runs on when that has stopped"},
            {"lasts", "min", 0.01, 1e4, kNotGiven,
-            "for how long behind each stop there is heat that `runs: while_spindle_stands`: a tool changer; with an "
+            "for how long after each stop there is heat that `runs: while_spindle_stands`: a tool changer; with an "
             "exponent by the speed before the stop: a brake's resistor"},
-           {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
+           {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; requires `until`"},
            {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
            {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
       .timing = Timing::kInTime,

@@ -60,7 +60,7 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.tables.contains(kWindows)) {
     check_windows(e, in);
   } else if (e.has("every") || e.has("until_time")) {
-    in.fail(kWindows, "`every` and `until_time` are of a body that comes and goes: they want `windows`");
+    in.fail(kWindows, "`every` and `until_time` are allowed only for a body that comes and goes; write its `windows`, too");
   }
 }
 
@@ -79,7 +79,7 @@ Doubt following(const DoubtScene::Material& m, double longest_s) {
   };
   Doubt d{.finding = "hidden_body",
           .where = m.body.name,
-          .law = "a body that follows it behind a time constant",
+          .law = "a body that follows it with a time constant",
           .added = {make_effect("hidden_body", m.body, {{"capacity", kLeast * m.capacity_J_K}, {"conductance", 0.0}})},
           .numbers = {capacity, behind},
           .trial = kFollowTrial * m.capacity_J_K,
@@ -104,7 +104,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     if (has_one || is_hidden || !m.stores || m.body.kind == BodyKind::kSurface) continue;
     Doubt behind{.finding = "hidden_body",
                  .where = m.body.name,
-                 .law = "a body behind it, with no other way out",
+                 .law = "a body connected to it alone, with no other way out",
                  .added = {make_effect("hidden_body", m.body, {{"capacity", m.capacity_J_K}, {"conductance", 0.0}})},
                  .numbers = {doubted("conductance", "W/K", typical_W_K, 0.05 * typical_W_K),
                              doubted("capacity", "J/K", kCapacitySd, 0.1, m.capacity_J_K)},
@@ -136,7 +136,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind kind() {
   return {
       .key = "hidden_body",
-      .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
+      .title = "body connected to another: a cover, a tank, a clamped part, which no node or region of the machine is",
       .law =
           "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_ambient); it makes the node "
           "<its body>_hidden, and takes its heat evenly from the region; with windows it is there within them, and as warm "

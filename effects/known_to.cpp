@@ -15,10 +15,9 @@ double read_share(const ConfigMap& in, const std::string& key) {
   if (text == "fixed") return 0.0;
   if (text == "guess") return kGuess;
   if (text.empty() || !(text.front() >= '0' && text.front() <= '9'))
-    in.fail(key,
-            fmt::format(
-                "'{}' is not how well a number is known; a share such as 20 %, `guess` (a factor of 2) or `fixed` is wanted",
-                text));
+    in.fail(key, fmt::format("'{}' does not say how well a number is known; it must be a share such as 20 %, `guess` (a "
+                             "factor of 2) or `fixed`",
+                             text));
   return in.quantity(key);
 }
 
@@ -36,10 +35,9 @@ schema::Key known_to_key(const std::vector<std::string>& names) {
     by_name.keys.push_back(schema::optional(name, share, schema::Said{}, "as `known_to`"));
   schema::Ways ways = share;
   ways.push_back(schema::map(by_name));
-  return schema::optional(
-      kKey, ways, schema::Said{"10 %, exponents 3 %"},
-      "how well its numbers are known: 1 sigma of their logarithms, `guess` (a factor of 2), `fixed` (as they "
-      "stand), or a map of these by number");
+  return schema::optional(kKey, ways, schema::Said{"10 %, exponents 3 %"},
+                          "how well its numbers are known: 1 sigma of their logarithms, `guess` (a factor of 2), `fixed` "
+                          "(as they are), or a map of these by number");
 }
 
 KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names) {
@@ -49,7 +47,7 @@ KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names
   KnownTo said;
   for (const std::string& name : by_name.keys()) {
     if (std::find(names.begin(), names.end(), name) == names.end())
-      by_name.fail(name, fmt::format("a number that a diagnosis calibrates is wanted: {}", fmt::join(names, ", ")));
+      by_name.fail(name, fmt::format("this must be a number that a diagnosis calibrates: {}", fmt::join(names, ", ")));
     said[name] = read_share(by_name, name);
   }
   return said;

@@ -9,13 +9,13 @@
 
 namespace driftwright::effects {
 
-/// Standard deviations of logarithms by the name of a number; "": of all others. 0: a number that is taken as it stands.
+/// Standard deviations of logarithms by the name of a number; "": of all others. 0: a number that is taken as it is.
 using KnownTo = std::map<std::string, double>;
 inline constexpr double kGuess = 0.6931471805599453;  ///< a factor of 2
 
 /// The key `known_to` of an entry with numbers of these names, one at least.
 [[nodiscard]] schema::Key known_to_key(const std::vector<std::string>& names);
-/// Reads `known_to` of an entry; empty where it is not there. @param names  of the numbers that may be known roughly
+/// Reads `known_to` of an entry; empty where it does not exist. @param names  of the numbers that may be known roughly
 /// @throws InputError  for another word, a share beyond 0.1 % to 200 %, a number that has no such name
 [[nodiscard]] KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names);
 /// What is said of a number, or how well it is known where nothing is.

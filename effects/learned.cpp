@@ -68,18 +68,20 @@ void check(const Effect& e, const ConfigMap& in) {
   const std::string wanted = e.place_kind == Place::kSensor ? "rises" : e.tables.contains("tilts") ? "tilts" : "grows";
   for (const char* name : kTables) {
     if (e.tables.contains(name) && name != wanted)
-      in.fail(name, "`rises` (K) are of a sensor, `grows` (um) or `tilts` (urad) of a displacement, one of them");
+      in.fail(name,
+              "exactly one of them is required: `rises` (K) of a sensor, `grows` (um) or `tilts` (urad) of a displacement");
   }
   if (e.has("offset") && e.place_kind != Place::kSensor)
-    in.fail("offset", "it is of a sensor; displacements count from the start");
+    in.fail("offset", "`offset` is allowed only for a sensor; displacements count from the start");
   if (e.tables.contains(wanted) == (follows == "nothing"))
-    in.fail("follows", "what is learned (`" + wanted + "`) and what it `follows` go together");
+    in.fail("follows", "what is learned (`" + wanted + "`) and what it `follows` must be given together");
   if ((follows == "column") == e.words.at("column").empty())
-    in.fail("column", "`follows: column` and the `column` go together");
-  if ((follows == "speed") != e.has("at_speed")) in.fail("at_speed", "`follows: speed` and `at_speed` go together");
-  if ((follows == "column") != e.has("at")) in.fail("at", "`follows: column` and `at` go together");
+    in.fail("column", "`follows: column` and the `column` must be given together");
+  if ((follows == "speed") != e.has("at_speed"))
+    in.fail("at_speed", "`follows: speed` and `at_speed` must be given together");
+  if ((follows == "column") != e.has("at")) in.fail("at", "`follows: column` and `at` must be given together");
   if (follows == "nothing" && e["keeps"] == 1.0 && !e.has("offset"))
-    in.fail("follows", "nothing is learned: required is what it follows, or `keeps`, or an `offset`");
+    in.fail("follows", "the entry learns nothing; write what it `follows`, or `keeps`, or an `offset`");
 }
 
 EffectKind kind() {

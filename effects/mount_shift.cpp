@@ -23,7 +23,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 
 void check(const Effect& e, const ConfigMap& in) {
   check_amount(e, in, "shift");
-  if (e.has("until_time") && e["until_time"] <= e["time"]) in.fail("until_time", "it is behind `time`");
+  if (e.has("until_time") && e["until_time"] <= e["time"]) in.fail("until_time", "`until_time` must be later than `time`");
 }
 
 /// A step that somebody takes back.

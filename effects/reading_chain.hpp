@@ -74,7 +74,7 @@ class ReadingChain {
 [[nodiscard]] Eigen::RowVectorXd driven(const std::vector<double>& time_s, const Cyclogram& cyclogram,
                                         const std::function<double(const Drive&)>& u, double lag_s);
 
-/// amount (n / at_speed)^exponent at each time, at once or behind one lag: each section's exact exponential, from nothing at t = 0.
+/// amount (n / at_speed)^exponent at each time, at once or with one lag: each section's exact exponential, from nothing at t = 0.
 [[nodiscard]] Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double at_speed_rpm, double exponent,
                                               double lag_s);
 

@@ -30,7 +30,7 @@ const DriveChannel* drive_channel(const std::string& column) {
 }
 
 std::string signal_name(const std::string& column, double lag_s) {
-  return lag_s > 0.0 ? fmt::format("{} behind {} s", column, lag_s) : column;
+  return lag_s > 0.0 ? fmt::format("{} with a lag of {} s", column, lag_s) : column;
 }
 
 /// Rows that say something new.

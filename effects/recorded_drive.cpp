@@ -59,14 +59,16 @@ void check(const Effect& e, const ConfigMap& in) {
       static_cast<int>(e.has("gain")) + static_cast<int>(e.has("conductance")) + static_cast<int>(e.has("opening"));
   if (n_given != 1) {
     in.fail("gain",
-            "one of three is wanted: `gain`, W per unit of the column; `conductance`, W/K to a body as warm as the column "
+            "exactly one of the three is required: `gain`, W per unit of the column; `conductance`, W/K to a body as warm "
+            "as the column "
             "says; `opening`, W/K per unit of the column, to `surrounding` or to a `medium`");
   }
-  if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "it is of a `gain`");
+  if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "this key requires a `gain`");
   if (e["exponent"] != 1.0 && !e.has("at"))
-    in.fail("at", "the value of the column at which `gain` holds is wanted beside `exponent`");
-  if (e.has("medium") && !e.has("opening")) in.fail("medium", "it is of an `opening`");
-  if (e.has("medium") && in.has("surrounding")) in.fail("medium", "one of two is wanted: a `surrounding` or a `medium`");
+    in.fail("at", "`exponent` requires the value of the column at which `gain` holds");
+  if (e.has("medium") && !e.has("opening")) in.fail("medium", "this key requires an `opening`");
+  if (e.has("medium") && in.has("surrounding"))
+    in.fail("medium", "exactly one of the two is required: a `surrounding` or a `medium`");
   if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))
     in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
 }
@@ -179,7 +181,7 @@ EffectKind kind() {
                           "recorded_drive", Doubted::kFactor},
                          {"medium", "degC", 200.0, 500.0, kNotGiven,
                           "beside an opening, instead of a surrounding: temperature of the air or coolant that it lets in"},
-                         {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind the column"}},
+                         {"lag", "min", 0.0, 1e5, 0.0, "first-order lag to the column"}},
           .timing = Timing::kInTime,
           .contribute = contribute,
           .change_drive = change_drive,

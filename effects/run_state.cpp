@@ -43,11 +43,11 @@ void change_drive(const Effect& e, DriveChange& change) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e.in.empty()) in.fail("in", "the cyclogram is wanted that ran in this state");
+  if (e.in.empty()) in.fail("in", "`in` is required: the cyclogram that ran in this state");
   if (e["factor"] == 1.0 && e["warmed_up"] == 0.0 && e["rested"] == 0.0)
-    in.fail("factor", "nothing is another in this state; another `factor` than 1 or `warmed_up`, a time, is wanted");
+    in.fail("factor", "the entry changes nothing; write a `factor` other than 1 or a time `warmed_up`");
   if (e["rested"] > 0.0 && e["warmed_up"] == 0.0)
-    in.fail("rested", "is of a machine that was `warmed_up` before, which is not there");
+    in.fail("rested", "`rested` is allowed only beside `warmed_up`, which is missing");
 }
 
 /// Runs that may have had a state of their own: of a few, every choice of some of them; of many, each alone and each split in order.
@@ -136,7 +136,7 @@ EffectKind kind() {
       .places = {Place::kSpindle},
       .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"},
                      {"warmed_up", "min", 0.0, kLongest_min, 0.0, "that the machine had run before the record began"},
-                     {"rested", "min", 0.0, kLongest_min, 0.0, "and how long it had stood then"}},
+                     {"rested", "min", 0.0, kLongest_min, 0.0, "and how long it had rested then"}},
       .timing = Timing::kInRecord,
       .change_laws = change_laws,
       .change_drive = change_drive,

@@ -12,7 +12,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 }
 
 void check(const Effect&, const ConfigMap& in) {
-  if (!in.has("factor") && !in.has("lag")) in.fail("factor", "`factor`, `lag` or both are wanted");
+  if (!in.has("factor") && !in.has("lag")) in.fail("factor", "`factor`, `lag` or both are required");
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {

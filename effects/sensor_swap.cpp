@@ -8,7 +8,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e.words.at("with") == e.place) in.fail("with", "another sensor is wanted");
+  if (e.words.at("with") == e.place) in.fail("with", "this must be another sensor");
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {

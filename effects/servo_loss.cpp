@@ -56,7 +56,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       one.grid = {{-0.5}, {0.3}};
       list.push_back(one);
       if (!s.axis_rests[axis]) continue;
-      one.law = fmt::format("constant heat while the axis {} stands", kAxes[axis]);
+      one.law = fmt::format("constant heat while the axis {} is at rest", kAxes[axis]);
       one.numbers = {doubted("holding", "W", sd_W, trial_W)};
       one.numbers[0].low = 0.0;
       one.grid = {{}};

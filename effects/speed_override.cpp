@@ -52,7 +52,7 @@ void change_drive(const Effect& e, DriveChange& change) {
 /// Another factor or a limit; windows are as everywhere; what repeats must have some.
 void check(const Effect& e, const ConfigMap& in) {
   if (!e.has("factor") && !e.has("at_most"))
-    in.fail("factor", "`factor` or `at_most` is wanted: how the true speed differs from the recorded one");
+    in.fail("factor", "`factor` or `at_most` is required: how the true speed differs from the recorded one");
   if (e.tables.contains(kWindows)) {
     check_windows(e, in);
   } else if (e.has("every") || e.has("until_time")) {

@@ -39,7 +39,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind kind() {
   return {.key = "spindle_growth",
-          .title = "displacement that follows speed behind one lag: a rotor that no node of the machine holds",
+          .title = "displacement that follows speed with one lag: a rotor that no node of the machine holds",
           .law = "lag du/dt = growth (n / at_speed)^exponent - u, u = 0 at t = 0",
           .places = {Place::kDisplacement},
           .parameters = amount_parameters("growth", "settled growth at the stated speed",

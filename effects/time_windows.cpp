@@ -14,7 +14,7 @@ Table windows_table(bool compulsory) {
 }
 
 std::vector<Parameter> repeating(std::vector<Parameter> parameters) {
-  parameters.push_back({"every", "s", 1.0, 1e9, kNotGiven, "the windows come again after this; wants `until_time`"});
+  parameters.push_back({"every", "s", 1.0, 1e9, kNotGiven, "the windows come again after this; requires `until_time`"});
   parameters.push_back({"until_time", "s", 1.0, 1e9, kNotGiven, "when no further turn begins"});
   return parameters;
 }
@@ -50,15 +50,15 @@ void add_change_times(const std::vector<std::pair<double, double>>& windows, Hea
 void check_windows(const Effect& e, const ConfigMap& in) {
   const TimeSeries& rows = e.tables.at(kWindows);
   for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
-    if (!(rows.value[i] > rows.time_s[i])) in.fail(kWindows, "each window is [begin, end] with an end behind its beginning");
-    if (i > 0 && rows.time_s[i] < rows.value[i - 1]) in.fail(kWindows, "windows follow each other without overlap");
+    if (!(rows.value[i] > rows.time_s[i])) in.fail(kWindows, "each window [begin, end] must end after it begins");
+    if (i > 0 && rows.time_s[i] < rows.value[i - 1]) in.fail(kWindows, "windows must follow each other without overlap");
   }
-  if (e.has("every") != e.has("until_time")) in.fail("every", "`every` and `until_time` go together");
+  if (e.has("every") != e.has("until_time")) in.fail("every", "`every` and `until_time` must be given together");
   if (!e.has("every")) return;
   if (!(e["every"] >= rows.value.back() - rows.time_s.front()))
     in.fail("every", "the next turn would begin before this one ends");
   if (e["until_time"] > kMostWindows * e["every"])
-    in.fail("every", fmt::format("at most {:.0f} turns are wanted", kMostWindows));
+    in.fail("every", fmt::format("at most {:.0f} repetitions are allowed", kMostWindows));
 }
 
 Doubt one_window(const DoubtScene::Run& run, Effect window, DoubtedNumber size, double trial, const std::string& law) {

@@ -51,7 +51,8 @@ Table causes_table(const diagnosis::Diagnosis& d) {
       .title = "Causes",
       .caption =
           "Gain: logarithm of how much more probable the data are with it than without, after the price of having looked "
-          "for it among all candidates. Under a cause stands what it cannot be told from: claims that hold more than a "
+          "for it among all candidates. Listed under a cause: what it cannot be distinguished from: claims that hold more "
+          "than a "
           "tenth of the odds with "
           "others of their kind, or of its own kind at other places.",
       .columns = {{.title = "effect"},
@@ -111,8 +112,8 @@ Section statements_section(const diagnosis::Diagnosis& d) {
   table.rows.push_back({"nothing", "", "", d.statements.nothing});
   add(section, std::move(table));
   if (d.causes.empty() && d.ended_at.empty() && d.statements.nothing < 0.5)
-    add(section,
-        Text{"No law of the catalogue, fitted in full, stands up as a cause: the statements are of linear theory alone."});
+    add(section, Text{"No law of the catalogue, fitted in full, is confirmed as a cause: the statements come from linear "
+                      "theory alone."});
   return section;
 }
 
@@ -149,9 +150,9 @@ Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
           c.alternatives.empty()
               ? "Nine tenths of the odds are with this effect at this place; those in the row are of this law of it alone"
           : c.odds.kind < diagnosis::kSure
-              ? fmt::format("The data cannot tell it from the others; its kind has {:.0f} % of the odds",
+              ? fmt::format("The data cannot distinguish it from the others; its kind has {:.0f} % of the odds",
                             100.0 * c.odds.kind)
-              : fmt::format("What it is has {:.0f} % of the odds; where, the data do not tell", 100.0 * c.odds.kind),
+              : fmt::format("Its kind has {:.0f} % of the odds; the data do not show where it is", 100.0 * c.odds.kind),
       .columns = {{.title = "effect"},
                   {.title = "where"},
                   {.title = "law"},
@@ -168,7 +169,7 @@ Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
 }
 
 Section experiment_section(const diagnosis::Experiment& e) {
-  Section section{.key = "discriminating_experiment", .title = "Experiment that would tell them apart"};
+  Section section{.key = "discriminating_experiment", .title = "Experiment that would distinguish them"};
   add(section, Text{.words = e.why, .key = "why"});
   add(section,
       Text{fmt::format("Cyclogram {}: {}. Any two of the explanations would then differ by {:.1f} sigmas or more, what is "
@@ -262,7 +263,7 @@ Section gain_section(const diagnosis::Diagnosis& d) {
   Table table{
       .key = "channels",
       .caption =
-          "Noise floor: what the readings scatter by themselves. Regression: ridge on memories of speed, ambient and "
+          "Noise floor: the scatter of the readings alone. Regression: ridge on memories of speed, ambient and "
           "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. Named causes: "
           "these alone beside the scenario's numbers; found: what the searches without these rows found, whatever of it is "
           "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written; "
@@ -298,9 +299,8 @@ Section gain_section(const diagnosis::Diagnosis& d) {
   const bool numbers_stay =
       std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return !e.is_written; });
   if (numbers_stay && d.written.keeps_numbers && !d.written.causes_alone)
-    add(section, Text{"The file leaves the scenario's own numbers as they were (--causes-only): of that alone \"the file, "
-                      "all rows\" tells; "
-                      "on kept-out rows they are as fitted."});
+    add(section, Text{"The file leaves the scenario's own numbers as they were (--causes-only): only \"the file, all rows\" "
+                      "shows the effect of that; on kept-out rows they are as fitted."});
   if (const std::string taken_up = taken_up_text(d); !taken_up.empty())
     add(section, Text{.words = taken_up, .key = "taken_up"});
   if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});

@@ -67,7 +67,7 @@ void add_causes(std::vector<ResultKey>& keys) {
                       "logarithm of how much more probable the data are with it, after its price [nats]"),
                ResultKey{.path = "causes[].alternatives",
                          .kind = ResultKind::kLike,
-                         .meaning = "what the data cannot tell from it",
+                         .meaning = "what the data cannot distinguish from it",
                          .like = "causes[]"}});
 }
 
@@ -106,13 +106,13 @@ void add_statements(std::vector<ResultKey>& keys) {
 void add_experiment(std::vector<ResultKey>& keys) {
   keys.insert(
       keys.end(),
-      {or_null(object("discriminating_experiment", "what would tell the first cause from its alternatives")),
-       text("discriminating_experiment.why", "what it is to tell apart"),
+      {or_null(object("discriminating_experiment", "what would distinguish the first cause from its alternatives")),
+       text("discriminating_experiment.why", "what it is to distinguish"),
        words("discriminating_experiment.proposes", {"cyclogram", "extra_sensor"}, "the better of the two"),
        number("discriminating_experiment.discrimination", "expected difference of the two claims [nats]"),
        object("discriminating_experiment.simulated"),
        count("discriminating_experiment.simulated.records", "simulated records of the experiment"),
-       count("discriminating_experiment.simulated.told", "of these, in how many the true claim was told"),
+       count("discriminating_experiment.simulated.told", "of these, in how many the true claim was recognised"),
        sometimes(object("discriminating_experiment.extra_sensor", "a thermometer more")),
        text("discriminating_experiment.extra_sensor.region", "where it would sit"),
        number("discriminating_experiment.extra_sensor.difference_K", "how far the two claims differ there [K]"),
@@ -133,7 +133,7 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        number("unexplained.rms", "of the channel where it is greatest, in `unit`"),
        text("unexplained.unit", "K, um or urad"),
        text("unexplained.where", "that channel"),
-       object("unexplained.channels[]", "all in which it stands out, greatest first"),
+       object("unexplained.channels[]", "all in which it is visible, greatest first"),
        text("unexplained.channels[].name", ""),
        number("unexplained.channels[].rms", "in `unit`"),
        text("unexplained.channels[].unit", "K, um or urad"),
@@ -173,7 +173,7 @@ void add_gain(std::vector<ResultKey>& keys) {
        or_null(number("gain.channels[].rmse_found", "of what searches without these rows found")),
        or_null(number("gain.channels[].rmse_regression_drive", "of a regression on speed, ambient and recorded drives")),
        or_null(number("gain.channels[].rmse_regression_readings", "of one on thermometers besides")),
-       number("gain.channels[].noise_floor", "what the readings scatter by themselves"),
+       number("gain.channels[].noise_floor", "the scatter of the readings alone"),
        or_null(number("gain.channels[].peak_before", "on rows kept out")),
        or_null(number("gain.channels[].peak_after", "on rows kept out")),
        or_null(number("gain.channels[].rmse_all_before", "of the scenario as written, over the whole of all records")),
@@ -201,7 +201,7 @@ void add_gain(std::vector<ResultKey>& keys) {
 void add_search(std::vector<ResultKey>& keys) {
   keys.insert(
       keys.end(),
-      {flag("complete", "false: it was ended early, and tells what it knew by then"),
+      {flag("complete", "false: it was ended early, and holds what was known by then"),
        flag("weighed_by_model_error", "whether what the model misses counts as noise"),
        count("n_candidates", "causes that were weighed"), object("calibrated[]", "the scenario's own numbers as fitted"),
        text("calibrated[].name", "as the scenario calls it"), number("calibrated[].value", "in `unit`"),

@@ -60,8 +60,8 @@ output::Table channels_table(const Identified& n) {
                       .title = "What is left of each channel",
                       .caption =
                           "Root mean square of measured less computed, driven by what was recorded and by no reading. Own "
-                          "rows: how warm each record begins and where its indicators stand "
-                          "at zero are fitted with it. As simulated: of the written scenario, which begins in balance with "
+                          "rows: how warm each record begins and where its indicators are at zero are fitted with it. As "
+                          "simulated: of the written scenario, which begins in balance with "
                           "the first ambient; much more than that says that a record begins warm. Kept "
                           "out: rows that a network was not fitted to, of each kind in turn (runs or eighths, speeds, the "
                           "end, the beginning, the warmest and the coldest rows), geometric "
@@ -92,7 +92,7 @@ output::Table extension_table(const Identified& n) {
           "Root mean square of measured less simulated, driven by what was recorded and by no reading. As simulated: all "
           "rows of the records, by the file that was read and the one that was written. Kept out: rows that were "
           "hidden from what was learned, of each kind in turn, geometric mean over the kinds; the scenario's own "
-          "numbers, wherever they come from, were as they stand in all of them. Missed more without: mean over the "
+          "numbers, wherever they come from, were as they are in all of them. Missed more without: mean over the "
           "hidden parts, and its standard error; what is not above 0 with 95 % (Student) is not written. Kept: share of the "
           "scenario's own change.",
       .columns = {{.key = "name", .title = "channel"},
@@ -106,9 +106,9 @@ output::Table extension_table(const Identified& n) {
                   {.key = "kept", .title = "kept", .unit = "%", .digits = output::percent(0)},
                   {.key = "written", .title = "learned"}}};
   for (const IdentifiedChannel& c : n.channels)
-    table.rows.push_back({c.name, shown(c.unit), c.scenario_simulated, c.missed_simulated, c.scenario_kept_out, c.missed_kept_out,
-                          std::expm1(c.missed_more_without.mean), c.missed_more_without.standard_error, c.fit.kept,
-                          c.is_extended ? "yes" : "no"});
+    table.rows.push_back({c.name, shown(c.unit), c.scenario_simulated, c.missed_simulated, c.scenario_kept_out,
+                          c.missed_kept_out, std::expm1(c.missed_more_without.mean), c.missed_more_without.standard_error,
+                          c.fit.kept, c.is_extended ? "yes" : "no"});
   return table;
 }
 

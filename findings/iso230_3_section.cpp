@@ -13,9 +13,8 @@ using output::Table;
 
 constexpr const char* kTest = "ISO 230-3, thermal distortion by rotating spindle";
 constexpr const char* kRanges =
-    "Ranges d are maximum minus minimum; the value at t counts from the start of the test. The last column has the time at "
-    "rest "
-    "behind t in it, too.";
+    "Ranges d are maximum minus minimum; the value at t counts from the start of the test. The last column includes the "
+    "time at rest after t.";
 
 const std::vector<Column>& figure_columns() {
   static const std::vector<Column> kColumns = {

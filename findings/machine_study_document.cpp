@@ -124,15 +124,14 @@ Section ranking_section(const studies::MachineStudy& study) {
 }
 
 Table regression_table(const studies::MachineStudy& study) {
-  Table table{
-      .key = "regressions",
-      .title = "Multiple linear regression (QR) on the training records",
-      .caption =
-          "RMS is that of its residual there. A condition number far above 100 says that the chosen sensors tell the "
-          "same story twice.",
-      .columns = {{.key = "target", .title = "channel"},
-                  {.key = "intercept_um", .title = "intercept", .unit = "um", .digits = output::decimals(2)}},
-      .detail = true};
+  Table table{.key = "regressions",
+              .title = "Multiple linear regression (QR) on the training records",
+              .caption =
+                  "RMS is that of its residual there. A condition number far above 100 means that the chosen sensors carry "
+                  "the same information twice.",
+              .columns = {{.key = "target", .title = "channel"},
+                          {.key = "intercept_um", .title = "intercept", .unit = "um", .digits = output::decimals(2)}},
+              .detail = true};
   for (const std::string& input : study.regressions.front().inputs)
     table.columns.push_back(
         {.key = "coefficients_um_per_K." + input, .title = input, .unit = "um/K", .digits = output::decimals(3)});

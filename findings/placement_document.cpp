@@ -40,7 +40,8 @@ std::string for_words(PlacedFor placed_for) {
 }
 
 std::string told_for_words(PlacedFor placed_for) {
-  return placed_for == PlacedFor::kBoth ? "both (geometric mean of observer and regression)" : "the " + for_words(placed_for);
+  return placed_for == PlacedFor::kBoth ? "both (geometric mean of observer and regression)"
+                                        : "the " + for_words(placed_for);
 }
 
 std::string n_words(std::size_t n) {
@@ -79,11 +80,13 @@ std::size_t enough(const Placement& p) {
 Verdict verdict_of(const Placement& p) {
   const auto n = static_cast<std::size_t>(p.options.n);
   const Residual& left = p.chosen.left[n - 1];
-  std::string text = fmt::format("On cyclograms and machines that they were not chosen on, {} {} {:.2f} µm of {:.1f} µm (RMS) to the observer and {:.2f} µm to a regression. ",
-                                 n_words(n), n == 1 ? "leaves" : "leave", left.observer_um, p.drift_um, left.regression_um);
+  std::string text = fmt::format(
+      "On cyclograms and machines that they were not chosen on, {} {} {:.2f} µm of {:.1f} µm (RMS) to the observer and "
+      "{:.2f} µm to a regression. ",
+      n_words(n), n == 1 ? "leaves" : "leave", left.observer_um, p.drift_um, left.regression_um);
   const std::size_t n_enough = enough(p);
   if (n_enough < p.chosen.left.size()) {
-    text += fmt::format("Behind {} no more of them take off a tenth each: stop there.", n_words(n_enough));
+    text += fmt::format("After {} no more of them take off a tenth each: stop there.", n_words(n_enough));
   } else if (n_enough > 1) {
     text += fmt::format("Even the last of {} takes off a tenth.", n_enough);
   }
@@ -112,25 +115,32 @@ Table places_table(const Placement& p, const std::vector<std::string>& entries) 
 }
 
 Table curve_table(const Placement& p) {
-  Table table{.key = "curve",
-              .title = "How many",
-              .caption = "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of the same places; with the loss of the worst one "
-                         "where that is counted.",
-              .columns = {{.key = "n", .title = "n"},
-                          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "places", .title = "places"}},
-              .rows = {}};
-  table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(), output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
+  Table table{
+      .key = "curve",
+      .title = "How many",
+      .caption =
+          "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of "
+          "the same places; with the loss of the worst one "
+          "where that is counted.",
+      .columns =
+          {{.key = "n", .title = "n"},
+           {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
+           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
+           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+           {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
+           {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
+           {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
+           {.key = "places", .title = "places"}},
+      .rows = {}};
+  table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(),
+                        output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
   for (std::size_t n = 0; n < p.chosen.sets.size(); ++n) {
     std::vector<std::string> places;
-    for (std::size_t i = p.mounted.size(); i < p.chosen.sets[n].size(); ++i) places.push_back(spot_name(p, p.chosen.sets[n][i]));
-    table.rows.push_back({n + 1, p.chosen.left[n].observer_um, p.chosen.left[n].regression_um, p.chosen_lost[n].observer_um, p.chosen_lost[n].regression_um, p.observer_um[n], p.regression_um[n], p.objective_um[n], places});
+    for (std::size_t i = p.mounted.size(); i < p.chosen.sets[n].size(); ++i)
+      places.push_back(spot_name(p, p.chosen.sets[n][i]));
+    table.rows.push_back({n + 1, p.chosen.left[n].observer_um, p.chosen.left[n].regression_um, p.chosen_lost[n].observer_um,
+                          p.chosen_lost[n].regression_um, p.observer_um[n], p.regression_um[n], p.objective_um[n], places});
   }
   return table;
 }
@@ -138,12 +148,14 @@ Table curve_table(const Placement& p) {
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
-              .caption = "Random: median and best of six sets; which is best is known behindhand only.",
+              .caption = "Random: median and best of six sets; which is best is known only afterwards.",
               .columns = {{.key = "way", .title = "way"}},
               .rows = {}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
-    table.columns.push_back({.key = fmt::format("n{}_um", n), .title = fmt::format("n = {}", n), .unit = "um", .digits = output::decimals(2)});
-  const auto add_row = [&](const std::string& way, const std::vector<Residual>& left, const std::vector<std::vector<int>>& sets) {
+    table.columns.push_back(
+        {.key = fmt::format("n{}_um", n), .title = fmt::format("n = {}", n), .unit = "um", .digits = output::decimals(2)});
+  const auto add_row = [&](const std::string& way, const std::vector<Residual>& left,
+                           const std::vector<std::vector<int>>& sets) {
     std::vector<output::Datum> row = {way};
     for (std::size_t n = 0; n < p.chosen.sets.size(); ++n)
       row.push_back(sets.empty() || !sets[n].empty() ? output::Datum(left[n].*value) : output::Datum());
@@ -159,21 +171,23 @@ Table ways_table(const Placement& p, double Residual::*value, const std::string&
 }
 
 Table losses_table(const Placement& p) {
-  Table table{.key = "loss_of_one",
-              .title = fmt::format("Any one of {} fails", p.options.n),
-              .caption = "The observer goes on with the others, the regression is fitted anew without it: the worst of all cases.",
-              .columns = {{.key = "way", .title = "way"},
-                          {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "observer_worst", .title = "of"},
-                          {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "regression_worst", .title = "of"}},
-              .rows = {}};
+  Table table{
+      .key = "loss_of_one",
+      .title = fmt::format("Any one of {} fails", p.options.n),
+      .caption = "The observer goes on with the others, the regression is fitted anew without it: the worst of all cases.",
+      .columns =
+          {{.key = "way", .title = "way"},
+           {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
+           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+           {.key = "observer_worst", .title = "of"},
+           {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
+           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+           {.key = "regression_worst", .title = "of"}},
+      .rows = {}};
   for (const studies::LossOfOne& loss : p.losses) {
     const auto lost = [&](int spot) { return spot < 0 ? output::Datum() : output::Datum(spot_name(p, spot)); };
-    table.rows.push_back({loss.way, loss.all.observer_um, loss.worst.observer_um, lost(loss.worst_for_observer), loss.all.regression_um,
-                          loss.worst.regression_um, lost(loss.worst_for_regression)});
+    table.rows.push_back({loss.way, loss.all.observer_um, loss.worst.observer_um, lost(loss.worst_for_observer),
+                          loss.all.regression_um, loss.worst.regression_um, lost(loss.worst_for_regression)});
   }
   return table;
 }
@@ -181,7 +195,9 @@ Table losses_table(const Placement& p) {
 Table tests_table(const Placement& p) {
   Table table{.key = "tests",
               .title = "Tests",
-              .caption = "What is left when the regression was fitted to this one test alone, and the observer learned from it with the drift measured.",
+              .caption =
+                  "What is left when the regression was fitted to this one test alone, and the observer learned from it "
+                  "with the drift measured.",
               .columns = {{.key = "duration_h", .title = "hours", .unit = "h", .digits = output::decimals(0)},
                           {.key = "programme", .title = "programme"},
                           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
@@ -200,7 +216,8 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
             .bands = {},
             .marks = {},
             .half_width = true};
-  const auto add_curve = [&](const std::string& label, const std::vector<Residual>& left, bool with_none, Series::Style style, int color) {
+  const auto add_curve = [&](const std::string& label, const std::vector<Residual>& left, bool with_none,
+                             Series::Style style, int color) {
     Series series{.label = label, .style = style, .color = color};
     if (with_none && predictor == "observer") {
       series.x.push_back(0.0);
@@ -222,7 +239,8 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
     for (std::size_t n = 0; n < left.size(); ++n) {
       if (!is_random && other.sets[n].empty()) left[n].*value = std::nan("");
     }
-    add_curve(is_random ? "random, median" : other.way, left, false, is_random ? Series::Style::kDashed : Series::Style::kLine, color++);
+    add_curve(is_random ? "random, median" : other.way, left, false,
+              is_random ? Series::Style::kDashed : Series::Style::kLine, color++);
   }
   return plot;
 }
@@ -238,18 +256,23 @@ output::Picture told_picture(const Placement& p, const scenarios::MachineModel& 
     const studies::Spot& s = p.spots[static_cast<std::size_t>(spot)];
     marks.push_back({s.sensor, s.at_m});
   }
-  return {.title = fmt::format("What one thermometer would leave of the drift, as designed for {}; {:.2f} µm without any. Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
+  return {.title = fmt::format("What one thermometer would leave of the drift, as designed for {}; {:.2f} µm without any. "
+                               "Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
                                told_for_words(p.options.placed_for), p.told_nothing_um, p.options.n),
-          .svg = output::draw_machine({.mesh = &p.mesh, .field = output::PictureField{"drift left by one thermometer there [µm]", p.told_um}, .marks = marks})};
+          .svg = output::draw_machine({.mesh = &p.mesh,
+                                       .field = output::PictureField{"drift left by one thermometer there [µm]", p.told_um},
+                                       .marks = marks})};
 }
 
 }  // namespace
 
-output::Document document_of(const Placement& p, const scenarios::Scenario& scenario, const std::vector<std::string>& entries,
-                             const output::Provenance& made_by) {
-  output::Document document{.made_by = made_by,
-                            .title = fmt::format("{}: places for thermometers", scenario.name),
-                            .subtitle = fmt::format("{}{}", p.model, p.is_linearised ? "; laws of temperature frozen where the machine is at work" : "")};
+output::Document document_of(const Placement& p, const scenarios::Scenario& scenario,
+                             const std::vector<std::string>& entries, const output::Provenance& made_by) {
+  output::Document document{
+      .made_by = made_by,
+      .title = fmt::format("{}: places for thermometers", scenario.name),
+      .subtitle =
+          fmt::format("{}{}", p.model, p.is_linearised ? "; laws of temperature frozen where the machine is at work" : "")};
   output::Section& body = document.body;
   add(body, verdict_of(p));
   if (p.mesh.n_nodes() > 0) add(body, told_picture(p, *scenario.machine));
@@ -258,40 +281,71 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(body, Value{.key = "placed_for", .words = "chosen for", .datum = for_words(p.options.placed_for)});
   add(body, Value{.key = "any_may_fail", .words = "any one may fail", .datum = p.options.any_may_fail});
   add(body, Value{.key = "regions", .words = "may sit on", .datum = p.regions});
-  if (!p.left_out.empty()) add(body, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
+  if (!p.left_out.empty())
+    add(body, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
   if (!p.options.mounted.empty()) add(body, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
-  add(body, Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
+  add(body,
+      Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
   add(body, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
   add(body, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
   if (!p.made.empty()) add(body, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
   add(body, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
   add(body, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
-  add(body, Value{.key = "noise_K", .words = "noise of a reading", .datum = p.options.noise_K, .unit = "K", .digits = output::significant(2)});
-  add(body, Value{.key = "drift_um", .words = "drift without correction, RMS", .datum = p.drift_um, .unit = "um", .digits = output::decimals(2)});
-  add(body, Value{.key = "model_alone_um", .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted", .datum = p.without.observer_um, .unit = "um", .digits = output::decimals(2)});
-  add(body, Value{.key = "enough", .words = "thermometers behind which no more take off a tenth each", .datum = enough(p)});
+  add(body, Value{.key = "noise_K",
+                  .words = "noise of a reading",
+                  .datum = p.options.noise_K,
+                  .unit = "K",
+                  .digits = output::significant(2)});
+  add(body, Value{.key = "drift_um",
+                  .words = "drift without correction, RMS",
+                  .datum = p.drift_um,
+                  .unit = "um",
+                  .digits = output::decimals(2)});
+  add(body, Value{.key = "model_alone_um",
+                  .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted",
+                  .datum = p.without.observer_um,
+                  .unit = "um",
+                  .digits = output::decimals(2)});
+  add(body, Value{.key = "enough", .words = "thermometers after which no more take off a tenth each", .datum = enough(p)});
   add(body, curve_table(p));
   add(body, curve_plot(p, &Residual::observer_um, "observer"));
   add(body, curve_plot(p, &Residual::regression_um, "regression"));
   add(body, ways_table(p, &Residual::observer_um, "observer"));
   add(body, ways_table(p, &Residual::regression_um, "regression"));
   if (p.own) {
-    add(body, Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
-    add(body, Value{.key = "own.observer_um", .words = "these leave to the observer", .datum = p.own->left.front().observer_um, .unit = "um", .digits = output::decimals(2)});
-    add(body, Value{.key = "own.regression_um", .words = "to the regression", .datum = p.own->left.front().regression_um, .unit = "um", .digits = output::decimals(2)});
+    add(body,
+        Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
+    add(body, Value{.key = "own.observer_um",
+                    .words = "these leave to the observer",
+                    .datum = p.own->left.front().observer_um,
+                    .unit = "um",
+                    .digits = output::decimals(2)});
+    add(body, Value{.key = "own.regression_um",
+                    .words = "to the regression",
+                    .datum = p.own->left.front().regression_um,
+                    .unit = "um",
+                    .digits = output::decimals(2)});
   }
   add(body, losses_table(p));
   if (const int least = studies::least_test(p.tests, &Residual::regression_um); least >= 0) {
     const studies::TriedTest& test = p.tests[static_cast<std::size_t>(least)];
-    add(body, Verdict{.key = "test_for_regression", .title = fmt::format("Test for a regression: {}", test.programme),
-                      .text = fmt::format("Fitted to it alone, a regression on these places leaves {:.2f} µm, within a tenth of the best test that was tried.", test.left.regression_um)});
-    const studies::TriedTest& other = p.tests[static_cast<std::size_t>(studies::least_test(p.tests, &Residual::observer_um))];
-    add(body, Verdict{.key = "test_for_observer", .title = fmt::format("Test for the observer: {}", other.programme),
-                      .text = fmt::format("Having learned from it, the observer leaves {:.2f} µm, within a tenth of the best test; without a test {:.2f} µm.", other.left.observer_um,
+    add(body, Verdict{.key = "test_for_regression",
+                      .title = fmt::format("Test for a regression: {}", test.programme),
+                      .text = fmt::format("Fitted to it alone, a regression on these places leaves {:.2f} µm, within a "
+                                          "tenth of the best test that was tried.",
+                                          test.left.regression_um)});
+    const studies::TriedTest& other =
+        p.tests[static_cast<std::size_t>(studies::least_test(p.tests, &Residual::observer_um))];
+    add(body, Verdict{.key = "test_for_observer",
+                      .title = fmt::format("Test for the observer: {}", other.programme),
+                      .text = fmt::format("Having learned from it, the observer leaves {:.2f} µm, within a tenth of the "
+                                          "best test; without a test {:.2f} µm.",
+                                          other.left.observer_um,
                                           p.chosen.left[static_cast<std::size_t>(p.options.n) - 1].observer_um)});
   }
   add(body, tests_table(p));
-  add(body, output::Preformatted{.title = "To paste under `sensors:`", .text = fmt::format("  - {}\n", fmt::join(entries, "\n  - "))});
+  add(body, output::Preformatted{.title = "To paste under `sensors:`",
+                                 .text = fmt::format("  - {}\n", fmt::join(entries, "\n  - "))});
   return document;
 }
 

@@ -117,7 +117,8 @@ void add_plots(const Curves& c, const std::string& after, const std::vector<outp
 }
 
 std::string follows(const ResidualStructure& s) {
-  return s.lag ? fmt::format("{} behind {:.0f} min ({:.0f} %)", s.lag->quantity, s.lag->time_s / 60.0, 100.0 * s.lag->share)
+  return s.lag ? fmt::format("{} with a lag of {:.0f} min ({:.0f} %)", s.lag->quantity, s.lag->time_s / 60.0,
+                             100.0 * s.lag->share)
                : "-";
 }
 
@@ -160,7 +161,7 @@ Section record_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosi
                   {.title = "lag 1 as written", .digits = kCorrelation},
                   {.title = "lag 1 " + after, .digits = kCorrelation},
                   {.title = "bound, ±", .digits = output::decimals(2)}}};
-  Table lags{.title = "What recorded quantity the residual is like behind one lag",
+  Table lags{.title = "What recorded quantity the residual is like with one lag",
              .caption = "With the share of its variance; from 30 %.",
              .columns = {{.title = "channel"}, {.title = "as written follows"}, {.title = after + " follows"}}};
   Table before = likeness_table("The residual as written"),

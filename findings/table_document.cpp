@@ -160,12 +160,11 @@ Section readings_section(const studies::TableStudy& study) {
                      .words = "misfit of this machine, not fitted",
                      .datum = study.computed_rms_um,
                      .unit = "um"});
-  add(section,
-      Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
-           "almost anything: "
-           "they do not carry a model of ambient temperature. On the second morning the error rises while the ambient "
-           "stands still. "
-           "What is missing is a channel: a thermometer on the table and one on its scale."});
+  add(section, Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
+                    "almost anything: "
+                    "they do not carry a model of ambient temperature. On the second morning the error rises while the "
+                    "ambient does not change. "
+                    "What is missing is a channel: a thermometer on the table and one on its scale."});
   return section;
 }
 
@@ -349,7 +348,7 @@ output::Document document_of(const studies::TableStudy& study, const scenarios::
   add(body,
       Text{.words = studies::instrument_words(s) +
                     " Thermometers between: what table and scales would do if each were evenly warm, with expansions as "
-                    "wrong as the model's and nothing fitted. They tell the scale of Y, too, which rings on one line do "
+                    "wrong as the model's and nothing fitted. They give the scale of Y, too, which rings on one line do "
                     "not. The minimax frame knows every error; no frame leaves 1 % less.",
            .detail = true});
   add(body, strategies_plot(study));

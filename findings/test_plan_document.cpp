@@ -68,15 +68,17 @@ Verdict verdict_of(const TestPlan& plan) {
   for (const auto& s : plan.planned.cyclogram.sections)
     sections.push_back(fmt::format("{:.4g} min {}", s.duration_s / 60.0, drive_words(s.drive)));
   const bool is_usual = plan.planned.cyclogram.sections == plan.usual.cyclogram.sections;
-  return {.kind = Verdict::Kind::kGood,
-          .title = is_usual
-                       ? "No better test was found than the usual one"
-                       : fmt::format("Of the faults supposed, this test tells {:.0f} % from all others, the usual one {:.0f} %",
-                                     planned, usual),
-          .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to "
-                              "twice what the catalogue expects; the others are too small, or "
-                              "another kind of effect does the same. This compares tests; it is no forecast.",
-                              plan.duration_s / 3600.0, fmt::join(sections, ", "))};
+  return {
+      .kind = Verdict::Kind::kGood,
+      .title = is_usual
+                   ? "No better test was found than the usual one"
+                   : fmt::format(
+                         "Of the assumed faults, this test distinguishes {:.0f} % from all others, the usual one {:.0f} %",
+                         planned, usual),
+      .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to "
+                          "twice what the catalogue expects; the others are too small, or "
+                          "another kind of effect does the same. This compares tests; it is no forecast.",
+                          plan.duration_s / 3600.0, fmt::join(sections, ", "))};
 }
 
 Table tests_table(const TestPlan& plan) {
@@ -99,7 +101,8 @@ Table kinds_table(const TestPlan& plan) {
       .key = "kinds",
       .title = "Effects",
       .caption =
-          "Seen: large enough to be told from nothing. Named: told from every other kind of effect, too. Evidence: of a "
+          "Seen: large enough to be distinguished from nothing. Named: distinguished from every other kind of effect, too. "
+          "Evidence: of a "
           "fault of one standard deviation of its prior, what the machine's own "
           "numbers can take of it taken off; the median of its places and laws.",
       .columns = {{.key = "effect", .title = "effect"},
@@ -169,10 +172,9 @@ void add_maps(output::Section& body, const TestPlan& plan) {
     }
     return output::Picture{.title = title, .svg = output::draw_heat_map(map)};
   };
-  add(body,
-      map_of(
-          usual,
-          "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
+  add(body, map_of(usual,
+                   "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may "
+                   "explain as well"));
   add(body, map_of(planned, "Planned test: the same"));
 }
 
@@ -237,7 +239,7 @@ std::string law_words(const diagnosis::DoubtedLaw& law) {
 
 Table pairs_table(const TestPlan& plan) {
   Table table{.key = "pairs",
-              .title = "Pairs that the planned test tells least",
+              .title = "Pairs that the planned test distinguishes least",
               .caption =
                   "d': of a fault of one standard deviation of its prior from the other effect at any size, in standard "
                   "deviations of what is not known.",

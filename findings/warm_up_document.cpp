@@ -34,7 +34,9 @@ std::string speeds_words(const std::vector<Cyclogram::Section>& sections) {
 Table ways_table(const WarmUpPlan& plan, const Cyclogram& job) {
   Table table{.key = "ways",
               .title = "Ways to begin",
-              .caption = "Peak: of the job's drift from its first row, where the tool is set. Where no time is enough, the least peak that was found.",
+              .caption =
+                  "Peak: of the job's drift from its first row, where the tool is set. Where no time is enough, the least "
+                  "peak that was found.",
               .columns = {{.key = "way", .title = "way"},
                           {.key = "is_enough", .title = "enough"},
                           {.key = "duration_min", .title = "takes", .unit = "min", .digits = output::decimals(1)},
@@ -59,7 +61,8 @@ double kept_um(const WarmUpPlan& plan) {
 
 std::string tolerance_words(const WarmUpPlan& plan) {
   if (plan.kept_free == 0.0) return fmt::format("{:g} µm", plan.tolerance_um);
-  return fmt::format("{:.3g} µm, of {:g} µm with {:.0f} % kept free", kept_um(plan), plan.tolerance_um, 100.0 * plan.kept_free);
+  return fmt::format("{:.3g} µm, of {:g} µm with {:.0f} % kept free", kept_um(plan), plan.tolerance_um,
+                     100.0 * plan.kept_free);
 }
 
 Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
@@ -71,18 +74,19 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
                                 plan.at_once.peak_um, tolerance)};
   const WarmUp& best = plan.best();
   if (!best.is_enough) {
-    std::string text = fmt::format("Of warm-ups up to {:.0f} min and {:.0f} rpm none was found behind which {} drifts by less than {:.2f} µm ({}); "
-                                   "allowed are {}.",
-                                   plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
+    std::string text = fmt::format(
+        "Of warm-ups up to {:.0f} min and {:.0f} rpm none was found after which {} drifts by less than {:.2f} µm ({}); "
+        "allowed are {}.",
+        plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
     if (plan.by_jobs.is_enough)
-      text += fmt::format(" Behind {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
+      text += fmt::format(" After {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
                           plan.by_jobs.duration_s() / 60.0, plan.by_jobs.peak_um);
     return {.kind = Verdict::Kind::kBad,
             .title = "No warm-up was found that is enough",
             .text = text + " Allow more time or speed, or correct the drift (`schedule`, `compensate`)."};
   }
-  std::string text = fmt::format("{}; then {} drifts by {:.2f} µm at most, within {}.", speeds_words(best.sections), job.name,
-                                 best.peak_um, tolerance);
+  std::string text = fmt::format("{}; then {} drifts by {:.2f} µm at most, within {}.", speeds_words(best.sections),
+                                 job.name, best.peak_um, tolerance);
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   if (best.sections.size() == 1) {
     text += " No programme of more speeds was found that is shorter.";
@@ -94,9 +98,11 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
                         plan.constant.duration_s() / 60.0, 100.0 * saved);
   }
   if (plan.held)
-    text += fmt::format(" Of {} machines off by {:.0f} % it keeps {:g} µm on {}, of {} others on {}.", plan.held->n, 100.0 * plan.model_error,
-                        plan.tolerance_um, plan.held->n_kept, plan.held->n_fresh, plan.held->n_fresh_kept);
-  return {.kind = Verdict::Kind::kGood, .title = fmt::format("Warm up for {:.1f} min", best.duration_s() / 60.0), .text = text};
+    text += fmt::format(" Of {} machines off by {:.0f} % it keeps {:g} µm on {}, of {} others on {}.", plan.held->n,
+                        100.0 * plan.model_error, plan.tolerance_um, plan.held->n_kept, plan.held->n_fresh,
+                        plan.held->n_fresh_kept);
+  return {
+      .kind = Verdict::Kind::kGood, .title = fmt::format("Warm up for {:.1f} min", best.duration_s() / 60.0), .text = text};
 }
 
 Plot levels_plot(const WarmUpPlan& plan) {
@@ -152,22 +158,29 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
             .marks = section_marks(job)};
   for (const std::string& name : plan.channels) {
     const int color = static_cast<int>(plot.series.size() / 2);
-    plot.series.push_back({.label = name + ", at once", .x = minutes(plan.job_at_once), .y = plan.job_at_once.at(name).values, .style = Series::Style::kDashed, .color = color});
-    plot.series.push_back({.label = name + ", warmed up", .x = minutes(plan.job_warm), .y = plan.job_warm.at(name).values, .color = color});
+    plot.series.push_back({.label = name + ", at once",
+                           .x = minutes(plan.job_at_once),
+                           .y = plan.job_at_once.at(name).values,
+                           .style = Series::Style::kDashed,
+                           .color = color});
+    plot.series.push_back(
+        {.label = name + ", warmed up", .x = minutes(plan.job_warm), .y = plan.job_warm.at(name).values, .color = color});
   }
   return plot;
 }
 
-/// One strategy of each sort, so that lines can be told apart.
-constexpr std::array<const char*, 6> kDrawn = {"no correction",         "one thermometer",
-                                               "ridge, all sensors",    "thermal modes of the model",
-                                               "thermometers and memories", "observer"};
+/// One strategy of each sort, so that lines can be distinguished.
+constexpr std::array<const char*, 6> kDrawn = {
+    "no correction", "one thermometer", "ridge, all sensors", "thermal modes of the model", "thermometers and memories",
+    "observer"};
 
 std::string corrected_words(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {
-  return fmt::format("Warm-up of {} min at {:.0f} rpm, then the job, {} corrected by strategies that were fitted on the scenario's training runs, with a "
-                     "model that is off by {:.0f} % where they have one, and readings with noise. Enough: within {}.",
-                     fmt::format("0 to {:.0f}", corrected.times_s.back() / 60.0), corrected.speed_rpm, corrected.target,
-                     100.0 * corrected.model_scatter, tolerance_words(plan));
+  return fmt::format(
+      "Warm-up of {} min at {:.0f} rpm, then the job, {} corrected by strategies that were fitted on the scenario's "
+      "training runs, with a "
+      "model that is off by {:.0f} % where they have one, and readings with noise. Enough: within {}.",
+      fmt::format("0 to {:.0f}", corrected.times_s.back() / 60.0), corrected.speed_rpm, corrected.target,
+      100.0 * corrected.model_scatter, tolerance_words(plan));
 }
 
 Plot corrected_plot(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {
@@ -197,8 +210,8 @@ Table corrected_table(const studies::CorrectedWarmUps& corrected, const WarmUpPl
                           {.key = "least_um", .title = "least left", .unit = "um", .digits = output::decimals(2)}}};
   for (const studies::CorrectedWarmUp& strategy : corrected.strategies)
     table.rows.push_back({strategy.strategy, strategy.is_enough,
-                          strategy.is_enough ? output::Datum(strategy.least_s / 60.0) : output::Datum(), strategy.left_um.front(),
-                          *std::min_element(strategy.left_um.begin(), strategy.left_um.end())});
+                          strategy.is_enough ? output::Datum(strategy.least_s / 60.0) : output::Datum(),
+                          strategy.left_um.front(), *std::min_element(strategy.left_um.begin(), strategy.left_um.end())});
   return table;
 }
 
@@ -221,29 +234,56 @@ Table corrected_times_table(const studies::CorrectedWarmUps& corrected) {
 
 output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::Scenario& scenario, const Cyclogram& job,
                              const std::string& asked, const output::Provenance& made_by) {
-  output::Document document{
-      .made_by = made_by,
-      .title = fmt::format("{}: warm-up before {}", scenario.name, job.name),
-      .subtitle = fmt::format("predicted by the {}{}", plan.predicted_by, plan.started_from.empty() ? "" : "; after " + plan.started_from)};
+  output::Document document{.made_by = made_by,
+                            .title = fmt::format("{}: warm-up before {}", scenario.name, job.name),
+                            .subtitle = fmt::format("predicted by the {}{}", plan.predicted_by,
+                                                    plan.started_from.empty() ? "" : "; after " + plan.started_from)};
   output::Section& body = document.body;
   add(body, verdict_of(plan, job));
   add(body, Value{.key = "job", .datum = asked});
-  add(body, Value{.key = "tolerance_um", .words = "tolerance", .datum = plan.tolerance_um, .unit = "um", .digits = output::significant(4)});
-  add(body, Value{.key = "kept_free", .words = "of it kept free for what the model does not know", .datum = plan.kept_free, .digits = output::percent(0)});
-  add(body, Value{.key = "speed_limit_rpm", .words = "speed limit", .datum = plan.most_speed_rpm, .unit = "rpm", .digits = output::decimals(0)});
+  add(body, Value{.key = "tolerance_um",
+                  .words = "tolerance",
+                  .datum = plan.tolerance_um,
+                  .unit = "um",
+                  .digits = output::significant(4)});
+  add(body, Value{.key = "kept_free",
+                  .words = "of it kept free for what the model does not know",
+                  .datum = plan.kept_free,
+                  .digits = output::percent(0)});
+  add(body, Value{.key = "speed_limit_rpm",
+                  .words = "speed limit",
+                  .datum = plan.most_speed_rpm,
+                  .unit = "rpm",
+                  .digits = output::decimals(0)});
   if (plan.most_power_W > 0.0)
-    add(body, Value{.key = "power_limit_W", .words = "limit of a speed's heat", .datum = plan.most_power_W, .unit = "W", .digits = output::decimals(0)});
-  add(body, Value{.key = "power_at_limit_W", .words = "heat of the fastest speed that is allowed", .datum = plan.power_at_most_W, .unit = "W", .digits = output::decimals(0)});
-  add(body, Value{.key = "time_limit_min", .words = "time limit", .datum = plan.most_s / 60.0, .unit = "min", .digits = output::decimals(0)});
+    add(body, Value{.key = "power_limit_W",
+                    .words = "limit of a speed's heat",
+                    .datum = plan.most_power_W,
+                    .unit = "W",
+                    .digits = output::decimals(0)});
+  add(body, Value{.key = "power_at_limit_W",
+                  .words = "heat of the fastest speed that is allowed",
+                  .datum = plan.power_at_most_W,
+                  .unit = "W",
+                  .digits = output::decimals(0)});
+  add(body, Value{.key = "time_limit_min",
+                  .words = "time limit",
+                  .datum = plan.most_s / 60.0,
+                  .unit = "min",
+                  .digits = output::decimals(0)});
   if (plan.held) {
-    add(body, Value{.key = "model_error", .words = "machines are off by", .datum = plan.model_error, .digits = output::percent(0)});
+    add(body,
+        Value{
+            .key = "model_error", .words = "machines are off by", .datum = plan.model_error, .digits = output::percent(0)});
     add(body, Value{.key = "machines", .words = "machines that the free share was chosen by", .datum = plan.held->n});
     add(body, Value{.key = "machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_kept});
     add(body, Value{.key = "fresh_machines", .words = "other machines", .datum = plan.held->n_fresh});
-    add(body, Value{.key = "fresh_machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_fresh_kept});
+    add(body,
+        Value{.key = "fresh_machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_fresh_kept});
   }
   add(body, Value{.key = "predicted_by", .datum = plan.predicted_by});
-  add(body, Value{.key = "started_from", .datum = plan.started_from.empty() ? output::Datum() : output::Datum(plan.started_from)});
+  add(body,
+      Value{.key = "started_from", .datum = plan.started_from.empty() ? output::Datum() : output::Datum(plan.started_from)});
   add(body, ways_table(plan, job));
   add(body, Value{.key = "programmes_tried", .words = "programmes run on the model", .datum = plan.n_tried});
   add(body, levels_plot(plan));
@@ -261,7 +301,8 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
                            {.key = "two_speeds_um", .title = "two speeds", .unit = "um", .digits = output::decimals(2)}},
                .rows = {},
                .detail = true};
-  for (const studies::WarmUpLevel& level : plan.levels) levels.rows.push_back({level.duration_s / 60.0, level.constant_um, level.staged_um});
+  for (const studies::WarmUpLevel& level : plan.levels)
+    levels.rows.push_back({level.duration_s / 60.0, level.constant_um, level.staged_um});
   add(body, std::move(levels));
   return document;
 }

@@ -16,7 +16,8 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kLongestAnswer_s = 2.0;
-constexpr double kClockAhead_s = 60.0;  // of an observation before the agent's own time: no more than clocks of its adapters differ
+constexpr double kClockAhead_s =
+    60.0;  // of an observation before the agent's own time: no more than clocks of its adapters differ
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
 
 void require_items(const HeardValues& values, const MtconnectStreams& told) {
@@ -83,7 +84,7 @@ RowSource::Got CurrentRows::next(std::string& line, double wait_s) {
     has_answered_ = true;
     is_away_ = false;
   } catch (const RangeError& e) {
-    if (!is_away_) say_(fmt::format("{}; it is asked again every {:g} s", e.what(), every_s_));
+    if (!is_away_) say_(fmt::format("{}; `follow` asks it again every {:g} s", e.what(), every_s_));
     is_away_ = true;
   }
   if (!has_answered_) return Got::kNothingYet;
@@ -125,14 +126,16 @@ void SampleRows::ask() {
         continue;
       }
       if (streams.is_out_of_range) {
-        say_(fmt::format(
-            "it has forgotten observations from number {} on: its buffer is too short for that; what it tells now is taken",
-            next_));
+        say_(
+            fmt::format("it no longer has the observations from number {} on, because its buffer is too short; its latest "
+                        "ones are taken instead",
+                        next_));
         begin(agent_.current(most_s));
         continue;
       }
       if (streams.next < next_ || (streams.next == next_ && next_ <= streams.last) || streams.next == 0)
-        throw RangeError(fmt::format("its answer does not go on behind observation {} (nextSequence {})", next_, streams.next));
+        throw RangeError(
+            fmt::format("its answer does not continue after observation {} (nextSequence {})", next_, streams.next));
       take(streams);
       if (next_ > streams.last) break;
     }
@@ -140,7 +143,7 @@ void SampleRows::ask() {
     is_away_ = false;
   } catch (const RangeError& e) {
     if (!is_away_)
-      say_(fmt::format("{}; it is asked again every {:g} s, for all that it observes meanwhile", e.what(), every_s_));
+      say_(fmt::format("{}; `follow` asks it again every {:g} s, for all that it observes meanwhile", e.what(), every_s_));
     is_away_ = true;
   }
 }

@@ -125,7 +125,7 @@ BoundedServer::BoundedServer(const std::string& host, int port, Answer answer, S
     listening_ = std::move(socket);
     return;
   }
-  throw InputError(fmt::format("nobody can listen at {}, port {}: {}", host, port, why));
+  throw InputError(fmt::format("the page cannot be served at {}, port {}: {}", host, port, why));
 }
 
 BoundedServer::~BoundedServer() = default;

@@ -21,11 +21,11 @@ void require_streamable(const MachineModel& machine) {
   for (const effects::Effect& e : machine.effects) {
     const auto refuse = [&](const std::string& why) {
       throw InputError(
-          e.where,
-          fmt::format("{} {}; a stream does not tell enough of it, and `follow` wants a machine without", e.name(), why));
+          e.where, fmt::format("{} {}; a stream does not say enough about it, and `follow` requires a machine without it",
+                               e.name(), why));
     };
     if (effects::changes_drive(e))
-      refuse("changes what the record of the drive or of the ambient says, by what comes before or behind a row");
+      refuse("changes what the record of the drive or of the ambient says, by what comes before or after a row");
     if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
       refuse("changes what instruments say of displacements, by all that came before");
     if (e.kind->key == "heat_source" && e.has("fades")) refuse("fades from the start of a record");

@@ -76,7 +76,7 @@ class FollowedPredictor final : public Followed {
     if (d().predictor->is_driven() && d().ambient.empty())
       throw InputError(
           fmt::format("{}: cannot be followed: '{}' takes the ambient from its scenario, and a stream has none; a "
-                      "thermometer of the ambient (`node: ambient`) or `ambient` in the records it is fitted on tells it",
+                      "thermometer of the ambient (`node: ambient`) or `ambient` in the records it is fitted on is required",
                       path, d().name));
     if (file_.judged.is_object() && file_.judged.contains("verdict") && file_.judged["verdict"].is_string())
       axis_.verdict = file_.judged["verdict"].get<std::string>();

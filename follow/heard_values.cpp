@@ -27,7 +27,7 @@ std::vector<ChannelOrigin> read_origins(const std::vector<std::string>& topics) 
   for (const std::string& given : topics) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
-      throw InputError(fmt::format("--topic '{}': CHANNEL=TOPIC is wanted, such as t01_degC=shop/mill/t01", given));
+      throw InputError(fmt::format("--topic '{}' must be CHANNEL=TOPIC, such as t01_degC=shop/mill/t01", given));
     list.push_back({given.substr(0, equals), given.substr(equals + 1)});
   }
   return list;

@@ -25,9 +25,9 @@ MqttAddress read_mqtt_address(const std::string& text) {
     const char *begin = text.data() + colon + 1, *end = text.data() + text.size();
     const auto [at, error] = std::from_chars(begin, end, address.port);
     if (error != std::errc() || at != end || address.port < 1 || address.port > 65535)
-      throw InputError(fmt::format("--mqtt '{}': a port from 1 to 65535 is wanted behind the colon", text));
+      throw InputError(fmt::format("--mqtt '{}': a port from 1 to 65535 is required after the colon", text));
   }
-  if (address.host.empty()) throw InputError(fmt::format("--mqtt '{}': HOST or HOST:PORT is wanted", text));
+  if (address.host.empty()) throw InputError(fmt::format("--mqtt '{}' must be HOST or HOST:PORT", text));
   return address;
 }
 
@@ -57,7 +57,8 @@ MqttLink::MqttLink(const MqttAddress& address, std::vector<std::string> topics, 
   mosquitto_message_callback_set(client_.get(), &MqttLink::heard);
   mosquitto_reconnect_delay_set(client_.get(), kFirstDelay_s, kLongestDelay_s, true);
   const int begun = mosquitto_connect_async(client_.get(), address.host.c_str(), address.port, kKeepAlive_s);
-  if (begun != MOSQ_ERR_SUCCESS && begun != MOSQ_ERR_ERRNO)  // a broker that is not there yet is waited for
+  if (begun != MOSQ_ERR_SUCCESS &&
+      begun != MOSQ_ERR_ERRNO)  // while the broker is unreachable, the link waits and tries again
     must(begun, fmt::format("--mqtt {}:{}", address.host, address.port));
   must(mosquitto_loop_start(client_.get()), "MQTT");
 }

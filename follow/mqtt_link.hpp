@@ -1,5 +1,5 @@
 #pragma once
-// Messages of an MQTT broker as they come, and ours to it. A broker that goes away is waited for: the link comes back by itself.
+// Messages of an MQTT broker as they come, and ours to it. If the broker is unreachable or disconnects, the link waits and reconnects.
 
 #include <atomic>
 #include <condition_variable>

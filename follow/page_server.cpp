@@ -72,8 +72,8 @@ void require_safe(const PageAddress& address) {
         fmt::format("--token: {} characters can be guessed; {} or more are required", address.token.size(), kLeastToken));
   if (address.token.empty() && !is_loopback(address.host))
     throw InputError(
-        fmt::format("--bind {}: others than this computer could read the page; beyond loopback (127.0.0.1, ::1, "
-                    "localhost) it wants --token WORD, of {} characters or more",
+        fmt::format("--bind {}: other computers could read the page; beyond loopback (127.0.0.1, ::1, localhost) --token "
+                    "WORD is required, of {} characters or more",
                     address.host, kLeastToken));
 }
 
@@ -112,7 +112,7 @@ struct PageServer::Running {
   HttpAnswer answer(const HttpRequest& request) {
     if (!is_allowed(request))
       return address.token.empty() ? plain_answer(403, "This page is asked for as localhost or 127.0.0.1.\n")
-                                   : plain_answer(401, "This page wants the token that it is served with: ?token=...\n");
+                                   : plain_answer(401, "This page requires the token that it is served with: ?token=...\n");
     if (request.path == "/") return {.type = "text/html; charset=utf-8", .body = html, .next = {}};
     if (request.path == "/events") return events(request);
     return plain_answer(404, "The page is at /.\n");

@@ -42,7 +42,7 @@ RecordFile::RecordFile(const std::string& path, const std::vector<Channel>& chan
   if (is_there && !goes_on)
     throw InputError(fmt::format("--record {}: the file is there already; name another, or go on with it by --state", path));
   if (is_there && !std::filesystem::is_regular_file(path))
-    throw InputError(fmt::format("--record {}: a folder, device or pipe of this name is there; a file is wanted", path));
+    throw InputError(fmt::format("--record {}: a folder, device or pipe of this name exists; it must be a file", path));
   if (is_there && mend(path) != header_of(channels))
     throw InputError(fmt::format("--record {}: it has other columns than the stream", path));
   file_.reset(std::fopen(path.c_str(), "ab"));

@@ -1,5 +1,5 @@
 #pragma once
-// The rows that were followed as an ordinary record (docs/record.md), which every other verb reads.
+// The rows that were followed as an ordinary record (docs/reference/record.md), which every other verb reads.
 
 #include <cstdio>
 #include <memory>

@@ -36,8 +36,8 @@ Channel channel_of(const std::string& header, const std::string& source) {
       return {header.substr(0, header.size() - unit.size() - 1), unit, {}};
   }
   throw InputError(
-      fmt::format("{}: column '{}' has no unit; a header such as time_s,speed_rpm,t01_degC is wanted, or "
-                  "--columns with a map of the columns. Units: {}",
+      fmt::format("{}: column '{}' has no unit; write a header such as time_s,speed_rpm,t01_degC, or give --columns with a "
+                  "map of the columns. Units: {}",
                   source, header, fmt::join(known_units(), ", ")));
 }
 
@@ -119,8 +119,8 @@ struct RowText::State {
     }
     if (time.empty())
       throw InputError(
-          fmt::format("{}: no column time_s, time_min or time_h among '{}'; rows begin with their time, or "
-                      "--columns says how they tell it",
+          fmt::format("{}: no column time_s, time_min or time_h among '{}'; rows must begin with their time, or --columns "
+                      "must say where it is",
                       source, fmt::join(names, "', '")));
     n_cells = names.size();
     has_layout = true;
@@ -208,11 +208,12 @@ struct RowText::State {
   StreamRow of_cells(const std::vector<Cell>& cells) {
     StreamRow row{.time_s = 0.0, .values = std::vector<double>(channels.size(), kMissing)};
     const auto cell = [&](const Place& p) -> const std::string& {
-      if (p.index >= cells.size()) throw RangeError(fmt::format("{} cells; column {} is wanted", cells.size(), p.index + 1));
+      if (p.index >= cells.size())
+        throw RangeError(fmt::format("this row has {} cells, but column {} is required", cells.size(), p.index + 1));
       return cells[p.index].text;
     };
     if (!map && cells.size() != n_cells)
-      throw RangeError(fmt::format("{} cells; the header has {} columns", cells.size(), n_cells));
+      throw RangeError(fmt::format("this row has {} cells, but the header has {} columns", cells.size(), n_cells));
     if (map && map->time.interval_s > 0.0) {
       row.time_s = map->time.interval_s * static_cast<double>(n_rows);
     } else {
@@ -273,7 +274,7 @@ std::optional<StreamRow> RowText::take(const std::string& given) {
   if (!line.empty() && line.back() == '\r') line.pop_back();
   if (s.n_lines == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
   if (line.size() > kLongestLine)
-    throw RangeError(fmt::format("a line of more than {} characters, which is the most", kLongestLine));
+    throw RangeError(fmt::format("the line has more than {} characters, which is the most", kLongestLine));
   const std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string::npos || line[begin] == '#') return std::nullopt;
   const bool is_json = line[begin] == '{';

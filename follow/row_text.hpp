@@ -14,7 +14,7 @@ namespace driftwright::follow {
 /// of a record ("time_s", "speed_rpm"; null: missing), or as the map names them; any other is a header of CSV, unless the map says there is none.
 class RowText {
  public:
-  /// @param columns  none: headers are those of records (docs/record.md): "time_s,speed_rpm,t01_degC"
+  /// @param columns  none: headers are those of records (docs/reference/record.md): "time_s,speed_rpm,t01_degC"
   /// @param source   where the lines come from, for messages
   RowText(std::optional<ColumnMap> columns, std::string source);
   ~RowText();

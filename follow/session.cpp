@@ -22,8 +22,8 @@ Session::Session(std::vector<Model> models) : models_(std::move(models)) {
   for (const Model& m : models_) {
     for (const AxisCorrection& axis : m.followed->axes()) {
       if (std::find(names.begin(), names.end(), axis.name) != names.end())
-        throw InputError(
-            fmt::format("{}: '{}' is corrected by another model already; each axis wants one", m.path, axis.name));
+        throw InputError(fmt::format("{}: '{}' is corrected by another model already; each axis requires a model of its own",
+                                     m.path, axis.name));
       names.push_back(axis.name);
     }
   }
@@ -115,7 +115,7 @@ FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::st
   l.state = !has_begun || trust <= kOff ? "off" : trust < kOn ? "reduced" : is_taken ? "on" : "held";
   if (l.state == "on") return l;
   if (!has_begun) {
-    l.why = "no row has told drive and ambient yet";
+    l.why = "no row has given drive and ambient yet";
   } else if (!is_taken) {
     l.why = !passed_over.empty() ? passed_over : fmt::format("the row is passed over: {}", fmt::join(l.faults, ", "));
   } else if (!doubted.empty()) {
@@ -138,7 +138,7 @@ Json Session::state() const {
 
 void Session::recall(const Json& j) {
   if (output::value<std::string>(j, "format") != kFormat)
-    throw InputError(fmt::format("no state of `follow` (key `format` must be \"{}\")", kFormat));
+    throw InputError(fmt::format("this file holds no state of `follow` (key `format` must be \"{}\")", kFormat));
   const auto channels = output::value<std::vector<std::string>>(j, "channels");
   std::vector<std::string> here;
   for (const Channel& c : channels_) here.push_back(c.header());

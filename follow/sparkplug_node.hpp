@@ -32,7 +32,7 @@ class SparkplugNode {
 
   /// Takes a message. @return why it is of no use; "" where it is
   std::string take(const std::string& topic, const std::string& payload);
-  /// The link was lost: nobody knows whether messages were, and a birth is wanted.
+  /// The link was lost: nobody knows whether messages were, and a birth is required.
   void lose_sight() { wants_birth_ = true; }
   [[nodiscard]] bool wants_birth() const { return wants_birth_; }
   [[nodiscard]] bool is_alive() const { return is_alive_; }

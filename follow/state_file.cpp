@@ -47,7 +47,7 @@ bool resume_from(const std::filesystem::path& file, Session& session) {
   if (!std::filesystem::exists(file)) return false;
   if (!std::filesystem::is_regular_file(file))  // which the rename of write_state() would do away with
     throw InputError(
-        fmt::format("--state {}: a folder, device or pipe of this name is there; a file is wanted", file.string()));
+        fmt::format("--state {}: a folder, device or pipe of this name exists; it must be a file", file.string()));
   try {
     const Json j = parse_json(read_bytes(file));
     if (!is_whole(j)) throw InputError("key `hash` does not fit what the file holds: it is damaged");

@@ -6,7 +6,7 @@
 //
 //     T²_τ = m_τ' C_τ⁻¹ m_τ
 //
-// exceeds h_τ as seldom as is wanted. An alarm is raised where one of them exceeds its h, and goes when all have been below half of it for an hour.
+// exceeds h_τ as seldom as is required. An alarm is raised where one of them exceeds its h, and goes when all have been below half of it for an hour.
 // Source: Lowry, Woodall, Champ & Rigdon, Technometrics 34 (1992) 46 (multivariate exponentially weighted mean charts); thresholds are simulated
 // (watch_trial.hpp), since innovations of a model that is a little wrong are neither white nor normal.
 

@@ -13,8 +13,9 @@ constexpr const char* kFormat = "driftwright watch 1";
 
 WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
-    throw InputError(
-        fmt::format("no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them", kFormat));
+    throw InputError(fmt::format(
+        "this file holds no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them",
+        kFormat));
   if (!is_whole(j))
     throw InputError(
         "key `hash` does not fit what the file holds: it was damaged or changed, or is of a version that wrote none; "
@@ -28,11 +29,11 @@ WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   const Json scales = output::list(j, "scales");
   const auto n = static_cast<Eigen::Index>(limits.sensors.size());
   if (scales.size() != limits.scales.size())
-    throw InputError(fmt::format("`scales` has {} entries; {} are wanted", scales.size(), limits.scales.size()));
+    throw InputError(fmt::format("`scales` has {} entries; {} are required", scales.size(), limits.scales.size()));
   for (std::size_t k = 0; k < scales.size(); ++k) {
     if (output::finite(scales[k], "mean_over_s") != kWatchedOver_s[k])
       throw InputError(
-          fmt::format("`mean_over_s` is {}; {} is wanted", scales[k].at("mean_over_s").dump(), kWatchedOver_s[k]));
+          fmt::format("`mean_over_s` is {}; it must be {}", scales[k].at("mean_over_s").dump(), kWatchedOver_s[k]));
     const auto values = output::value<std::vector<double>>(scales[k], "covariance_K2");
     if (static_cast<Eigen::Index>(values.size()) != n * n)
       throw InputError("`covariance_K2` is of another number of sensors");

@@ -268,7 +268,7 @@ WatchLimits simulated_limits(const Observer& model, const std::vector<std::strin
                              int n_machines, double days_each, const Listener& listener) {
   const auto n = static_cast<Eigen::Index>(sensors.size());
   const auto n_days = static_cast<std::size_t>(days_each);
-  if (n_machines < 1 || n_days < 1) throw std::logic_error("thresholds of a watch want a machine for a day");
+  if (n_machines < 1 || n_days < 1) throw std::logic_error("thresholds of a watch require a machine for a day");
   WatchLimits limits{.sensors = sensors, .scales = {}, .machine_days = static_cast<double>(n_days) * n_machines};
   listener.begin(fmt::format("simulating {} machines for {} days", n_machines + kMachinesOfCovariance, n_days));
   int n_done = 0;

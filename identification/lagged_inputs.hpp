@@ -1,5 +1,5 @@
 #pragma once
-// What drives a machine, behind the first-order lag of a body.
+// What drives a machine, with the first-order lag of a body.
 
 #include <Eigen/Core>
 #include <span>

@@ -155,7 +155,7 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
         roles.guesses.push_back(
             turns ? fmt::format("'{}' never changes: it is taken as switched on in the first row, after a long rest",
                                 c.header())
-                  : fmt::format("'{}' stands at 0 and drives nothing", c.header()));
+                  : fmt::format("'{}' is always 0 and drives nothing", c.header()));
     } else if ((c.unit == "degC" || c.unit == "K") && c.name != roles.ambient) {
       roles.thermometers.push_back(c.name);
     } else if (c.unit == "um") {
@@ -172,11 +172,10 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
   std::vector<std::string> drives = roles.drives;
   if (!roles.speed.empty()) drives.push_back(roles.speed);
   if (drives.empty())
-    throw InputError(
-        fmt::format("{}: nothing that drives the machine changes. Required is a column such as speed_rpm or heater_W that "
-                    "is switched at least twice, or --drive "
-                    "with a column that does; a machine that is never switched tells nothing of its heat",
-                    first.source));
+    throw InputError(fmt::format(
+        "{}: nothing that drives the machine changes. A column such as speed_rpm or heater_W that is switched at least "
+        "twice is required, or --drive with a column that is; a machine that is never switched shows nothing of its heat",
+        first.source));
   if (roles.ambient.empty()) {
     auto named = std::find(roles.thermometers.begin(), roles.thermometers.end(), "ambient");
     if (named == roles.thermometers.end())
@@ -203,12 +202,12 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
                         least, 100.0 * std::max(0.0, share)));
       } else {
         roles.guesses.emplace_back(
-            "no thermometer tells the ambient, for all follow the drives: it is taken as constant; --ambient names one");
+            "no thermometer gives the ambient, because all follow the drives: it is taken as constant; --ambient names one");
       }
     } else {
       roles.guesses.emplace_back(
-          "there is no ambient temperature: it is taken as constant; a thermometer in the air beside the machine would "
-          "tell");
+          "there is no ambient temperature: it is taken as constant; a thermometer in the air beside the machine would give "
+          "it");
     }
     std::erase(roles.thermometers, roles.ambient);
   }

@@ -49,7 +49,7 @@ std::vector<double> Run::step(const Row& row) {
   State& s = *state_;
   const double before_s = s.cyclogram.duration_s();
   if (!(row.time_s > before_s))
-    throw InputError(fmt::format("a row at {:g} s behind one at {:g} s: time must increase", row.time_s, before_s));
+    throw InputError(fmt::format("a row at {:g} s comes after one at {:g} s: time must increase", row.time_s, before_s));
   s.cyclogram.sections.push_back({row.time_s - before_s, row.drive});
   const double end_s = s.cyclogram.duration_s();
   if (row.ambient_degC) {

@@ -71,7 +71,7 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
       }
     }
     if (displacement && !displacement->points) continue;
-    if (!machine.elasticity) throw std::logic_error("body_parts: displacements of a mesh want its elasticity");
+    if (!machine.elasticity) throw std::logic_error("body_parts: displacements of a mesh require its elasticity");
     const Eigen::VectorXd response = machine.elasticity->response(machine.placed.functionals[f]);
     for (std::size_t r = 0; r < loads.size(); ++r) {
       parts[r].outputs.col(output).head(mesh.n_nodes()) += loads[r].transposed(response);

@@ -60,7 +60,8 @@ std::vector<std::string> node_names(const MachineModel& model) {
             e.where,
             fmt::format("'{}' is the air around every machine and no lumped node; give the node a name of its own", n.name));
       if (std::find(nodes.begin(), nodes.end(), n.name) != nodes.end()) {
-        throw InputError(e.where, fmt::format("there is a lumped node '{}' already; each wants a name of its own", n.name));
+        throw InputError(e.where,
+                         fmt::format("there is a lumped node '{}' already; each requires a name of its own", n.name));
       }
       nodes.push_back(n.name);
     }
@@ -89,7 +90,7 @@ void require_outside(const Mesh& mesh, const std::string& surface, const Where& 
     if (n_behind < 2) continue;
     const Eigen::Vector3d x_mm = 1e3 * mesh.coords.col(nodes[0]);
     throw InputError(where, fmt::format("surface '{}' lies inside a body at [{:.1f} mm, {:.1f} mm, {:.1f} mm]; films, heat, "
-                                        "radiation, supports and joints want outer faces",
+                                        "radiation, supports and joints require outer faces",
                                         surface, x_mm[0], x_mm[1], x_mm[2]));
   }
 }
@@ -156,14 +157,13 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
                                        e.place, over->second.name, over->second.name));
       }
       if (is_of_joint && e["decay"] != 0.0)
-        throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
+        throw InputError(e.where, "`decay` requires a temperature, but a joint has none of its own");
       const bool has_medium = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
                                           [&](const auto& x) { return x.name == e.place && x.medium_K.has_value(); });
       if (e["warmer"] != 0.0 && !has_medium)
-        throw InputError(e.where,
-                         fmt::format("'{}' has no medium of a stated temperature, which `warmer` wants: a coolant's "
-                                     "`set_point` without `tank`, or a `medium`",
-                                     e.place));
+        throw InputError(e.where, fmt::format("'{}' has no medium of a stated temperature, which `warmer` requires: a "
+                                              "coolant's `set_point` without `tank`, or a `medium`",
+                                              e.place));
     } else if (e.place_kind == effects::Place::kNode && e.place == effects::kAmbientName) {
       throw InputError(e.where, "the ambient is no lumped node; nothing heats or holds it");
     } else {
@@ -191,7 +191,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
           return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place && at_once &&
                  !follows(other, e) && !follows(e, other);
         });
-    if (is_single && again) throw InputError(e.where, fmt::format("{} stands there twice; which one is meant?", e.name()));
+    if (is_single && again) throw InputError(e.where, fmt::format("{} is given twice there; which one is meant?", e.name()));
   }
   for (const mesh::Joint& joint : mesh.joints) {
     const bool has_contact = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
@@ -360,7 +360,7 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
     must_be_one_of(j.where, "joint", j.mechanics.joint, joint_names(mesh));
     const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
                                    [&](const auto& other) { return other.joint == j.mechanics.joint; });
-    if (again) throw InputError(j.where, fmt::format("joint '{}' stands under `joints` twice", j.mechanics.joint));
+    if (again) throw InputError(j.where, fmt::format("joint '{}' is listed twice under `joints`", j.mechanics.joint));
     placed.joints.push_back(j.mechanics);
   }
   for (const Sensor& sensor : model.sensors) {

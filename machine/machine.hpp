@@ -25,7 +25,7 @@ struct PlacedMachine {
 };
 
 /// Meshes the machine and finds every region, surface, joint, node and point of the scenario in it.
-/// @throws InputError  for a name or point that is not there, a region without material, a joint without contact
+/// @throws InputError  for a name or point that does not exist, a region without material, a joint without contact
 /// @throws SolveError  when the mesh cannot be made
 [[nodiscard]] PlacedMachine place(const MachineModel& model);
 /// The same in a mesh that build_mesh() has made of model.mesh.

@@ -20,7 +20,7 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kMB = 1048576.0;
-// Measured (docs/performance.md): what a process takes without a mesh, and per pair of nodes that couple.
+// Measured (docs/theory/performance.md): what a process takes without a mesh, and per pair of nodes that couple.
 constexpr double kProgram = 74.0 * kMB;
 constexpr double kAssembled = 254.0;       // both triangles of blocks, CHOLMOD's copy, mesh and loads
 constexpr double kMultigrid = 610.0;       // the same with all levels
@@ -63,7 +63,9 @@ MeshDemand mesh_demand(const Scenario& scenario, const PlacedMachine& placed, bo
   const solver::BlockPattern nodes = solver::stiffness_pattern(mesh, layers);
   const auto n_pairs = static_cast<double>(nodes.column.size());
   const double n = mesh.n_nodes();
-  MeshDemand demand{.memory_bytes = kProgram + 6.0 * kHeatMatrix * n_pairs, .time_s = 0.5 + 0.2 * kAssembled_s * n_pairs, .method = "heat alone"};
+  MeshDemand demand{.memory_bytes = kProgram + 6.0 * kHeatMatrix * n_pairs,
+                    .time_s = 0.5 + 0.2 * kAssembled_s * n_pairs,
+                    .method = "heat alone"};
   double stays = kProgram;  // of the elastic machine
   if (is_elastic) {
     const int solves = n_solves(scenario, placed, full);
@@ -97,7 +99,8 @@ MeshDemand mesh_demand(const Scenario& scenario, const PlacedMachine& placed, bo
                           8.0 * n * (kVectorsOfOutput * n_outputs + kVectorsOfPoint * n_points);
   demand.memory_bytes = std::max(demand.memory_bytes, reducing);
   const double n_basis = kVectorsOfPoint * n_points / 3.0;
-  demand.time_s += kBasis_s * n * n_basis * n_basis + kSolved_s * heat.bytes * n_basis + kMultiplied_s * heat.work * 10.0 * n_points;
+  demand.time_s +=
+      kBasis_s * n * n_basis * n_basis + kSolved_s * heat.bytes * n_basis + kMultiplied_s * heat.work * 10.0 * n_points;
   return demand;
 }
 
@@ -123,10 +126,14 @@ void require_room(const Scenario& scenario, const PlacedMachine& placed, const M
   std::string change = "a coarser mesh, or a machine with more memory";
   if (scenario.solver.model == ModelKind::kReduced) {
     const double full = mesh_demand(scenario, placed, true).memory_bytes;
-    if (full < 0.9 * demand.memory_bytes) change = fmt::format("`model: full` in `solver` (about {:.1f} GB), {}", 1e-9 * full, change);
+    if (full < 0.9 * demand.memory_bytes)
+      change = fmt::format("`model: full` in `solver` (about {:.1f} GB), {}", 1e-9 * full, change);
   }
-  throw InputError(scenario.machine->where, fmt::format("{} nodes would take about {:.1f} GB of memory, and {:.1f} GB are left here: it would swap, or be killed. Take {}",
-                                                        placed.mesh.n_nodes(), 1e-9 * demand.memory_bytes, 1e-9 * room_bytes, change));
+  throw InputError(
+      scenario.machine->where,
+      fmt::format(
+          "{} nodes would take about {:.1f} GB of memory, and {:.1f} GB are left here: it would swap, or be killed. Take {}",
+          placed.mesh.n_nodes(), 1e-9 * demand.memory_bytes, 1e-9 * room_bytes, change));
 }
 
 }  // namespace driftwright::scenarios

@@ -35,7 +35,7 @@ template <class Scalar>
                                                                              Eigen::Index rows, Eigen::Index columns);
 
 /// Writes the small system for others: its matrices as .npy, names and numbers in model.json, and reduced_model.py, which reads them
-/// and makes A, B, C of dz/dt = A z + B u, y = C z (docs/reduced_model.md).
+/// and makes A, B, C of dz/dt = A z + B u, y = C z (docs/theory/reduced_model.md).
 ///
 /// @param drives  at which coefficients and powers are written out; laws that look at temperatures must not stand in the system
 /// @param file    where the file of a name goes

@@ -96,11 +96,11 @@ void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balanc
   add_exchanges(paths, mesh, balance, is_open);
   const std::set<std::string> shut_in = paths.shut_in();
   if (shut_in.empty()) return;
-  throw InputError(where,
-                   fmt::format("heat cannot leave {} while the spindle stands: no film, contact, link, radiation or fixed "
-                               "temperature leads to the ambient, so there is no steady state and there are no thermal "
-                               "modes. Add one (a film of 0.001 W/(m^2 K) insulates), or take `solver: {{model: full}}`",
-                               fmt::join(shut_in, ", ")));
+  throw InputError(
+      where, fmt::format("heat cannot leave {} while the spindle is at rest: no film, contact, link, radiation or fixed "
+                         "temperature leads to the ambient, so there is no steady state and there are no thermal "
+                         "modes. Add one (a film of 0.001 W/(m^2 K) insulates), or take `solver: {{model: full}}`",
+                         fmt::join(shut_in, ", ")));
 }
 
 void require_reached(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {

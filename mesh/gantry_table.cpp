@@ -67,13 +67,14 @@ const schema::Map& gantry_table_schema() {
                                           length("gauge", "between the middles of the two")}};
   static const schema::Map description = {
       .name = "machine (gantry_table)",
-      .keys = {compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/table.md)"),
-               compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
-               compulsory("bed", schema::map(bed), "the same"),
-               compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),
-               schema::optional("workpiece", schema::map(workpiece), "a block on the table"),
-               compulsory("mesh_size", quantity("m", 0.02, 10.0), "edges of the elements; half as long again in the bed"),
-               schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
+      .keys = {
+          compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/how-to/table.md)"),
+          compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
+          compulsory("bed", schema::map(bed), "the same"),
+          compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),
+          schema::optional("workpiece", schema::map(workpiece), "a block on the table"),
+          compulsory("mesh_size", quantity("m", 0.02, 10.0), "edges of the elements; half as long again in the bed"),
+          schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
   return description;
 }
 
@@ -91,8 +92,8 @@ GantryTable read_gantry_table(const ConfigMap& in) {
   t.guideway_gauge_m = length(ways, "gauge");
   for (const ConfigMap* map : {&table, &bed, &ways}) map->reject_unknown_keys();
   if (t.guideway_gauge_m + t.guideway_width_m > std::min(t.table.width_m, t.bed.width_m))
-    in.fail("guideways", "the guideways stand out beside bed or table");
-  if (t.guideway_gauge_m <= t.guideway_width_m) in.fail("guideways", "the guideways overlap; a wider gauge is wanted");
+    in.fail("guideways", "the guideways reach beyond the bed or the table");
+  if (t.guideway_gauge_m <= t.guideway_width_m) in.fail("guideways", "the guideways overlap; a wider gauge is required");
   if (const auto piece = in.optional_map("workpiece")) {
     t.workpiece = size(*piece);
     const Eigen::Vector3d at_m = piece->vector3("at");

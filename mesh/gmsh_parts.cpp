@@ -89,7 +89,7 @@ void straighten_folded_cells() {
   }
 }
 
-/// How many cells there will be. Gmsh would mesh for hours, and then abort for want of memory, where a size is small against its part.
+/// How many cells there will be. Gmsh would mesh for hours, and then abort for lack of memory, where a size is small against its part.
 double require_bearable(const std::vector<Part>& parts) {
   constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
   double n_all = 0.0;

@@ -24,18 +24,18 @@ Format format_of(const std::string& path, const Where& where) {
   if (extension == ".inp") return Format::kInp;
   if (extension == ".vtu") return Format::kVtu;
   if (extension == ".step" || extension == ".stp") return Format::kStep;
-  throw InputError(where, fmt::format("'{}' files are not read; .msh, .inp, .vtu, .step and .stp are", extension));
+  throw InputError(where, fmt::format("'{}' files cannot be read; .msh, .inp, .vtu, .step and .stp are allowed", extension));
 }
 
 std::string read_place_name(const ConfigMap& in, const std::string& key) {
   std::string name = in.text(key);
-  if (name.find('@') != std::string::npos) in.fail(key, "'@' marks the sides of joints and may not stand in a name");
+  if (name.find('@') != std::string::npos) in.fail(key, "'@' marks the sides of joints and is not allowed in a name");
   return name;
 }
 
 Eigen::Vector3d read_direction(const ConfigMap& in, const std::string& key) {
   Eigen::Vector3d v = in.vector3(key);
-  if (!(v.norm() > 1e-9)) in.fail(key, "a direction of length above zero is wanted");
+  if (!(v.norm() > 1e-9)) in.fail(key, "the direction must have a length above zero");
   return v.normalized();
 }
 
@@ -96,7 +96,7 @@ const schema::Map& imported_mesh_schema() {
                schema::optional("remaining", choice({"true"}), "the outer faces on no surface so far")},
       .groups = {{Group::Rule::kExactlyOne,
                   {"plane", "cylinder", "remaining"},
-                  "one of plane, cylinder, remaining: true is wanted"}}};
+                  "exactly one of plane, cylinder and remaining: true is required"}}};
   const schema::Map joint = {.name = "machine (imported mesh), joints",
                              .keys = {compulsory("name", text(), "of the joint, without `@`"),
                                       compulsory("a", text(), "one surface"), compulsory("b", text(), "the other")}};
@@ -109,8 +109,9 @@ const schema::Map& imported_mesh_schema() {
       .others = {schema::optional("region", schema::vector3("m"), "a point in the solid that it names")}};
   static const schema::Map description = {
       .name = "machine (imported mesh)",
-      .keys = {compulsory("mesh", text(),
-                          "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/meshes.md)"),
+      .keys = {compulsory(
+                   "mesh", text(),
+                   "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/how-to/meshes.md)"),
                schema::optional("units", choice({"mm", "cm", "m", "inch"}),
                                 "the lengths in the file; compulsory, save for STEP, which says its unit: there, what its "
                                 "numbers are in truth"),

@@ -1,5 +1,5 @@
 #pragma once
-// A mesh or a drawing from a file, and the places that the scenario names in it. Formats and rules: docs/meshes.md.
+// A mesh or a drawing from a file, and the places that the scenario names in it. Formats and rules: docs/how-to/meshes.md.
 
 #include <map>
 #include <optional>

@@ -76,10 +76,10 @@ void name_by_points(std::vector<Solid>& solids, const std::vector<RegionPoint>& 
       if (holds(solid.tag, point.at_m)) hits.push_back(&solid);
     }
     if (hits.size() != 1) {
-      throw InputError(point.where,
-                       fmt::format("the point of region '{}' lies in {} solids; in one is wanted, away from where "
-                                   "solids touch",
-                                   point.region, hits.size()));
+      throw InputError(
+          point.where,
+          fmt::format("the point of region '{}' lies in {} solids; it must lie in exactly one, away from where solids touch",
+                      point.region, hits.size()));
     }
     if (!named.insert(hits[0]->tag).second) {
       throw InputError(point.where, fmt::format("the solid at the point of region '{}' is named twice", point.region));

@@ -44,7 +44,7 @@ void check_cells(const RawMesh& raw, const Mesh& mesh) {
     auto& neighbours = seen[sorted[0]];
     for (const auto& [corners, other] : neighbours) {
       if (corners != sorted) continue;
-      fail(raw, fmt::format("elements {} and {} have the same nodes; a cell may stand there once", raw.cell_number[other],
+      fail(raw, fmt::format("elements {} and {} have the same nodes; a cell is allowed only once", raw.cell_number[other],
                             raw.cell_number[c]));
     }
     neighbours.emplace_back(sorted, c);

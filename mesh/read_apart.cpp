@@ -116,7 +116,7 @@ InputError of_death(const std::string& path, int status) {
         "than {} s and 1 s more for each {} expected cells; the file is damaged, or holds what the library that reads "
         "it cannot take. Write it anew, or as another format",
         path, kLeastToRead_s, kPerMegabyte_s, kLeastToMesh_s, kCellsPerSecond));
-  const std::string how = signal == SIGKILL ? "was killed, perhaps for want of memory"
+  const std::string how = signal == SIGKILL ? "was killed, perhaps for lack of memory"
                           : signal != 0     ? fmt::format("crashed ({})", strsignal(signal))
                                             : "ended before its time";
   return InputError(

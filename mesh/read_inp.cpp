@@ -173,8 +173,8 @@ class InpReader {
     if (keyword_.name == "*include") fail("*INCLUDE is not followed; put the mesh into one file");
     if (keyword_.name == "*element") begin_elements();
     if (keyword_.name == "*surface") begin_surface();
-    if (keyword_.name == "*nset" && !keyword_.has("nset")) fail("*NSET without NSET=name");
-    if (keyword_.name == "*elset" && !keyword_.has("elset")) fail("*ELSET without ELSET=name");
+    if (keyword_.name == "*nset" && !keyword_.has("nset")) fail("*NSET requires NSET=name");
+    if (keyword_.name == "*elset" && !keyword_.has("elset")) fail("*ELSET requires ELSET=name");
   }
 
   void data(const std::string& line) {
@@ -192,14 +192,13 @@ class InpReader {
 
   void add_node(const std::vector<std::string>& words) {
     if (words.size() < 2 || words.size() > 4) {
-      fail(
-          fmt::format("a node is: number, x, y, z; here are {} values (a decimal point is wanted, no comma)", words.size()));
+      fail(fmt::format("a node is: number, x, y, z; here are {} values (write decimal points, not commas)", words.size()));
     }
     const long n = integer(words[0]);
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i < std::min<std::size_t>(4, words.size()); ++i)
       x[static_cast<Eigen::Index>(i) - 1] = number(words[i]);
-    if (!node_.try_emplace(n, static_cast<int>(position_.size())).second) fail(fmt::format("node {} stands there twice", n));
+    if (!node_.try_emplace(n, static_cast<int>(position_.size())).second) fail(fmt::format("node {} is defined twice", n));
     position_.push_back(x);
     raw_.node_number.push_back(n);
     if (keyword_.has("nset")) node_sets_[keyword_.at("nset")].push_back(n);
@@ -238,7 +237,7 @@ class InpReader {
     }
     const long n = integer(words[0]);
     if (static_cast<int>(words.size()) - 1 != n_nodes_of(*shape_)) {
-      fail(element_line_, fmt::format("element {} has {} nodes; {} are wanted", n, words.size() - 1, n_nodes_of(*shape_)));
+      fail(element_line_, fmt::format("element {} has {} nodes; {} are required", n, words.size() - 1, n_nodes_of(*shape_)));
     }
     std::vector<int> nodes;
     for (std::size_t i = 1; i < words.size(); ++i) {
@@ -247,7 +246,7 @@ class InpReader {
       nodes.push_back(hit->second);
     }
     if (!element_.try_emplace(n, raw_.cells.size()).second) {
-      fail(element_line_, fmt::format("element {} stands there twice", n));
+      fail(element_line_, fmt::format("element {} is defined twice", n));
     }
     raw_.cells.add(*shape_, nodes, -1);
     raw_.cell_number.push_back(n);
@@ -258,7 +257,7 @@ class InpReader {
 
   void add_facet(long n, const std::vector<std::string>& words) {
     const auto [facet, is_new] = facet_.try_emplace(n);
-    if (!is_new) fail(element_line_, fmt::format("element {} stands there twice", n));
+    if (!is_new) fail(element_line_, fmt::format("element {} is defined twice", n));
     std::vector<int>& corners = facet->second;
     for (int i = 1; i <= facet_corners_; ++i) {
       const auto hit = node_.find(integer(words[static_cast<std::size_t>(i)]));
@@ -321,9 +320,9 @@ class InpReader {
   void add_to_set(const std::vector<std::string>& words, std::vector<long>& set, const Sets& sets) {
     const bool of_nodes = &sets == &node_sets_;
     if (keyword_.has("generate")) {
-      if (words.size() < 2) fail("GENERATE wants: first, last, step");
+      if (words.size() < 2) fail("GENERATE requires: first, last, step");
       const long first = integer(words[0]), last = integer(words[1]), step = words.size() > 2 ? integer(words[2]) : 1;
-      if (step <= 0 || last < first || first < 0) fail("GENERATE wants 0 <= first <= last and a step above 0");
+      if (step <= 0 || last < first || first < 0) fail("GENERATE requires 0 <= first <= last and a step above 0");
       for (long n = first;; n += step) {
         add_member(n, of_nodes, set);
         if (last - n < step) return;
@@ -338,7 +337,8 @@ class InpReader {
         if (other == sets.end()) fail(fmt::format("there is no set '{}' above this line", word));
         const std::vector<long> members = other->second;  // a copy: it may be the set itself
         if (set.size() + members.size() > kMostMembers)
-          fail(fmt::format("with the set '{}' the set has {} members; {} are the most", word, set.size() + members.size(), kMostMembers));
+          fail(fmt::format("with the set '{}' the set has {} members; {} are the most", word, set.size() + members.size(),
+                           kMostMembers));
         set.insert(set.end(), members.begin(), members.end());
       }
     }
@@ -351,9 +351,9 @@ class InpReader {
   }
 
   void begin_surface() {
-    if (!keyword_.has("name")) fail("*SURFACE without NAME=");
+    if (!keyword_.has("name")) fail("*SURFACE requires NAME=");
     const std::string type = keyword_.at("type");
-    if (!type.empty() && type != "element" && type != "node") fail("*SURFACE of TYPE=ELEMENT or TYPE=NODE is wanted");
+    if (!type.empty() && type != "element" && type != "node") fail("*SURFACE must be of TYPE=ELEMENT or TYPE=NODE");
   }
 
   struct SurfaceLine {
@@ -383,7 +383,7 @@ class InpReader {
         const int n_faces = static_cast<int>(faces_of(raw_.cells.shape[cell->second]).size());
         const int index = face.size() == 2 && face[0] == 's' ? face[1] - '1' : -1;
         if (index < 0 || index >= n_faces) {
-          fail(fmt::format("face '{}' of element {}; S1 to S{} are allowed", face, n, n_faces));
+          fail(fmt::format("there is no face '{}' of element {}; S1 to S{} are allowed", face, n, n_faces));
         }
         surface.face.emplace_back(cell->second, index);
       }
@@ -441,7 +441,8 @@ class InpReader {
     }
   }
 
-  static constexpr std::size_t kMostMembers = 20'000'000;  // of a set, counted as often as they are listed: sets of sets double with each line
+  static constexpr std::size_t kMostMembers =
+      20'000'000;  // of a set, counted as often as they are listed: sets of sets double with each line
   RawMesh raw_;
   Keyword keyword_;
   std::string more_;

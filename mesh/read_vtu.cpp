@@ -261,7 +261,7 @@ RawMesh read_vtu(const std::string& path) {
     raw.cells.add(*shape, nodes, index->second);
     raw.cell_number.push_back(c);
   }
-  if (n_turned > 0) raw.notes.push_back(fmt::format("{} wedges stood on their heads and were turned", n_turned));
+  if (n_turned > 0) raw.notes.push_back(fmt::format("{} wedges were upside down and were turned", n_turned));
   if (n_unnamed > 0) raw.notes.push_back(fmt::format("{} 2-D cells without a surface were left out", n_unnamed));
   return raw;
 }

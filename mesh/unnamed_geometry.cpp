@@ -79,7 +79,7 @@ bool is_geometry_file(const std::string& path) {
 
 UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string& unit) {
   if (!is_geometry_file(path))
-    throw InputError(fmt::format("{}: no geometry that is read; .step, .stp, .msh, .inp and .vtu are", path));
+    throw InputError(fmt::format("{}: this geometry cannot be read; .step, .stp, .msh, .inp and .vtu are allowed", path));
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("there is no file '{}'", path));
   if (!unit.empty() && !kUnits_m.contains(unit))
     throw InputError(fmt::format("--units {}: mm, cm, m and inch are allowed", unit));

@@ -7,7 +7,7 @@
 
 namespace driftwright::mesh {
 
-/// The extension says that it is one of the formats of docs/meshes.md.
+/// The extension says that it is one of the formats of docs/how-to/meshes.md.
 [[nodiscard]] bool is_geometry_file(const std::string& path);
 /// It is a drawing, which is meshed here; other files say their nodes.
 [[nodiscard]] bool is_drawing(const std::string& path);

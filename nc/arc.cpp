@@ -33,7 +33,7 @@ ArcPath arc_path(const std::array<double, 3>& start, const std::array<double, 3>
   const double radius_start_m = std::hypot(start[u] - centre[u], start[v] - centre[v]);
   const double radius_end_m = std::hypot(end[u] - centre[u], end[v] - centre[v]);
   const double radius_m = 0.5 * (radius_start_m + radius_end_m);
-  if (!(radius_start_m > kSamePoint_m)) throw RangeError("an arc of radius zero; its centre is its starting point");
+  if (!(radius_start_m > kSamePoint_m)) throw RangeError("the arc has radius zero; its centre is its starting point");
   const double mismatch_m = std::abs(radius_start_m - radius_end_m);
   if (!(mismatch_m <= kTolerance_m || (mismatch_m <= kMostTolerance_m && mismatch_m <= kRelativeTolerance * radius_m))) {
     throw RangeError(fmt::format("the arc starts {:.4f} mm from its centre and ends {:.4f} mm from it", 1e3 * radius_start_m,

@@ -255,7 +255,9 @@ void check(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
   const bool siemens = options.dialect == NcDialect::kSiemens || options.dialect == NcDialect::kSiemensIso;
   for (const NcStep& step : steps) {
     if (has_inches(options.dialect, step))
-      throw InputError(step.where, "inches; corrections for this control are written in mm, so a program in mm is wanted");
+      throw InputError(
+          step.where,
+          "the program is in inches; corrections for this control are written in mm, so write the program in mm");
     if (!options.absolute || siemens) continue;
     if (options.dialect == NcDialect::kLinuxCnc) {
       if (step.sets_offset || step.own_shift != std::array<bool, 3>{})
@@ -286,10 +288,11 @@ void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions&
   for (const NcStep& step : steps) {
     if (step.system && !step.deletable) return;
     if (!moves(step)) continue;
-    throw InputError(step.where,
-                     fmt::format("no work offset is named before this first motion; {}, which `work_offset` names, "
-                                 "is wanted in the program",
-                                 nc_word_name('G', options.work_offset)));
+    throw InputError(
+        step.where,
+        fmt::format(
+            "no work offset is named before this first motion; write {}, which `work_offset` names, into the program",
+            nc_word_name('G', options.work_offset)));
   }
 }
 
@@ -304,9 +307,8 @@ std::size_t front_of(const std::vector<NcStep>& steps, NcDialect dialect) {
     if (steps[i].unit_word && !steps[i].deletable) return front;
   }
   const bool siemens = dialect == NcDialect::kSiemens;
-  throw InputError(steps[front].where, fmt::format("no unit is stated before this block, and the offset that stands in "
-                                                   "front of it needs one; write {} in a block before "
-                                                   "the first motion, G41 and G42",
+  throw InputError(steps[front].where, fmt::format("no unit is stated before this block, and the offset written in front of "
+                                                   "it needs one; write {} in a block before the first motion, G41 and G42",
                                                    siemens ? "G710 or G71" : "G21 or G20"));
 }
 
@@ -333,14 +335,14 @@ void check_end(const NcStep& last, std::vector<std::string>& notes) {
         "cutter compensation (G41, G42, RL, RR) is still on at the end, where the offset must change; end it before");
   if (last.no_place || last.n_runs > 1)
     throw InputError(last.where,
-                     "the end stands in a subprogram or another file, or a mirror, a rotation or a modal cycle is still on "
-                     "there, where the offset must change");
+                     "the offset must change at the end, but the end lies in a subprogram or another file, or a mirror, a "
+                     "rotation or a modal cycle is still on there");
   const bool offset_counts = moves(last) && last.kind != NcStepKind::kMachine;
   if (!offset_counts) return;
   if (last.kind != NcStepKind::kRapid && last.duration_s() > 0.0) {
-    throw InputError(last.where,
-                     "the last block cuts, behind the line that takes corrections back; write M2 or M30 in a block of "
-                     "its own");
+    throw InputError(
+        last.where,
+        "the last block cuts, after the line that takes corrections back; write M2 or M30 in a block of its own");
   }
   notes.push_back(fmt::format("line {}: the last block moves; it goes without corrections", last.where.line));
 }
@@ -407,8 +409,8 @@ CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vec
       if (!resets) continue;
       if (moves(step) && options.dialect != NcDialect::kLinuxCnc)
         throw InputError(step.where,
-                         "this control may load its base frame again at a work offset, so the offset is wanted "
-                         "in a block of its own, before the motion");
+                         "this control may load its base frame again at a work offset; write the offset in a block of its "
+                         "own, before the motion");
       writer.renew(next);
     }
   };

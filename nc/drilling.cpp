@@ -49,12 +49,12 @@ class Drill {
 
 void drill(NcMotion& motion, const NcDrilling& cycle) {
   if (!(cycle.bottom_m <= cycle.retract_m))
-    throw InputError(motion.where, "a canned cycle whose bottom lies above its R level; drilling goes downward");
+    throw InputError(motion.where, "the canned cycle's bottom lies above its R level; drilling goes downward");
   if (motion.feed_mode == NcFeedMode::InverseTime)
-    throw InputError(motion.where, "a canned cycle with G93; G94 or G95 is wanted");
+    throw InputError(motion.where, "a canned cycle is not allowed with G93; write G94 or G95 before it");
   const bool pecks = cycle.code == 73 || cycle.code == 83;
   if (pecks && !(cycle.peck_m > 0.0 && (cycle.retract_m - cycle.bottom_m) / cycle.peck_m < 1e5))
-    throw InputError(motion.where, "the depth of a peck, Q, is above zero and at least 1e-5 of the depth of the hole");
+    throw InputError(motion.where, "the depth of a peck, Q, must be above zero and at least 1e-5 of the depth of the hole");
   Drill tool(motion, cycle);
   if (tool.level_m() < cycle.retract_m) tool.rapid(cycle.retract_m);
   for (int i = 0; i < cycle.n_holes; ++i) {

@@ -26,11 +26,11 @@ struct Operator {
 };
 
 double checked_quotient(double a, double b) {
-  if (b == 0.0) throw RangeError("a division by zero");
+  if (b == 0.0) throw RangeError("the expression divides by zero");
   return a / b;
 }
 double modulus(double a, double b) {
-  if (b == 0.0) throw RangeError("a division by zero");
+  if (b == 0.0) throw RangeError("the expression divides by zero");
   const double rest = std::fmod(a, b);
   return rest < 0.0 ? rest + std::abs(b) : rest;
 }
@@ -110,7 +110,7 @@ const std::vector<Operator>& operators(NcSyntax syntax) {
 }
 
 double arc_of(double x, double (*f)(double)) {
-  if (!(std::abs(x) <= 1.0)) throw RangeError(fmt::format("an angle whose sine or cosine were {:g}", x));
+  if (!(std::abs(x) <= 1.0)) throw RangeError(fmt::format("there is no angle whose sine or cosine is {:g}", x));
   return f(x) / kDegree;
 }
 
@@ -123,11 +123,11 @@ std::optional<double> function_of(const std::string& name, double x, NcSyntax sy
   if (name == "ABS") return std::abs(x);
   if (name == "EXP") return std::exp(x);
   if (name == "SQRT") {
-    if (x < 0.0) throw RangeError("the root of a negative number");
+    if (x < 0.0) throw RangeError("the number under the root is negative");
     return std::sqrt(x);
   }
   if (name == "LN" || name == "LOG") {
-    if (!(x > 0.0)) throw RangeError("the logarithm of a number that is not positive");
+    if (!(x > 0.0)) throw RangeError("the logarithm requires a number above 0");
     return name == "LN" ? std::log(x) : std::log10(x);
   }
   if (name == "ROUND") return std::round(x);
@@ -159,13 +159,13 @@ class Reader {
     while (const Operator* op = next_operator(lowest)) {
       const NcValue right = expression(op->level + 1);
       left = {op->apply(left.value, right.value), left.certain && right.certain};
-      if (!std::isfinite(left.value)) throw RangeError("a number beyond all bounds");
+      if (!std::isfinite(left.value)) throw RangeError("the result is too large for a number");
     }
     return left;
   }
 
   NcValue primary() {
-    if (++depth_ > kDeepestBracket) throw RangeError("an expression nested too deeply");
+    if (++depth_ > kDeepestBracket) throw RangeError("the expression is nested too deeply");
     const NcValue value = unguarded_primary();
     --depth_;
     return value;
@@ -174,14 +174,14 @@ class Reader {
   std::string parameter() {
     if (peek() == '<') {
       const std::size_t end = text_.find('>', at_);
-      if (end == std::string::npos) throw RangeError("a named parameter without '>'");
+      if (end == std::string::npos) throw RangeError("the named parameter has no '>'");
       const std::string name = text_.substr(at_, end + 1 - at_);
       at_ = end + 1;
       return name;
     }
     const double number = primary().value;
     if (!(number >= 0.0 && number < 1e6) || std::abs(number - std::round(number)) > kSame)
-      throw RangeError(fmt::format("a parameter of number {:g}", number));
+      throw RangeError(fmt::format("a parameter cannot have the number {:g}", number));
     return fmt::format("{}", std::lround(number));
   }
 
@@ -195,10 +195,10 @@ class Reader {
 
   NcValue bracket() {
     const char close = syntax_ == NcSyntax::kLinuxCnc ? ']' : ')';
-    if (peek() != opening()) throw RangeError(fmt::format("'{}' is wanted here", opening()));
+    if (peek() != opening()) throw RangeError(fmt::format("'{}' is expected here", opening()));
     ++at_;
     const NcValue value = expression(0);
-    if (peek() != close) throw RangeError(fmt::format("'{}' is wanted here", close));
+    if (peek() != close) throw RangeError(fmt::format("'{}' is expected here", close));
     ++at_;
     return value;
   }
@@ -229,7 +229,7 @@ class Reader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
     if (error != std::errc() || end != digits.data() + digits.size()) {
       at_ = begin;
-      throw RangeError(digits.empty() ? "a number, a variable or an expression is wanted here"
+      throw RangeError(digits.empty() ? "a number, a variable or an expression is expected here"
                                       : fmt::format("'{}' is no number", digits));
     }
     return {value};
@@ -244,10 +244,11 @@ class Reader {
 
   NcValue call(const std::string& function) {
     if (syntax_ == NcSyntax::kLinuxCnc && function == "EXISTS") {
-      if (peek() != '[' || at_ + 1 >= text_.size() || text_[at_ + 1] != '#') throw RangeError("EXISTS[#<name>] is wanted");
+      if (peek() != '[' || at_ + 1 >= text_.size() || text_[at_ + 1] != '#')
+        throw RangeError("EXISTS must be written as EXISTS[#<name>]");
       at_ += 2;
       const std::string name = parameter();
-      if (peek() != ']') throw RangeError("']' is wanted here");
+      if (peek() != ']') throw RangeError("']' is expected here");
       ++at_;
       try {
         return {1.0, lookup_(name).certain};
@@ -256,20 +257,20 @@ class Reader {
       }
     }
     if (syntax_ == NcSyntax::kSiemens && function == "ATAN2") {
-      if (peek() != '(') throw RangeError("'(' is wanted here");
+      if (peek() != '(') throw RangeError("'(' is expected here");
       ++at_;
       const NcValue y = expression(0);
-      if (peek() != ',') throw RangeError("',' is wanted here");
+      if (peek() != ',') throw RangeError("',' is expected here");
       ++at_;
       const NcValue x = expression(0);
-      if (peek() != ')') throw RangeError("')' is wanted here");
+      if (peek() != ')') throw RangeError("')' is expected here");
       ++at_;
       return {std::atan2(y.value, x.value) / kDegree, y.certain && x.certain};
     }
     const bool bare = syntax_ == NcSyntax::kHeidenhain && peek() != '(';
     const NcValue x = bare ? primary() : bracket();
     if (syntax_ == NcSyntax::kLinuxCnc && function == "ATAN") {
-      if (peek() != '/') throw RangeError("ATAN[y]/[x] is wanted");
+      if (peek() != '/') throw RangeError("ATAN must be written as ATAN[y]/[x]");
       ++at_;
       const NcValue along = bracket();
       return {std::atan2(x.value, along.value) / kDegree, x.certain && along.certain};

@@ -86,7 +86,8 @@ class HeidenhainReader {
       run_.end();
       if (ends) return;
     }
-    throw InputError(fmt::format("{}: the program has no end; its first line once more, M2 or M30 is wanted", path_));
+    throw InputError(
+        fmt::format("{}: the program has no end; write its first line once more, M2 or M30 as its last block", path_));
   }
 
  private:
@@ -100,7 +101,7 @@ class HeidenhainReader {
     begun_ = true;
     const bool inch = line.text.find("G70") != std::string::npos;
     if (!inch && line.text.find("G71") == std::string::npos)
-      fail(line, "the first line has no unit; %NAME G71 (mm) or G70 (inch) is wanted");
+      fail(line, "the first line has no unit; write %NAME G71 (mm) or G70 (inch)");
     run_.unit_m = inch ? kInch_m : 1e-3;
     run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
     run_.step().unit_word = true;
@@ -109,7 +110,7 @@ class HeidenhainReader {
 
   bool formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is wanted");
+    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     std::size_t i = equals + 1;
@@ -136,10 +137,10 @@ class HeidenhainReader {
       if (number == 3) label = fmt::format("{}", std::lround(p[number]));
     }
     if (n >= 9 && n <= 12) {
-      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are wanted");
+      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are required");
       if (tnc_.compares(line, n, p[1], p[2])) tnc_.go_to(line, label);
     } else if (!p.contains(1) || q.empty() || q[0] != 'Q' || !tnc_.function(line, n, q, p[1], p.contains(2) ? p[2] : 0.0)) {
-      fail(line, fmt::format("D{:02}: not known here, or what it reads is known only at the machine", n));
+      fail(line, fmt::format("D{:02} is not known here, or what it reads is known only at the machine", n));
     }
     return false;
   }
@@ -156,7 +157,7 @@ class HeidenhainReader {
       const std::size_t begin = i;
       IsoWord word{.letter = t[i]};
       if (word.letter < 'A' || word.letter > 'Z')
-        fail(line, fmt::format("'{}' cannot stand here; words of a letter and a number are wanted", t[i]));
+        fail(line, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", t[i]));
       ++i;
       if (word.letter == 'T' && i < t.size() && t[i] == '"') {
         i = std::min(t.find('"', i + 1), t.size() - 1) + 1;
@@ -172,7 +173,7 @@ class HeidenhainReader {
         while (i < t.size() && t[i] == ' ') ++i;
         const bool bare = i >= t.size() || (std::isalpha(static_cast<unsigned char>(t[i])) != 0 && t[i] != 'Q');
         if (bare && std::string("XYZ").find(word.letter) == std::string::npos)
-          fail(line, fmt::format("'{}' is no word; a number is wanted after the letter", word.letter));
+          fail(line, fmt::format("'{}' is no word; a number is expected after the letter", word.letter));
         word.computed = !bare && t.find('Q', i) <= i + 1;
         if (!bare) word.value = tnc_.value(line, t, i);  // G28 X names an axis alone
       }
@@ -213,7 +214,7 @@ class HeidenhainReader {
       } else if (std::string("ABCUVW").find(word.letter) != std::string::npos) {
         fail(line, fmt::format("{}: rotary and further linear axes are not followed here; X, Y, Z are", word.text));
       } else if (!b.words.emplace(word.letter, word).second) {
-        fail(line, fmt::format("{}: a second {} in one block", word.text, word.letter));
+        fail(line, fmt::format("{}: a second {} in one block is not allowed", word.text, word.letter));
       }
       if (word.letter == 'F') step.feed_word = word.text;
     }
@@ -291,7 +292,8 @@ class HeidenhainReader {
         case 43:
         case 44:
           run_.compensated = true;
-          run_.note(fmt::format("G{}", g), "cutter compensation; the path is counted along the programmed contour");
+          run_.note(fmt::format("G{}", g),
+                    "cutter compensation is not followed; the path is counted along the programmed contour");
           break;
         case 54:
           shift(line, b);
@@ -340,20 +342,20 @@ class HeidenhainReader {
           fail(line, fmt::format(
                          "G{}: {}", g,
                          (g >= 80 && g <= 89)
-                             ? "of the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
+                             ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
                              : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
       }
     }
     if (contains(b.m, 136)) run_.set_feed_mode(NcFeedMode::PerRevolution);
     if (contains(b.m, 137)) run_.set_feed_mode(NcFeedMode::PerMinute);
     if (dwells) {
-      if (!has(b, 'F') || b.words.at('F').value < 0.0) fail(line, "G04 without its time; F in seconds is wanted");
+      if (!has(b, 'F') || b.words.at('F').value < 0.0) fail(line, "G04 has no time; write F in seconds");
       run_.motion.wait(b.words.at('F').value);
     } else if (has(b, 'F') && moves && !has(b, 'T')) {
       run_.set_feed(b.words.at('F').value);
     }
     if (has(b, 'S')) {
-      if (b.words.at('S').value < 0.0) fail(line, "a speed of zero or above is wanted");
+      if (b.words.at('S').value < 0.0) fail(line, "the speed must be zero or above");
       run_.motion.programmed_rpm = b.words.at('S').value;
     }
     if (has(b, 'T')) tnc_.change_tool();
@@ -366,7 +368,7 @@ class HeidenhainReader {
       HeidenhainCycle c = b.cycle;
       c.number = *cycle;
       if (!std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(*cycle))
-        fail(line, fmt::format("G{}: of the cycles from 200 on 200, 201, 202, 203, 206, 207 and 240 are computed here; "
+        fail(line, fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
                                "write the others out",
                                *cycle));
       tnc_.define(c);
@@ -391,7 +393,7 @@ class HeidenhainReader {
       any = true;
       tnc_.shift_datum(axis, found->second.value * run_.unit_m, found->second.incremental);
     }
-    if (!any) fail(line, "a datum shift G54 without X, Y or Z");
+    if (!any) fail(line, "the datum shift G54 has no X, Y or Z");
   }
 
   std::array<double, 3> target(const Block& b) {
@@ -445,7 +447,7 @@ class HeidenhainReader {
     if (!has(b, 'X') && !has(b, 'Y') && !has(b, 'Z') &&
         !(polar && (has(b, 'H') || (has(b, 'R') && run_.step().motion_word))))
       return;
-    if (!run_.motion_word) fail(line, "axis words before any motion word; G00 or G01 is wanted first");
+    if (!run_.motion_word) fail(line, "axis words come before any motion word; write G00 or G01 first");
     const int word = *run_.motion_word;
     if (contains(b.m, 91)) {
       std::array<double, 3> target_m = run_.motion.position_m;
@@ -477,14 +479,14 @@ class HeidenhainReader {
       last_clockwise_ = code == 12;
       tnc_.circle_to(target_m, tnc_.pole_m, code == 12, turns);
     } else if (code == 5 || code == 15) {
-      if (!last_clockwise_) fail(line, "an arc without its sense; G02 or G03 is wanted");
+      if (!last_clockwise_) fail(line, "the arc has no sense; write G02 or G03");
       int turns = 1;
       const std::array<double, 3> target_m = code == 15 ? polar_target(b, turns) : target(b);
       const std::array<double, 3> centre_m =
           code == 5 && has(b, 'R') ? run_.centre_of(target_m, length_m(b, 'R'), *last_clockwise_) : tnc_.pole_m;
       tnc_.circle_to(target_m, centre_m, *last_clockwise_, turns);
     } else {
-      fail(line, fmt::format("G{}: of arcs G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
+      fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
     }
     run_.motion_word = word;  // it goes on
     if (code >= 10) run_.step().plain = false;

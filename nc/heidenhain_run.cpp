@@ -48,11 +48,11 @@ bool HeidenhainRun::function(const HeidenhainLine& line, int n, const std::strin
       x = a * b;
       break;
     case 4:
-      if (b == 0.0) fail(line, "a division by zero");
+      if (b == 0.0) fail(line, "the expression divides by zero");
       x = a / b;
       break;
     case 5:
-      if (a < 0.0) fail(line, "the root of a negative number");
+      if (a < 0.0) fail(line, "the number under the root is negative");
       x = std::sqrt(a);
       break;
     case 6:
@@ -85,14 +85,14 @@ bool HeidenhainRun::compares(const HeidenhainLine& line, int n, double a, double
     case 12:
       return a < b;
     default:
-      fail(line, fmt::format("FN {}: not known here", n));
+      fail(line, fmt::format("FN {} is not known here", n));
   }
 }
 
 void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) {
   const auto is_it = [&](const HeidenhainLine& l) { return l.label == label; };
   const auto found = std::find_if(lines_.begin(), lines_.end(), is_it);
-  if (found == lines_.end() || label == "0") fail(line, fmt::format("no label {} in the program", label));
+  if (found == lines_.end() || label == "0") fail(line, fmt::format("there is no label {} in the program", label));
   at = static_cast<std::size_t>(found - lines_.begin());
 }
 
@@ -100,7 +100,7 @@ void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, i
   const std::size_t own = at - 1;  // the reader stands behind it
   if (times == 0) {
     if (returns_.size() >= kDeepestSubprogram)
-      fail(line, fmt::format("subprograms nested more than {} deep", kDeepestSubprogram));
+      fail(line, fmt::format("subprograms are nested more than {} deep", kDeepestSubprogram));
     returns_.push_back(at);
     go_to(line, label);
     return;
@@ -130,7 +130,7 @@ void HeidenhainRun::shift_datum(int axis, double x_m, bool incremental) {
 }
 
 void HeidenhainRun::other_datum(const std::string& word) {
-  run_.note(word, "another datum; positions are counted as if in the one before");
+  run_.note(word, "this is another datum; positions are counted as if in the one before");
   run_.step().resets = {true, true, true};
   shift_m_ = {0, 0, 0};
   mirrored_ = turned_ = false;
@@ -139,14 +139,14 @@ void HeidenhainRun::other_datum(const std::string& word) {
 }
 
 void HeidenhainRun::mirror(bool on, const std::string& word) {
-  if (on) run_.note(word, "mirrored; the path is counted as written, and no correction changes while it is in force");
+  if (on) run_.note(word, "this mirrors the path; it is counted as written, and no correction changes while it is in force");
   mirrored_ = on;
   update_transformed();
   run_.forget();
 }
 
 void HeidenhainRun::turn(bool on, const std::string& word) {
-  if (on) run_.note(word, "turned; the path is counted as written, and no correction changes while it is in force");
+  if (on) run_.note(word, "this turns the path; it is counted as written, and no correction changes while it is in force");
   turned_ = on;
   update_transformed();
   run_.forget();
@@ -237,7 +237,7 @@ void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::
 }
 
 void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
-  if (!direction) run_.fail("a tangential arc with no motion before it");
+  if (!direction) run_.fail("the tangential arc has no motion before it");
   const auto [u, v] = plane_axes(run_.normal);
   const std::array<double, 3>& start_m = run_.motion.position_m;
   const double du = target_m[u] - start_m[u], dv = target_m[v] - start_m[v];
@@ -255,7 +255,7 @@ void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
 }
 
 void HeidenhainRun::call_cycle() {
-  if (!cycle_) run_.fail("a cycle call with no cycle defined before it");
+  if (!cycle_) run_.fail("no cycle is defined before this call");
   drill(*cycle_);
   run_.step().kind = NcStepKind::kDrilling;
   run_.step().named[run_.normal] = true;
@@ -264,7 +264,7 @@ void HeidenhainRun::call_cycle() {
 void HeidenhainRun::drill(const HeidenhainCycle& c) {
   const auto q = [&](int n) {
     const auto found = c.q.find(n);
-    if (found == c.q.end()) run_.fail(fmt::format("cycle {} without its Q{}", c.number, n));
+    if (found == c.q.end()) run_.fail(fmt::format("cycle {} has no Q{}", c.number, n));
     return found->second;
   };
   const auto q_or = [&](int n, double otherwise) {
@@ -276,7 +276,7 @@ void HeidenhainRun::drill(const HeidenhainCycle& c) {
                bottom_m = surface_m + q(201) * run_.unit_m, safe_m = surface_m + clearance_m,
                second_m = surface_m + q_or(204, 0.0) * run_.unit_m;
   if (!(q(201) < 0.0))
-    run_.fail(fmt::format("cycle {}: Q201, the depth, is below zero; with zero nothing is drilled", c.number));
+    run_.fail(fmt::format("cycle {}: Q201, the depth, must be below zero; with zero nothing is drilled", c.number));
   const auto at_level = [&](double level_m) {
     std::array<double, 3> target_m = motion.position_m;
     target_m[run_.normal] = level_m;
@@ -297,11 +297,11 @@ void HeidenhainRun::drill(const HeidenhainCycle& c) {
       const auto breaks = static_cast<int>(q_or(213, 0.0));
       const double break_m = q_or(256, 0.2) * run_.unit_m;
       if (!(bite_m > 0.0 && -q(201) * run_.unit_m / bite_m < 1e5))
-        run_.fail(fmt::format("cycle {}: Q202, the depth of a peck, is above zero", c.number));
+        run_.fail(fmt::format("cycle {}: Q202, the depth of a peck, must be above zero", c.number));
       double depth_m = surface_m, now_m = bite_m;
       int n_broken = 0;
       for (int n = 0; depth_m > bottom_m; ++n) {
-        if (n > 100000) run_.fail(fmt::format("cycle {} of more than 100000 pecks", c.number));
+        if (n > 100000) run_.fail(fmt::format("cycle {} has more than 100000 pecks", c.number));
         depth_m = std::max(bottom_m, depth_m - now_m);
         feed(q(206));
         motion.feed_to(at_level(depth_m));
@@ -349,7 +349,8 @@ void HeidenhainRun::drill(const HeidenhainCycle& c) {
       break;
     default:
       run_.fail(fmt::format(
-          "cycle {}: of cycles 200, 201, 202, 203, 206, 207 and 240 are computed here; write the others out", c.number));
+          "cycle {}: of cycles only 200, 201, 202, 203, 206, 207 and 240 are computed here; write the others out",
+          c.number));
   }
   motion.feed = modal_feed;
   motion.feed_mode = modal_mode;

@@ -36,7 +36,7 @@ void strip(IsoLine& line) {
       line.columns.push_back(column);
     }
   }
-  if (comment_column > 0) fail(line, comment_column, "a comment that does not end on its line; a ')' is wanted");
+  if (comment_column > 0) fail(line, comment_column, "the comment does not end on its line; write a ')'");
   line.columns.push_back(static_cast<int>(raw.size()) + 1);
 }
 
@@ -54,7 +54,7 @@ void read_flow(IsoLine& line) {
   std::size_t i = 1;
   if (i < text.size() && text[i] == '<') {
     const std::size_t end = text.find('>', i);
-    if (end == std::string::npos) fail(line, line.columns[i], "an O word's name without '>'");
+    if (end == std::string::npos) fail(line, line.columns[i], "the O word's name has no '>'");
     line.label = text.substr(i, end + 1 - i);
     i = end + 1;
   } else if (i < text.size() && is_digit(text[i])) {
@@ -63,7 +63,7 @@ void read_flow(IsoLine& line) {
   } else {
     const std::size_t call = text.rfind("CALL");
     if (call == std::string::npos || i >= text.size() || (text[i] != '[' && text[i] != '#'))
-      fail(line, line.columns[0], "an O word without its number or name");
+      fail(line, line.columns[0], "the O word has no number or name");
     line.keyword = "CALL";
     line.rest = 1;
     return;
@@ -88,7 +88,7 @@ std::vector<NcWord> plain_words(const IsoLine& line) {
     const char letter = text[i];
     const int column = line.columns[i++];
     if (letter < 'A' || letter > 'Z')
-      fail(line, column, fmt::format("'{}' cannot stand here; words of a letter and a number are wanted", letter));
+      fail(line, column, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", letter));
     std::string digits;
     while (i < text.size() &&
            (is_digit(text[i]) || text[i] == '.' || (digits.empty() && (text[i] == '-' || text[i] == '+'))))
@@ -97,7 +97,7 @@ std::vector<NcWord> plain_words(const IsoLine& line) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(begin, digits.data() + digits.size(), value, std::chars_format::fixed);
     if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-      fail(line, column, fmt::format("'{}{}' is no word; a number is wanted after the letter", letter, digits));
+      fail(line, column, fmt::format("'{}{}' is no word; a number is expected after the letter", letter, digits));
     NcWord word;
     word.letter = letter;
     word.value = value;
@@ -121,7 +121,7 @@ std::vector<IsoLine> read_iso_lines(const std::string& path) {
     if (line.text.empty()) continue;
     line.where.column = line.columns[0];
     if (line.text[0] == '%') {
-      if (line.text.size() > 1) fail(line, line.columns[1], "'%' stands alone on its line");
+      if (line.text.size() > 1) fail(line, line.columns[1], "'%' must be alone on its line");
       if (started || !lines.empty()) {
         line.kind = IsoLine::kPercent;
         lines.push_back(std::move(line));

@@ -21,7 +21,8 @@ void IsoOrigin::use(int system, const std::string& word) {
         run_.motion.position_m[axis] += offset_m_[{system_, axis}] - offset_m_[{system, axis}];
     } else {
       run_.note(word,
-                "another coordinate system, and what it holds is known only at the machine; positions are counted as if in "
+                "this is another coordinate system, and what it holds is known only at the machine; positions are counted "
+                "as if in "
                 "the one before");
     }
   }

@@ -46,7 +46,7 @@ class IsoReader {
     if (name == "<_SELECTED_TOOL>") return NcValue{tool_};
     if (name[0] == '<') {
       if (!name.starts_with("<_HAL[") && !name.starts_with("<_INI[")) return std::nullopt;
-      run_.note("#" + name, "known only at the machine; planned as 0");
+      run_.note("#" + name, "its value is known only at the machine; it is planned as 0");
       return NcValue{0.0, false};
     }
     const int number = std::stoi(name);
@@ -58,7 +58,7 @@ class IsoReader {
     if (const auto given = run_.settings().parameters.find(number); given != run_.settings().parameters.end())
       return NcValue{given->second};
     if (number < 5000) return std::nullopt;
-    run_.note("#" + name, "known only at the machine; planned as 0");
+    run_.note("#" + name, "its value is known only at the machine; it is planned as 0");
     return NcValue{0.0, false};
   }
 
@@ -143,7 +143,7 @@ class IsoReader {
     } else if (!of_group(g, "motion") && words.has_any("XU")) {
       motion_.wait(words.take_not_negative(words.has('X') ? 'X' : 'U'));
     } else {
-      run_.fail("G4 without its time; P, or X or U in seconds, is wanted");
+      run_.fail("G4 has no time; write P, or X or U in seconds");
     }
   }
 
@@ -154,7 +154,8 @@ class IsoReader {
     if (contains(g, 410) || contains(g, 420)) {
       (void)words.take('D');
       run_.compensated = true;
-      run_.note(contains(g, 410) ? "G41" : "G42", "cutter compensation; the path is counted along the programmed contour");
+      run_.note(contains(g, 410) ? "G41" : "G42",
+                "cutter compensation is not followed; the path is counted along the programmed contour");
     }
     if (contains(g, 430)) (void)words.take('H');
     if (contains(g, 400)) {
@@ -202,9 +203,10 @@ class IsoReader {
       if (kind != 1) run_.forget();
       return;
     }
-    if (kind != 2 && kind != 20) run_.fail(fmt::format("G10 L{}: of G10 L1, L2, L10, L11 and L20 are known here", kind));
+    if (kind != 2 && kind != 20)
+      run_.fail(fmt::format("G10 L{}: of G10 only L1, L2, L10, L11 and L20 are known here", kind));
     const long p = words.has('P') ? std::lround(words.take('P').value()) : -1;
-    if (p < 0 || p > 9) run_.fail("G10 L2 and L20 want P0 to P9");
+    if (p < 0 || p > 9) run_.fail("G10 L2 and L20 require P0 to P9");
     const int system = p == 0 ? origin_.system() : static_cast<int>(p);
     run_.step().sets_offset = true;
     for (int axis = 0; axis < 3; ++axis) {
@@ -273,12 +275,12 @@ class IsoReader {
     }
     const bool arc = modal == 20 || modal == 30, probe = modal && *modal >= 382 && *modal <= 385;
     if (!words.has_any("XYZ") && !(arc && (named || words.has_any("IJKR"))) && !(named && is_drilling(modal))) {
-      if (contains(g, 530)) run_.fail("G53 without a straight move; X, Y or Z are wanted with it");
+      if (contains(g, 530)) run_.fail("G53 has no straight move; write X, Y or Z with it");
       return;
     }
-    if (!modal) run_.fail("axis words before any motion word; G0 or G1 is wanted first");
+    if (!modal) run_.fail("axis words come before any motion word; write G0 or G1 first");
     if (contains(g, 530)) {
-      if (modal != 0 && modal != 10) run_.fail("G53 goes with G0 and G1 alone");
+      if (modal != 0 && modal != 10) run_.fail("G53 is allowed only with G0 and G1");
       std::array<double, 3> target_m = motion_.position_m;
       const std::array<double, 3>& zero_m = run_.machine_zero("G53");
       for (int axis = 0; axis < 3; ++axis) {
@@ -293,8 +295,8 @@ class IsoReader {
       run_.feed_to(take_target(words, run_.absolute));
     } else if (probe) {
       run_.note(nc_word_name('G', *modal),
-                "where it touches is known only at the machine; planned as if at the end of its way, the rest counts on "
-                "from there");
+                "where it touches is known only at the machine; it is planned as if at the end of its way, and the rest "
+                "counts on from there");
       run_.feed_to(take_target(words, run_.absolute));
       probed_m_ = motion_.position_m;
       run_.step().certain = false;
@@ -302,7 +304,7 @@ class IsoReader {
     } else if (arc) {
       move_along_arc(words);
     } else if (modal == 800) {
-      run_.fail("axis words after G80; a motion word such as G0 is wanted");
+      run_.fail("axis words come after G80; write a motion word such as G0");
     } else {
       drill_holes(words);
     }
@@ -325,7 +327,7 @@ class IsoReader {
         centre_m[axis] = *offset * run_.unit_m + (absolute_centre_ ? 0.0 : motion_.position_m[axis]);
       }
       if (n_offsets == 0 || (absolute_centre_ && n_offsets < 2)) {
-        run_.fail(fmt::format("an arc without its centre; {}{} {} (plane G1{}) or R is wanted",
+        run_.fail(fmt::format("the arc has no centre; write {}{} {} (plane G1{}) or R",
                               static_cast<char>('I' + std::min(u, v)), absolute_centre_ ? " and" : " or",
                               static_cast<char>('I' + std::max(u, v)), 9 - run_.normal));
       }
@@ -342,7 +344,7 @@ class IsoReader {
     run_.step().kind = NcStepKind::kDrilling;
     const auto [u, v] = plane_axes(run_.normal);
     const NcCode code = *run_.motion_word / 10;
-    if (!words.has_any("XYZ")) run_.fail("a canned cycle without axis words; X, Y or Z is wanted");
+    if (!words.has_any("XYZ")) run_.fail("the canned cycle has no axis words; write X, Y or Z");
     if (drilling_.code != code) {
       drilling_.bottom_m = drilling_.peck_m = drilling_.dwell_s = std::nullopt;
       drilling_.code = code;
@@ -357,8 +359,7 @@ class IsoReader {
     if (pecks) update('Q', run_.unit_m, drilling_.peck_m);
     if (dwells && words.has('P')) drilling_.dwell_s = words.take_not_negative('P') * run_.settings().dwell_P_s;
     if (!drilling_.bottom_m || !drilling_.retract_m || (pecks && !drilling_.peck_m) || (code == 82 && !drilling_.dwell_s)) {
-      run_.fail(fmt::format("G{} without all it needs: {}, R{}{}", code, normal_letter, pecks ? ", Q" : "",
-                            code == 82 ? ", P" : ""));
+      run_.fail(fmt::format("G{} requires {}, R{}{}", code, normal_letter, pecks ? ", Q" : "", code == 82 ? ", P" : ""));
     }
     NcDrilling cycle{.code = code, .normal = run_.normal};
     const double level_m = motion_.position_m[run_.normal];
@@ -392,7 +393,7 @@ void run_iso_program(const std::string& path, NcRun& run) {
   while (const std::optional<NcBlock> block = source.next()) {
     if (!reader.read(*block)) return;
   }
-  throw InputError(fmt::format("{}: the program has no end; a last block M2 or M30, or '%' is wanted", path));
+  throw InputError(fmt::format("{}: the program has no end; write M2, M30 or '%' as its last block", path));
 }
 
 }  // namespace driftwright

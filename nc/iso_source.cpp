@@ -67,7 +67,7 @@ class IsoSource::Impl {
       }
     }
     if (frames_.size() > 1)
-      throw InputError(fmt::format("{}: a subroutine ends with its file; ENDSUB or M99 is wanted", path_));
+      throw InputError(fmt::format("{}: a subroutine ends with its file; write ENDSUB or M99 at its end", path_));
     return std::nullopt;
   }
 
@@ -131,11 +131,12 @@ class IsoSource::Impl {
   /// Behind an O word's keyword. @returns whether it is true; notes where that is decided at the machine
   bool condition(const IsoLine& line) {
     std::size_t i = line.rest;
-    if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is wanted");
+    if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is expected");
     const NcValue c = value(line, i, false);
     if (!c.certain)
-      run_.note_at(line.where, line.keyword,
-                   fmt::format("decided at the machine; planned as if it were {}", c.value != 0.0 ? "true" : "false"));
+      run_.note_at(
+          line.where, line.keyword,
+          fmt::format("this is decided at the machine; it is planned as if it were {}", c.value != 0.0 ? "true" : "false"));
     return c.value != 0.0;
   }
 
@@ -154,7 +155,7 @@ class IsoSource::Impl {
         } catch (const RangeError& e) {
           fail(line, i, e.what());
         }
-        if (i >= text.size() || text[i] != '=') fail(line, i, "'=' is wanted behind a parameter");
+        if (i >= text.size() || text[i] != '=') fail(line, i, "'=' is expected after a parameter");
         ++i;
         assigned.emplace_back(name, value(line, i, false));
         continue;
@@ -163,7 +164,7 @@ class IsoSource::Impl {
       word.letter = text[i];
       word.column = line.columns[i];
       if (word.letter < 'A' || word.letter > 'Z')
-        fail(line, i, fmt::format("'{}' cannot stand here; words of a letter and a number are wanted", word.letter));
+        fail(line, i, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", word.letter));
       ++i;
       const NcValue number = value(line, i, false);
       word.value = number.value;
@@ -205,7 +206,7 @@ class IsoSource::Impl {
 
   void enter(const IsoLine& line, Frame next) {
     if (frames_.size() > kDeepestSubroutine)
-      fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepestSubroutine));
+      fail(line, 0, fmt::format("subroutines are nested more than {} deep", kDeepestSubroutine));
     frames_.push_back(std::move(next));
   }
 
@@ -219,7 +220,7 @@ class IsoSource::Impl {
       enter(line, {.file = frame().file, .at = i + 1, .label = label, .fanuc = true, .runs_left = times - 1});
       return;
     }
-    fail(line, 0, fmt::format("no subprogram O{} in the program", number));
+    fail(line, 0, fmt::format("there is no subprogram O{} in the program", number));
   }
 
   void return_from_fanuc(const IsoLine& line, NcBlock& block) {
@@ -231,7 +232,7 @@ class IsoSource::Impl {
       block.words.resize(1);
       return;
     }
-    if (!frame().fanuc) fail(line, 0, "M99 within a subroutine of O words; ENDSUB or RETURN is wanted");
+    if (!frame().fanuc) fail(line, 0, "M99 is not allowed within a subroutine of O words; write ENDSUB or RETURN instead");
     if (frame().runs_left-- > 0) {
       const std::vector<IsoLine>& lines = frame().file->lines;
       for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -256,7 +257,7 @@ class IsoSource::Impl {
       for (std::size_t i = from; i-- > 0;)
         if (is_it(lines[i])) return i;
     }
-    fail(line, 0, fmt::format("O{} {} with nothing that {} it", line.label, line.keyword, onward ? "ends" : "begins"));
+    fail(line, 0, fmt::format("O{} {} has nothing that {} it", line.label, line.keyword, onward ? "ends" : "begins"));
   }
 
   void flow(const IsoLine& line) {
@@ -268,7 +269,8 @@ class IsoSource::Impl {
     } else if (k == "CALL") {
       call(line);
     } else if (k == "ENDSUB" || k == "RETURN") {
-      if (frames_.size() == 1 || frame().fanuc) fail(line, 0, fmt::format("O{} {} outside of a subroutine", line.label, k));
+      if (frames_.size() == 1 || frame().fanuc)
+        fail(line, 0, fmt::format("O{} {} is outside of a subroutine", line.label, k));
       std::size_t i = line.rest;
       if (i < line.text.size()) globals_["<_VALUE>"] = value(line, i, false);
       frames_.pop_back();
@@ -292,10 +294,10 @@ class IsoSource::Impl {
       at = find(line, at - 1, {"WHILE"}, false);
     } else if (k == "REPEAT") {
       std::size_t i = line.rest;
-      if (i >= line.text.size()) fail(line, i, "a count in [ ] is wanted");
+      if (i >= line.text.size()) fail(line, i, "a count in [ ] is expected");
       const NcValue n = value(line, i, false);
       if (!n.certain)
-        run_.note_at(line.where, k, fmt::format("the count is known only at the machine; planned as {:g}", n.value));
+        run_.note_at(line.where, k, fmt::format("the count is known only at the machine; it is planned as {:g}", n.value));
       const long times = std::lround(std::min(n.value, 1e9));
       if (times < 1) {
         at = find(line, at, {"ENDREPEAT"}, true) + 1;
@@ -335,13 +337,13 @@ class IsoSource::Impl {
     std::size_t i = line.rest;
     if (label.empty()) {
       label = fmt::format("{}", std::lround(value(line, i, false).value));
-      if (line.text.compare(i, 4, "CALL") != 0) fail(line, i, "CALL is wanted here");
+      if (line.text.compare(i, 4, "CALL") != 0) fail(line, i, "CALL is expected here");
       i += 4;
     }
     Frame next;
     next.label = label;
     for (int n = 1; i < line.text.size() && n <= kLocals; ++n) {
-      if (line.text[i] != '[') fail(line, i, "arguments stand in [ ]");
+      if (line.text[i] != '[') fail(line, i, "arguments must be written in [ ]");
       next.locals[n] = value(line, i, false);
     }
     const auto begins = [&](const File& file) -> std::optional<std::size_t> {
@@ -363,10 +365,10 @@ class IsoSource::Impl {
           !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
       const std::filesystem::path path = std::filesystem::path(path_).parent_path() / (name + ".ngc");
       if (!plain || !std::filesystem::exists(path))
-        fail(line, 0, fmt::format("no subroutine O{} in the program, nor {}.ngc beside it", label, name));
+        fail(line, 0, fmt::format("there is no subroutine O{} in the program, nor {}.ngc beside it", label, name));
       next.file = &load(path.string());
       begin = begins(*next.file);
-      if (!begin) fail(line, 0, fmt::format("no subroutine O{} in {}", label, path.string()));
+      if (!begin) fail(line, 0, fmt::format("there is no subroutine O{} in {}", label, path.string()));
     }
     next.at = *begin + 1;
     enter(line, std::move(next));

@@ -112,7 +112,7 @@ class KlartextReader {
       run_.end();
       if (ends) return;
     }
-    throw InputError(fmt::format("{}: the program has no end; END PGM, M2 or M30 is wanted", path_));
+    throw InputError(fmt::format("{}: the program has no end; write END PGM, M2 or M30", path_));
   }
 
  private:
@@ -132,7 +132,7 @@ class KlartextReader {
     const std::string& t = line.text;
     if (begins(t, "BEGIN PGM")) {
       const bool inch = t.ends_with(" INCH");
-      if (!inch && !t.ends_with(" MM")) fail(line, "BEGIN PGM without its unit; MM or INCH is wanted at its end");
+      if (!inch && !t.ends_with(" MM")) fail(line, "BEGIN PGM has no unit; write MM or INCH at its end");
       run_.unit_m = inch ? kInch_m : 1e-3;
       run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
       run_.step().unit_word = true;
@@ -172,7 +172,7 @@ class KlartextReader {
     if (t.starts_with('M')) return m_words(line, path_words(line, 0));
     const std::string word = t.substr(0, t.find(' '));
     if (ignored(word)) return false;
-    fail(line, fmt::format("{}: not known here; if it has no effect on times and speeds, name it under `ignore`", word));
+    fail(line, fmt::format("{} is not known here; if it has no effect on times and speeds, name it under `ignore`", word));
   }
 
   // --- words of a path block ----------------------------------------------------------------------------------------------------
@@ -198,7 +198,7 @@ class KlartextReader {
         const int axis = t[incremental ? ++i : i] - 'X';
         ++i;
         auto& place = incremental ? p.by[axis] : p.at[axis];
-        if (place) fail(line, fmt::format("a second {} in one block", t.substr(begin, i - begin)));
+        if (place) fail(line, fmt::format("a second {} in one block is not allowed", t.substr(begin, i - begin)));
         place = value();
         p.plain = p.plain && !incremental && t.find('Q', begin) >= i;
         continue;
@@ -224,7 +224,7 @@ class KlartextReader {
         p.feed_word = "F AUTO";
         continue;
       } else if (is("FU") || is("FZ") || is("FT")) {
-        fail(line, fmt::format("{}: a feed per minute is wanted", t.substr(begin, 2)));
+        fail(line, fmt::format("{}: this must be a feed per minute", t.substr(begin, 2)));
       } else if (is("F")) {
         p.feed = value();
         p.feed_word = t.substr(begin, i - begin);
@@ -272,7 +272,7 @@ class KlartextReader {
     } else if (p.mb) {
       target_m[run_.normal] += *p.mb * run_.unit_m;
     } else {
-      fail(line, "M140 without MB and its length, or MB MAX");
+      fail(line, "M140 requires MB and its length, or MB MAX");
     }
     run_.step().named[run_.normal] = true;
     tnc_.line_to(target_m, !p.feed);
@@ -297,7 +297,7 @@ class KlartextReader {
     std::array<double, 3> target_m = target(p);
     const double from = std::atan2(here_m[v] - tnc_.pole_m[v], here_m[u] - tnc_.pole_m[u]);
     const double distance_m = std::hypot(here_m[v] - tnc_.pole_m[v], here_m[u] - tnc_.pole_m[u]);
-    if (!p.pa && !p.ipa && !p.pr && !p.ipr) fail(line, "polar coordinates without PR or PA");
+    if (!p.pa && !p.ipa && !p.pr && !p.ipr) fail(line, "polar coordinates require PR or PA");
     const double angle = p.ipa ? from + *p.ipa * kDegree : p.pa ? *p.pa * kDegree : from;
     const double radius_m = p.ipr ? distance_m + *p.ipr * run_.unit_m : p.pr ? *p.pr * run_.unit_m : distance_m;
     target_m[u] = tnc_.pole_m[u] + radius_m * std::cos(angle);
@@ -320,7 +320,7 @@ class KlartextReader {
     side(p);
     if (p.feed) run_.set_feed(*p.feed);
     if (p.automatic) {
-      if (!automatic_feed_) fail(line, "F AUTO without a feed in TOOL CALL");
+      if (!automatic_feed_) fail(line, "F AUTO requires a feed in TOOL CALL");
       run_.motion.feed = *automatic_feed_;
     }
     if (std::find(p.m.begin(), p.m.end(), 3) != p.m.end() || std::find(p.m.begin(), p.m.end(), 13) != p.m.end() ||
@@ -343,7 +343,7 @@ class KlartextReader {
         std::array<double, 3> target_m = run_.motion.position_m;
         const std::array<double, 3>& zero_m = run_.machine_zero("M91");
         for (int axis = 0; axis < 3; ++axis) {
-          if (p.by[axis]) fail(line, "M91 with an incremental coordinate");
+          if (p.by[axis]) fail(line, "M91 does not allow an incremental coordinate");
           if (!p.at[axis]) continue;
           step.named[axis] = true;
           target_m[axis] = zero_m[axis] + *p.at[axis] * run_.unit_m;
@@ -361,10 +361,10 @@ class KlartextReader {
     }
     const std::array<double, 3> target_m = word == "CP" ? polar_target(line, p, turns, clockwise) : target(p);
     if (!clockwise) clockwise = last_clockwise_;
-    if (!clockwise) fail(line, "an arc without its sense; DR+ or DR- is wanted");
+    if (!clockwise) fail(line, "the arc has no sense; write DR+ or DR-");
     last_clockwise_ = clockwise;
     if (word == "CR") {
-      if (!p.radius) fail(line, "CR without its radius R");
+      if (!p.radius) fail(line, "CR requires its radius R");
       tnc_.circle_to(target_m, run_.centre_of(target_m, *p.radius * run_.unit_m, *clockwise), *clockwise, 1);
     } else {
       tnc_.circle_to(target_m, tnc_.pole_m, *clockwise, turns);
@@ -375,7 +375,8 @@ class KlartextReader {
     if (!p.side) return;
     run_.compensated = *p.side != '0';
     if (run_.compensated)
-      run_.note(std::string("R") + *p.side, "cutter compensation; the path is counted along the programmed contour");
+      run_.note(std::string("R") + *p.side,
+                "cutter compensation is not followed; the path is counted along the programmed contour");
   }
 
   bool approach(const HeidenhainLine& line, const std::string& word) {
@@ -392,10 +393,10 @@ class KlartextReader {
     } else if (p.length || p.radius) {
       const double length_m =
           (p.length ? std::abs(*p.length) : std::abs(*p.radius) * p.angle.value_or(90.0) * kDegree) * run_.unit_m;
-      if (!(run_.motion.feed > 0.0)) fail(line, "a feed move without a feed");
+      if (!(run_.motion.feed > 0.0)) fail(line, "the feed move has no feed");
       run_.motion.wait(length_m / run_.motion.feed);
     } else {
-      fail(line, fmt::format("{} {} without its end, LEN or R", word, kind));
+      fail(line, fmt::format("{} {} requires its end, LEN or R", word, kind));
     }
     if (word == "DEP") run_.compensated = false;
     run_.forget();
@@ -423,7 +424,7 @@ class KlartextReader {
       std::size_t i = 0;
       const double n = count.empty() ? 1.0 : tnc_.value(line, count, i);
       if (!(n >= 1.0 && n <= kMostRuns && n == std::floor(n)))
-        fail(line, fmt::format("REP {}: a count from 1 is wanted", count));
+        fail(line, fmt::format("REP {} must be a count from 1", count));
       times = static_cast<int>(n);
       label.erase(rep);
     }
@@ -442,7 +443,7 @@ class KlartextReader {
       const char c = t[i];
       if (c == '"') {
         i = t.find('"', i + 1);
-        if (i == std::string::npos) fail(line, "a tool's name without its second '\"'");
+        if (i == std::string::npos) fail(line, "the tool's name has no closing '\"'");
         ++i;
         named = true;
       } else if (is_digit(c) || c == 'Q') {
@@ -454,7 +455,7 @@ class KlartextReader {
         ++i;
       } else if (c == 'S') {
         run_.motion.programmed_rpm = tnc_.value(line, t, ++i);
-        if (run_.motion.programmed_rpm < 0.0) fail(line, "a speed of zero or above is wanted");
+        if (run_.motion.programmed_rpm < 0.0) fail(line, "the speed must be zero or above");
       } else if (c == 'F') {
         const double before = run_.motion.feed;
         run_.set_feed(tnc_.value(line, t, ++i));
@@ -508,10 +509,9 @@ class KlartextReader {
         break;
     }
     if (number < 200)
-      fail(line,
-           fmt::format(
-               "CYCL DEF {}: not known here; of cycles 7 to 11, 13, 32, 247 and of 200, 201, 202, 203, 206, 207, 240 are",
-               number));
+      fail(line, fmt::format(
+                     "CYCL DEF {} is not known here; cycles 7 to 11, 13, 32, 247, 200, 201, 202, 203, 206, 207 and 240 are",
+                     number));
     HeidenhainCycle cycle{.number = number, .q = {}};
     for (std::size_t q = t.find(" Q", i); q != std::string::npos; q = t.find(" Q", q + 1)) {
       std::size_t k = q + 2;
@@ -523,11 +523,12 @@ class KlartextReader {
       cycle.q[n] = tnc_.value(line, t, k);
       tnc_.set_q(fmt::format("Q{}", n), cycle.q[n]);
     }
-    if (cycle.q.empty()) fail(line, fmt::format("CYCL DEF {} without its Q parameters", number));
+    if (cycle.q.empty()) fail(line, fmt::format("CYCL DEF {} has no Q parameters", number));
     if (std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(number)) return tnc_.define(cycle);
-    fail(line, fmt::format("CYCL DEF {}: of the cycles from 200 on 200, 201, 202, 203, 206, 207 and 240 are computed here; "
-                           "write the others out",
-                           number));
+    fail(line,
+         fmt::format("CYCL DEF {}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
+                     "write the others out",
+                     number));
   }
 
   /// Behind the words of a title: where the first value begins.
@@ -546,7 +547,7 @@ class KlartextReader {
   double last_number(const HeidenhainLine& line, std::size_t i) {
     const std::string& t = line.text;
     const std::size_t begin = t.find_first_of("+-0123456789", i);
-    if (begin == std::string::npos) fail(line, "a cycle without its number");
+    if (begin == std::string::npos) fail(line, "the cycle has no number");
     std::size_t k = begin;
     if (k > 0 && t[k - 1] == 'Q') --k;
     return tnc_.value(line, t, k);
@@ -569,7 +570,7 @@ class KlartextReader {
       tnc_.shift_datum(axis, tnc_.value(line, t, i) * run_.unit_m, incremental);
       any = true;
     }
-    if (!any) fail(line, "a datum shift without X, Y or Z");
+    if (!any) fail(line, "the datum shift has no X, Y or Z");
   }
 
   bool call_cycle(const HeidenhainLine& line) {
@@ -589,14 +590,14 @@ class KlartextReader {
 
   void formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is wanted");
+    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     if (name.starts_with("QS")) return;  // texts
     std::size_t i = equals + 1;
     tnc_.set_q(name, tnc_.value(line, line.text, i, true));
     if (line.text.find_first_not_of(' ', i) != std::string::npos)
-      fail(line, fmt::format("'{}' cannot stand here", line.text.substr(i)));
+      fail(line, fmt::format("'{}' is not allowed here", line.text.substr(i)));
   }
 
   /// FN 1: Q5 = +Q2 + +5; FN 9: IF +Q1 EQU +Q3 GOTO LBL 5.
@@ -606,11 +607,11 @@ class KlartextReader {
     while (i < t.size() && t[i] == ' ') ++i;
     int n = 0;
     while (i < t.size() && is_digit(t[i])) n = 10 * std::min(n, 1000) + (t[i++] - '0');
-    if (i >= t.size() || t[i] != ':') fail(line, "FN and its number, such as FN 0: Q1 = +5, is wanted");
+    if (i >= t.size() || t[i] != ':') fail(line, "FN and its number are expected, such as FN 0: Q1 = +5");
     ++i;
     if (n >= 9 && n <= 12) {
       const std::size_t condition = t.find("IF", i), jump = t.find("GOTO LBL");
-      if (condition == std::string::npos || jump == std::string::npos) fail(line, "IF ... GOTO LBL is wanted");
+      if (condition == std::string::npos || jump == std::string::npos) fail(line, "IF ... GOTO LBL is expected");
       i = condition + 2;
       const double a = tnc_.value(line, t, i);
       i = t.find_first_of("ENGL", i);  // EQU, NE, GT, LT
@@ -623,7 +624,7 @@ class KlartextReader {
       return;
     }
     const std::size_t equals = t.find('=', i);
-    if (equals == std::string::npos) fail(line, fmt::format("FN {}: not known here", n));
+    if (equals == std::string::npos) fail(line, fmt::format("FN {} is not known here", n));
     std::string q = t.substr(i, equals - i);
     std::erase(q, ' ');
     i = equals + 1;

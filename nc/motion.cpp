@@ -34,7 +34,7 @@ void NcMotion::rapid_to(const std::array<double, 3>& target_m) {
   piece.rapid = true;
   position_m = target_m;
   if (length_m == 0.0) return;
-  if (!rapid_m_s_) throw InputError(where, "a rapid move, but nobody says how fast; state `rapid`, such as 15 m/min");
+  if (!rapid_m_s_) throw InputError(where, "the speed of rapid moves is missing; state `rapid`, such as 15 m/min");
   piece.length_m = length_m;
   note({length_m / *rapid_m_s_, speed_rpm(), travel_m, false}, piece);
 }
@@ -57,16 +57,18 @@ void NcMotion::stop() {
 
 void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m, PathPiece piece) {
   if (!(feed > 0.0)) {
-    throw InputError(where, feed_mode == NcFeedMode::InverseTime
-                                ? "a feed move without F; with G93 every block of feed motion has an F above zero"
-                                : "a feed move without a feed; an F above zero is wanted in this block or after the last "
-                                  "G93, G94, G95 before it");
+    throw InputError(
+        where,
+        feed_mode == NcFeedMode::InverseTime
+            ? "the feed move has no F; with G93 every block of feed motion must have an F above zero"
+            : "the feed move has no feed; write an F above zero in this block or after the last G93, G94, G95 before it");
   }
   double duration_s = length_m / feed;
   if (feed_mode == NcFeedMode::InverseTime) duration_s = 1.0 / feed;
   if (feed_mode == NcFeedMode::PerRevolution) {
     if (!(speed_rpm() > 0.0))
-      throw InputError(where, "a feed per revolution (G95) of a spindle at rest; M3 or M4 and an S above zero are wanted");
+      throw InputError(where,
+                       "the feed is per revolution (G95), but the spindle is at rest; write M3 or M4 and an S above zero");
     duration_s = length_m / (feed * speed_rpm() / 60.0);
   }
   piece.length_m = length_m;

@@ -47,7 +47,7 @@ std::vector<std::array<NcEntry, 3>> nc_entries(const std::vector<NcStep>& steps)
 }
 
 std::string why_not_divisible(const NcStep& step) {
-  if (step.kind == NcStepKind::kNone) return "the axes stand";
+  if (step.kind == NcStepKind::kNone) return "the axes are at rest";
   if (step.kind == NcStepKind::kArc) return "an arc";
   if (step.kind == NcStepKind::kDrilling) return "a canned cycle";
   if (step.kind == NcStepKind::kMachine) return "in machine coordinates";
@@ -59,7 +59,7 @@ std::string why_not_divisible(const NcStep& step) {
   if (step.before.feed_mode == NcFeedMode::InverseTime) return "G93";
   if (!step.plain) return "it has more words than N, G0, G1, X, Y, Z, F";
   for (int axis = 0; axis < 3; ++axis) {
-    if (step.named[axis] && !step.known[axis]) return "nobody has said where it starts";
+    if (step.named[axis] && !step.known[axis]) return "its starting point is not stated";
   }
   return "";
 }

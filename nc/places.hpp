@@ -7,7 +7,7 @@
 
 namespace driftwright {
 
-/// How an axis takes a new offset that stands before a block. A change of offset moves nothing by itself, on LinuxCNC, Siemens and
+/// How an axis takes a new offset that stands before a block. A change of offset moves nothing on its own, on LinuxCNC, Siemens and
 /// Heidenhain alike: an axis follows when it is commanded next.
 enum class NcEntry {
   kAlongRapid,      ///< the block is a rapid in G90 that names the axis: it arrives with the new offset

@@ -59,11 +59,11 @@ void NcRun::note_at(const Where& where, const std::string& word, const std::stri
 }
 
 void NcRun::pass_over(const std::string& word) {
-  note(word, "not known here; it stays in the program and is timed as zero");
+  note(word, "it is not known here; it stays in the program and is timed as zero");
 }
 
 void NcRun::set_feed(double f) {
-  if (f < 0.0) fail(fmt::format("a feed of {:g}; a value of zero or above is wanted", f));
+  if (f < 0.0) fail(fmt::format("the feed is {:g}; it must be zero or above", f));
   switch (motion.feed_mode) {
     case NcFeedMode::PerMinute:
       motion.feed = f * feed_unit_m / 60.0;
@@ -84,7 +84,8 @@ void NcRun::set_feed_mode(NcFeedMode mode) {
 
 void NcRun::change_tool(const std::string& word) {
   if (!settings_.tool_change_s)
-    fail(fmt::format("{} changes the tool, but nobody says how long that takes; state `tool_change`, such as 8 s", word));
+    fail(
+        fmt::format("{} changes the tool, but the time that this takes is missing; state `tool_change`, such as 8 s", word));
   motion.turning = false;
   motion.wait(*settings_.tool_change_s);
   step().tool_change = true;

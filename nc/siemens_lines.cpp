@@ -86,7 +86,7 @@ void match_loops(std::vector<SiemensLine>& lines) {
     if ((word == "IF" && !jumps) || word == "WHILE" || word == "FOR" || word == "LOOP" || (word == "REPEAT" && bare)) {
       open.emplace_back(word, n);
     } else if (word == "ELSE") {
-      if (open.empty() || open.back().first != "IF") fail(line, line.begin, "ELSE without IF");
+      if (open.empty() || open.back().first != "IF") fail(line, line.begin, "ELSE has no IF before it");
       lines[open.back().second].partner = n;
       open.back() = {"IF", n};
     } else if (const auto closer = kClosers.find(word); closer != kClosers.end()) {
@@ -98,8 +98,7 @@ void match_loops(std::vector<SiemensLine>& lines) {
     }
   }
   if (!open.empty())
-    fail(lines[open.back().second], lines[open.back().second].begin,
-         fmt::format("{} that nothing closes", open.back().first));
+    fail(lines[open.back().second], lines[open.back().second].begin, fmt::format("{} is not closed", open.back().first));
 }
 
 /// The end of the brackets that open at text[i]: behind ')'.
@@ -120,13 +119,13 @@ std::size_t behind_bracket(const SiemensLine& line, std::size_t i) {
 std::size_t behind_value(const SiemensLine& line, std::size_t i) {
   const std::string& text = line.text;
   const std::string operators = "+-*/";
-  bool wants = true;  // an operand is wanted
+  bool wants = true;  // an operand is required
   while (i < text.size()) {
     if (text[i] == ' ') {
       ++i;
     } else if (text[i] == '"') {
       const std::size_t end = text.find('"', i + 1);
-      if (end == std::string::npos) fail(line, i, "a text without its second '\"'");
+      if (end == std::string::npos) fail(line, i, "the text has no closing '\"'");
       i = end + 1;
       wants = false;
     } else if (text[i] == '(') {
@@ -202,7 +201,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
     const std::size_t begin = i;
     if (text[i] == '(') fail(line, i, "'(': comments follow ';' in this language; programs in ISO code begin with G291");
     if (!begins_name(text[i]))
-      fail(line, i, fmt::format("'{}' cannot stand here; words such as G1, X10, CR=5 are wanted", text[i]));
+      fail(line, i, fmt::format("'{}' is not allowed here; words such as G1, X10, CR=5 are expected", text[i]));
     SiemensWord word;
     std::size_t k = i + 1;
     while (k < text.size() && is_digit(text[k])) ++k;
@@ -257,7 +256,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
         word.kind = SiemensWord::kKeyword;
         word.column = begin;
         if (word.name.size() == 1)
-          fail(line, begin, fmt::format("'{}' is no word; a number is wanted after the letter", word.name));
+          fail(line, begin, fmt::format("'{}' is no word; a number is expected after the letter", word.name));
       }
     }
     word.text = text.substr(begin, i - begin);

@@ -55,7 +55,7 @@ const char* hint_of(int g) {
     case 83:
     case 98:
     case 99:
-      return "a word of ISO code, which this control knows behind G291 alone";
+      return "this is a word of ISO code, which this control knows only after G291";
     case 33:
     case 34:
     case 35:
@@ -99,7 +99,7 @@ class SiemensReader {
       if (!statement(line) && !block(line)) return;
       end_repetitions();
     }
-    throw InputError(fmt::format("{}: the program has no end; a last block M30, M2, M17 or RET is wanted", path_));
+    throw InputError(fmt::format("{}: the program has no end; write M30, M2, M17 or RET as its last block", path_));
   }
 
  private:
@@ -134,7 +134,7 @@ class SiemensReader {
     try {
       const double x = evaluate(word.value, at, NcSyntax::kSiemens, lookup(), true).value;
       if (word.value.find_first_not_of(" \t", at) != std::string::npos)
-        throw RangeError("an expression with more behind it");
+        throw RangeError("the expression has more text after its end");
       return x;
     } catch (const RangeError& e) {
       fail(line, word.column + at, e.what());
@@ -204,10 +204,10 @@ class SiemensReader {
         at_ = met ? at_ + 1 : line.partner + 1;
       } else if (!met) {
         std::size_t behind = i;
-        if (!siemens_name(line.text, behind).starts_with("GOTO")) fail(line, i, "GOTOF, GOTOB or GOTO is wanted behind IF");
+        if (!siemens_name(line.text, behind).starts_with("GOTO")) fail(line, i, "GOTOF, GOTOB or GOTO is expected after IF");
         ++at_;
       } else if (!jump(line, i)) {
-        fail(line, i, "GOTOF, GOTOB or GOTO is wanted behind IF");
+        fail(line, i, "GOTOF, GOTOB or GOTO is expected after IF");
       }
       return true;
     }
@@ -236,17 +236,17 @@ class SiemensReader {
   bool define(const SiemensLine& line, std::size_t i) {
     const std::string type = siemens_name(line.text, i);
     if (type != "REAL" && type != "INT" && type != "BOOL")
-      fail(line, line.begin, "of variables REAL, INT and BOOL are followed here");
+      fail(line, line.begin, "of variables only REAL, INT and BOOL are followed here");
     while (true) {
       const std::string name = siemens_name(line.text, i);
-      if (name.empty()) fail(line, i, "a name is wanted here");
+      if (name.empty()) fail(line, i, "a name is expected here");
       double initial = 0.0;
       while (i < line.text.size() && line.text[i] == ' ') ++i;
       if (i < line.text.size() && line.text[i] == '=') initial = value(line, line.text, ++i);
       variables_[name] = initial;
       while (i < line.text.size() && line.text[i] == ' ') ++i;
       if (i >= line.text.size()) break;
-      if (line.text[i++] != ',') fail(line, i - 1, "',' or the end of the line is wanted here");
+      if (line.text[i++] != ',') fail(line, i - 1, "',' or the end of the line is expected here");
     }
     ++at_;
     return true;
@@ -260,9 +260,9 @@ class SiemensReader {
     For loop;
     loop.name = siemens_name(line.text, i);
     while (i < line.text.size() && line.text[i] == ' ') ++i;
-    if (i >= line.text.size() || line.text[i] != '=') fail(line, i, "FOR R1=1 TO 5 is wanted");
+    if (i >= line.text.size() || line.text[i] != '=') fail(line, i, "a loop such as FOR R1=1 TO 5 is expected");
     const std::size_t to = line.text.find(" TO ", i);
-    if (to == std::string::npos) fail(line, i, "FOR R1=1 TO 5 is wanted");
+    if (to == std::string::npos) fail(line, i, "a loop such as FOR R1=1 TO 5 is expected");
     loop.from = value(line, line.text, ++i);
     i = to + 4;
     loop.to = value(line, line.text, i);
@@ -297,15 +297,15 @@ class SiemensReader {
           line.text.find_first_not_of("P ", i) == line.text.find('=', i)) {
         i = line.text.find('=', i) + 1;
         const double n = value(line, line.text, i);
-        if (!(n >= 0.0 && n <= kMostRuns && n == std::floor(n))) fail(line, i, fmt::format("P={:g}: a count is wanted", n));
+        if (!(n >= 0.0 && n <= kMostRuns && n == std::floor(n))) fail(line, i, fmt::format("P={:g} must be a count", n));
         times = static_cast<int>(n);
         continue;
       }
       const std::size_t column = i;
       labels.push_back(siemens_name(line.text, i));
-      if (labels.back().empty()) fail(line, column, "a label is wanted here");
+      if (labels.back().empty()) fail(line, column, "a label is expected here");
     }
-    if (labels.empty() || labels.size() > 2) fail(line, line.begin, "REPEAT wants one label or two");
+    if (labels.empty() || labels.size() > 2) fail(line, line.begin, "REPEAT requires one label or two");
     const std::size_t first = place_of(line, labels[0], line.begin, 0);
     std::size_t last = at_ - 1;
     if (labels.size() == 2) last = place_of(line, labels[1], line.begin, 0);
@@ -314,12 +314,13 @@ class SiemensReader {
       last = first;
       while (last + 1 < lines_.size() && lines_[last].label != "ENDLABEL") ++last;
     }
-    if (last < first || (first <= at_ && at_ <= last)) fail(line, line.begin, "REPEAT of lines that hold it themselves");
+    if (last < first || (first <= at_ && at_ <= last))
+      fail(line, line.begin, "REPEAT must not repeat lines that contain it");
     if (times == 0) {
       ++at_;
       return;
     }
-    if (repetitions_.size() >= 100) fail(line, line.begin, "repetitions nested more than 100 deep");
+    if (repetitions_.size() >= 100) fail(line, line.begin, "repetitions are nested more than 100 deep");
     repetitions_.push_back({first, last, times, at_ + 1});
     at_ = first;
   }
@@ -405,14 +406,14 @@ class SiemensReader {
       fail(line, word.column,
            fmt::format("{}: rotary and further linear axes are not followed here; X, Y, Z are", word.text));
     } else if (!b.words.emplace(name == "S1" ? "S" : name, &word).second) {
-      fail(line, word.column, fmt::format("{}: a second {} in one block", word.text, name));
+      fail(line, word.column, fmt::format("{}: a second {} in one block is not allowed", word.text, name));
     }
   }
 
   int whole(const SiemensLine& line, const Word& word) {
     const double x = value_of(line, word);
     if (!(x >= 0.0 && x < 100000.0 && x == std::floor(x)))
-      fail(line, word.column, fmt::format("{}: no such word", word.text));
+      fail(line, word.column, fmt::format("{}: there is no such word", word.text));
     return static_cast<int>(x);
   }
 
@@ -428,18 +429,19 @@ class SiemensReader {
     } else if (std::set<std::string>{"TRANS", "ATRANS", "ROT", "AROT", "ROTS", "AROTS", "MIRROR", "AMIRROR", "SCALE",
                                      "ASCALE"}
                    .contains(name)) {
-      if (!frame.empty()) fail(line, word.column, fmt::format("{} beside {} in one block", name, frame));
+      if (!frame.empty()) fail(line, word.column, fmt::format("{} is not allowed beside {} in one block", name, frame));
       frame = name;
     } else if (name == "CIP" || name == "CT") {
-      fail(line, word.column, fmt::format("{}: of arcs G2 and G3 are computed here", name));
+      fail(line, word.column, fmt::format("{}: of arcs only G2 and G3 are computed here", name));
     } else if (std::set<std::string>{"TRAORI", "TRACYL", "TRANSMIT", "ORIAXES", "ASPLINE", "BSPLINE", "CSPLINE", "POLY"}
                    .contains(name)) {
       fail(line, word.column, fmt::format("{}: transformations and splines are not computed here", name));
     } else if (!keywords_without_effect().contains(name)) {
       fail(line, word.column,
-           fmt::format("{}: not known here, or a subprogram, which is not called; if it has no effect on times and speeds, "
-                       "name it under `ignore`",
-                       name));
+           fmt::format(
+               "{} is not known here, or is a subprogram, which is not called; if it has no effect on times and speeds, "
+               "name it under `ignore`",
+               name));
     }
     return false;
   }
@@ -451,7 +453,7 @@ class SiemensReader {
   double not_negative(const Block& b, const char* name) {
     const double x = number(b, name);
     if (x < 0.0)
-      fail(*b.line, b.words.at(name)->column, fmt::format("{}: a value of zero or above is wanted", b.words.at(name)->text));
+      fail(*b.line, b.words.at(name)->column, fmt::format("{}: the value must be zero or above", b.words.at(name)->text));
     return x;
   }
   static bool contains(const std::vector<int>& codes, int code) {
@@ -480,7 +482,8 @@ class SiemensReader {
         run_.compensated = false;
       } else if (g == 41 || g == 42) {
         run_.compensated = true;
-        run_.note(fmt::format("G{}", g), "cutter compensation; the path is counted along the programmed contour");
+        run_.note(fmt::format("G{}", g),
+                  "cutter compensation is not followed; the path is counted along the programmed contour");
       } else if (g == 53 || g == 153) {
         step.kind = NcStepKind::kMachine;
       } else if ((g >= 54 && g <= 59) || g == 500 || (g >= 505 && g <= 599)) {
@@ -531,7 +534,7 @@ class SiemensReader {
       if (kKnown.contains(name)) continue;
       if ((name[0] == 'S' || name[0] == 'M' || name[0] == 'H') && name.size() > 1 &&
           std::isdigit(static_cast<unsigned char>(name[1])) != 0) {
-        run_.note(word->text, "another spindle than the first; it is not followed");
+        run_.note(word->text, "this is another spindle than the first; it is not followed");
         continue;
       }
       if (name == "AP" || name == "RP")
@@ -579,7 +582,7 @@ class SiemensReader {
     step.system = 10 * g;
     step.resets = {true, true, true};
     if (system_ && *system_ != g)
-      run_.note(fmt::format("G{}", g), "another work offset; positions are counted as if in the one before");
+      run_.note(fmt::format("G{}", g), "this is another work offset; positions are counted as if in the one before");
     system_ = g;
     run_.forget();
   }
@@ -589,10 +592,10 @@ class SiemensReader {
       run_.motion.wait(not_negative(b, "F"));
     } else if (has(b, "S")) {
       const double rpm = run_.motion.speed_rpm();
-      if (!(rpm > 0.0)) run_.fail("G4 S counts turns of the spindle, which stands");
+      if (!(rpm > 0.0)) run_.fail("G4 S counts turns of the spindle, but the spindle is at rest");
       run_.motion.wait(not_negative(b, "S") * 60.0 / rpm);
     } else {
-      run_.fail("G4 without its time; F in seconds or S in turns of the spindle is wanted");
+      run_.fail("G4 has no time; write F in seconds or S in turns of the spindle");
     }
   }
 
@@ -613,7 +616,7 @@ class SiemensReader {
       if (kind == "SCALE" && x != 1.0)
         run_.fail("scaling is not computed here; let the post-processor write lengths as they are");
     }
-    if (run_.compensated) run_.fail(fmt::format("{} with G41 or G42 on", frame));
+    if (run_.compensated) run_.fail(fmt::format("{} is not allowed with G41 or G42 on", frame));
     const bool was_transformed = run_.transformed;
     if (!additive) run_.transformed = false;  // TRANS, ROT, MIRROR take all frames programmed before away
     if (any && (kind == "ROT" || kind == "ROTS" || kind == "MIRROR")) {
@@ -663,12 +666,12 @@ class SiemensReader {
     const bool axes = has(b, "X") || has(b, "Y") || has(b, "Z");
     const bool centre = has(b, "I") || has(b, "J") || has(b, "K") || has(b, "CR");
     if (!axes && !(arc && centre)) {
-      if (machine) run_.fail("SUPA, G53 or G153 without a straight move; X, Y or Z are wanted with it");
+      if (machine) run_.fail("SUPA, G53 or G153 has no straight move; write X, Y or Z with it");
       return;
     }
     if (!run_.motion_word) run_.motion_word = 10;  // the control's own after a start
     if (machine) {
-      if (arc) run_.fail("SUPA, G53 and G153 go with G0 and G1 alone");
+      if (arc) run_.fail("SUPA, G53 and G153 are allowed only with G0 and G1");
       const std::array<double, 3>& zero_m = run_.machine_zero("SUPA");
       std::array<double, 3> target_m = run_.motion.position_m;
       for (int axis = 0; axis < 3; ++axis) {
@@ -714,14 +717,14 @@ class SiemensReader {
         const double x_m = value_of(*b.line, *found->second) * run_.unit_m;
         centre_m[axis] = found->second->mode == "AC" ? x_m : run_.motion.position_m[axis] + x_m;
       }
-      if (n == 0) run_.fail("an arc without its centre; I, J, K of the plane or CR= is wanted");
+      if (n == 0) run_.fail("the arc has no centre; write I, J, K of the plane or CR=");
     }
     run_.arc_to(target_m, centre_m, clockwise, turns);
   }
 
   void tap_thread(const Block& b, int g) {
     const char* pitch_name = run_.normal == 2 ? "K" : run_.normal == 1 ? "J" : "I";
-    if (!has(b, pitch_name)) run_.fail(fmt::format("G{} without its pitch {}", g, pitch_name));
+    if (!has(b, pitch_name)) run_.fail(fmt::format("G{} has no pitch {}", g, pitch_name));
     tap_to(run_, target(b), std::abs(number(b, pitch_name)) * run_.unit_m, run_.motion.programmed_rpm);
     run_.step().motion_word = true;
     run_.step().no_place = true;  // the thread is bound to the spindle's angle
@@ -746,7 +749,7 @@ class SiemensReader {
       run_.forget();
       if (run_.transformed)
         run_.note("CYCLE800",
-                  "a swivelled plane; the path is counted as written, and no correction changes while it is in force");
+                  "this swivels the plane; the path is counted as written, and no correction changes while it is in force");
       return;
     }
     static const std::map<std::string, int> kCycles = {
@@ -754,9 +757,10 @@ class SiemensReader {
     const auto found = kCycles.find(cycle);
     if (found == kCycles.end())
       fail(line, word.column,
-           fmt::format("{}( ): of cycles CYCLE81 to CYCLE85 are computed here; let the post-processor write the others out, "
-                       "or name one without effect under `ignore`",
-                       cycle));
+           fmt::format(
+               "{}( ): of cycles only CYCLE81 to CYCLE85 are computed here; let the post-processor write the others out, "
+               "or name one without effect under `ignore`",
+               cycle));
     Cycle c{.code = found->second, .p = {}};
     for (const auto& [text, column] : siemens_arguments(word)) {
       if (text.find_first_not_of(" \t") == std::string::npos) {
@@ -786,15 +790,15 @@ class SiemensReader {
   void drill(const Cycle& c) {
     const auto need = [&](std::size_t i, const char* name) {
       const auto x = of(c, i);
-      if (!x) run_.fail(fmt::format("CYCLE{} without its {}", c.code, name));
+      if (!x) run_.fail(fmt::format("CYCLE{} has no {}", c.code, name));
       return *x * run_.unit_m;
     };
     const double retract_m = need(0, "retraction plane RTP"), reference_m = need(1, "reference plane RFP"),
                  safe_m = reference_m + std::abs(of(c, 2).value_or(0.0)) * run_.unit_m;
-    if (!of(c, 3) && !of(c, 4)) run_.fail(fmt::format("CYCLE{} without its depth DP or DPR", c.code));
+    if (!of(c, 3) && !of(c, 4)) run_.fail(fmt::format("CYCLE{} has no depth DP or DPR", c.code));
     const double bottom_m = of(c, 3) ? *of(c, 3) * run_.unit_m : reference_m - std::abs(*of(c, 4)) * run_.unit_m;
     if (!(bottom_m <= safe_m && retract_m >= bottom_m))
-      run_.fail(fmt::format("CYCLE{} whose depth lies above its planes; drilling goes downward", c.code));
+      run_.fail(fmt::format("the depth of CYCLE{} lies above its planes; drilling goes downward", c.code));
     NcMotion& motion = run_.motion;
     const auto at = [&](double level_m) {
       std::array<double, 3> target_m = motion.position_m;
@@ -808,7 +812,7 @@ class SiemensReader {
         break;
       case 84: {
         const double pitch_m = std::abs(of(c, 8).value_or(0.0)) * run_.unit_m;
-        if (!(pitch_m > 0.0)) run_.fail("CYCLE84 without its pitch PIT; threads by size (MPIT) are not looked up here");
+        if (!(pitch_m > 0.0)) run_.fail("CYCLE84 has no pitch PIT; threads by size (MPIT) are not looked up here");
         const double in_rpm = of(c, 10).value_or(0.0) > 0.0 ? *of(c, 10) : motion.programmed_rpm;
         tap_to(run_, at(bottom_m), pitch_m, in_rpm);
         motion.wait(of(c, 5).value_or(0.0));
@@ -843,11 +847,12 @@ class SiemensReader {
     } else if (of(c, 6)) {
       depth_m = reference_m - std::abs(*of(c, 6)) * run_.unit_m;
     } else {
-      run_.fail("CYCLE83 without its first depth FDEP or FDPR");
+      run_.fail("CYCLE83 has no first depth FDEP or FDPR");
     }
     const double degression = of(c, 7).value_or(0.0);
     double bite_m = reference_m - depth_m;
-    if (!(bite_m > 0.0 && (reference_m - bottom_m) / bite_m < 1e5)) run_.fail("CYCLE83 whose first depth is none");
+    if (!(bite_m > 0.0 && (reference_m - bottom_m) / bite_m < 1e5))
+      run_.fail("the first depth of CYCLE83 must be below its reference plane");
     const bool clears = of(c, 11).value_or(0.0) != 0.0;
     const double modal_feed = motion.feed;
     if (of(c, 10).value_or(0.0) > 0.0) motion.feed *= *of(c, 10);
@@ -868,10 +873,10 @@ class SiemensReader {
       const double least_m = degression < 0.0 ? 0.0 : degression * run_.unit_m;
       const double next_m = degression < 0.0 ? bite_m * -degression : bite_m - least_m;
       bite_m = degression > 0.0 ? std::max(next_m, std::min(bite_m, least_m)) : degression < 0.0 ? next_m : bite_m;
-      if (!(bite_m > 1e-6)) run_.fail("CYCLE83 whose depths shrink to nothing");
+      if (!(bite_m > 1e-6)) run_.fail("the depths of CYCLE83 shrink to nothing");
       depth_m -= bite_m;
     }
-    run_.fail("CYCLE83 of more than 100000 pecks");
+    run_.fail("CYCLE83 has more than 100000 pecks");
   }
 
   std::string path_;

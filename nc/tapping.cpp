@@ -3,8 +3,8 @@
 namespace driftwright {
 
 void tap_to(NcRun& run, const std::array<double, 3>& target_m, double pitch_m, double speed_rpm) {
-  if (!(speed_rpm > 0.0)) run.fail("tapping without a speed of the spindle; an S above zero is wanted");
-  if (!(pitch_m > 0.0)) run.fail("tapping without a pitch");
+  if (!(speed_rpm > 0.0)) run.fail("tapping requires a speed of the spindle; write an S above zero");
+  if (!(pitch_m > 0.0)) run.fail("tapping requires a pitch");
   const NcFeedMode mode = run.motion.feed_mode;
   const double feed = run.motion.feed, programmed_rpm = run.motion.programmed_rpm;
   const bool turning = run.motion.turning;

@@ -58,7 +58,7 @@ const char* hint(char letter, NcCode code) {
     if (code == 960) return "constant surface speed is not computed here; write the spindle speeds with G97";
     if (code == 650 || code == 660) return "macros are not run here; let the post-processor write them out";
     if (code == 740 || (code >= 860 && code <= 890))
-      return "of the canned cycles G73, G81 to G85 are known; write the others out";
+      return "of the canned cycles only G73, G81 to G85 are known; write the others out";
   }
   if (letter == 'M' && code == 970) return "subprograms are called by M98 here";
   return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
@@ -90,7 +90,7 @@ NcWords::NcWords(const NcBlock& block) : block_(block), used_(block.words.size()
     const char letter = block.words[i].letter;
     if (letter == 'G' || letter == 'M') continue;
     for (std::size_t j = 0; j < i; ++j) {
-      if (block.words[j].letter == letter) fail(i, fmt::format("a second {} in one block", letter));
+      if (block.words[j].letter == letter) fail(i, fmt::format("a second {} in one block is not allowed", letter));
     }
   }
 }
@@ -129,14 +129,15 @@ void NcWords::take_all(const std::string& letters) {
 double NcWords::take_not_negative(char letter) {
   const std::size_t i = find(letter);
   const double value = take(letter).value();
-  if (value < 0.0) fail(i, "a value of zero or above is wanted");
+  if (value < 0.0) fail(i, "the value must be zero or above");
   return value;
 }
 
 int NcWords::take_count(char letter) {
   const std::size_t i = find(letter);
   const double value = take(letter).value();
-  if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value))) fail(i, "a whole number from 1 to 100000 is wanted");
+  if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value)))
+    fail(i, "the value must be a whole number from 1 to 100000");
   return static_cast<int>(value);
 }
 
@@ -147,7 +148,7 @@ std::vector<NcCode> NcWords::take_codes(char letter, const std::set<std::string>
     if (block_.words[i].letter != letter) continue;
     const double tenths = 10.0 * block_.words[i].value;
     const NcCode code = static_cast<NcCode>(std::lround(std::clamp(tenths, -1.0, 1e6)));
-    if (std::abs(tenths - code) > 1e-3 || code < 0) fail(i, "no such word");
+    if (std::abs(tenths - code) > 1e-3 || code < 0) fail(i, "there is no such word");
     used_[i] = true;
     if (ignored.count(nc_word_name(letter, code)) > 0) {
       pardoned_ = "PQRLE";

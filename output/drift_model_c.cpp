@@ -119,7 +119,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   std::string text = fmt::format("/* Correction of {} [um], by {}. {}\n *\n * {} *\n", quoted(d.model.target),
                                  quoted(d.model.kind), quoted(made_by), comment);
   text +=
-      " * Compile it with drift_correction.c, which stands beside it; drift_correction.h says what is computed, and how it "
+      " * Compile it with drift_correction.c, which lies beside it; drift_correction.h says what is computed, and how it "
       "must be\n"
       " * compiled to give the numbers that were judged, to the last bit: cc -std=c99 -ffp-contract=off THIS.c "
       "drift_correction.c -lm */\n"
@@ -189,7 +189,7 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
   for (std::size_t k = 0; k < readings.size(); ++k) {
     pins += fmt::format("pin in float {} \"{} in {}; not a number while there is none\";\n", readings[k],
                         quoted(d.safe.guards[k].input), quoted(d.safe.guards[k].unit));
-    doubts += fmt::format("pin out bit doubt_{} \"{} is doubted, and replaced where others tell of it\";\n", readings[k],
+    doubts += fmt::format("pin out bit doubt_{} \"{} is doubted, and replaced where others allow it\";\n", readings[k],
                           quoted(d.safe.guards[k].input));
     values += fmt::format("is_late ? NAN : {}, ", readings[k]);
     set_doubts += fmt::format("    doubt_{} = model.inputs[{}].is_doubted;\n", readings[k], k);
@@ -200,7 +200,7 @@ description """
 {made_by}
 
 What is judged by Driftwright runs here: {c_file} holds the tables of the model, drift_correction.c the code. Both, with
-drift_correction.h, axis_offset.h and axis_offset.c, must stand beside this file when it is compiled:
+drift_correction.h, axis_offset.h and axis_offset.c, must lie beside this file when it is compiled:
 
   halcompile --install {name}.comp
 

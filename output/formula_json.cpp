@@ -32,7 +32,7 @@ DriftModel formula_of(const Json& j) {
                        .is_running = t.contains("is_running") && value<bool>(t, "is_running")});
     const DriftModel::Term& term = m.terms.back();
     if (term.lag_s < 0.0 || term.power < 1)
-      throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; at least 0 and 1 are wanted", term.input,
+      throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; they must be at least 0 and 1", term.input,
                                    term.lag_s, term.power));
     if (term.is_running && term.power != 1)
       throw InputError(fmt::format("term '{}' has `is_running` and `power` {}; with `is_running` the power is 1", term.input,
@@ -88,7 +88,7 @@ FailSafe fail_safe_of(const Json& s) {
     if (!(guard.low <= guard.high))  // they are equal where a drive was 0 in all training runs
       throw InputError(fmt::format("guard '{}' has `low` {} above `high` {}", guard.input, guard.low, guard.high));
     if (!guard.others_coefficient.empty() && !(guard.most_apart > 0.0))
-      throw InputError(fmt::format("guard '{}' has `most_apart` {}; more than 0 is wanted", guard.input, guard.most_apart));
+      throw InputError(fmt::format("guard '{}' has `most_apart` {}; it must be above 0", guard.input, guard.most_apart));
   }
   for (const FailSafe::Guard& g : safe.guards) {
     if (!g.others_coefficient.empty() && g.others_coefficient.size() != safe.guards.size())

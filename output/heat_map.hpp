@@ -18,7 +18,7 @@ struct HeatMap {
   std::string unit;                         ///< as people see it
 };
 
-/// Colours go with the logarithm of value / limit, full at a quarter and at four times the limit; they are told apart by the colour-blind, and
+/// Colours go with the logarithm of value / limit, full at a quarter and at four times the limit; they are distinguished by the colour-blind, and
 /// the numbers stand in the cells.
 /// @throws std::logic_error  where values do not fit rows and columns
 [[nodiscard]] std::string draw_heat_map(const HeatMap& map);

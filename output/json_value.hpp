@@ -31,12 +31,12 @@ template <class T>
 
 [[nodiscard]] inline double finite(const Json& j, const char* key) {
   const auto x = value<double>(j, key);
-  if (!std::isfinite(x)) throw InputError(fmt::format("key `{}` is {}; a number is wanted", key, j.at(key).dump()));
+  if (!std::isfinite(x)) throw InputError(fmt::format("key `{}` is {}; it must be a number", key, j.at(key).dump()));
   return x;
 }
 [[nodiscard]] inline double positive(const Json& j, const char* key) {
   const double x = finite(j, key);
-  if (!(x > 0.0)) throw InputError(fmt::format("key `{}` is {}; more than 0 is wanted", key, x));
+  if (!(x > 0.0)) throw InputError(fmt::format("key `{}` is {}; it must be above 0", key, x));
   return x;
 }
 /// `missing` where it is null.
@@ -45,7 +45,7 @@ template <class T>
 }
 [[nodiscard]] inline Json list(const Json& j, const char* key) {
   auto l = value<Json>(j, key);
-  if (!l.is_array()) throw InputError(fmt::format("key `{}` is {}; a list is wanted", key, l.dump()));
+  if (!l.is_array()) throw InputError(fmt::format("key `{}` is {}; it must be a list", key, l.dump()));
   return l;
 }
 

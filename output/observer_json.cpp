@@ -59,7 +59,7 @@ std::vector<effects::Effect> effects_of(const Json& list) {
   std::string yaml = "effects:\n";
   for (const Json& entry : list) {
     if (!entry.is_string())
-      throw InputError(fmt::format("`effects` holds {}; entries as in a scenario are wanted", entry.dump()));
+      throw InputError(fmt::format("`effects` holds {}; it must hold entries as in a scenario", entry.dump()));
     yaml += "  - " + entry.get<std::string>() + "\n";
   }
   std::vector<effects::Effect> effects;

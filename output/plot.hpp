@@ -67,7 +67,7 @@ struct Bars {
 
 /// How a series is drawn: as it asks, but dashed where a line would have the colour of an earlier one.
 [[nodiscard]] Series::Style drawn_style(const Plot& plot, std::size_t series);
-/// "#rrggbb" of a series and of a band, for legends. Colours are told apart by the colour-blind too (Okabe &
+/// "#rrggbb" of a series and of a band, for legends. Colours are distinguished by the colour-blind too (Okabe &
 /// Ito 2008).
 [[nodiscard]] std::string series_color(const Plot& plot, std::size_t series);
 [[nodiscard]] std::string band_color(std::size_t band);

@@ -49,10 +49,10 @@ std::shared_ptr<const Predictor> earlier_runs_of(const Json& j, const std::strin
     for (const Json& v : list(run, "drift_um")) r.channels[0].values.push_back(v.is_number() ? v.get<double>() : NAN);
     if (r.time_s.empty() || r.time_s.size() != r.channels[0].values.size() ||
         std::adjacent_find(r.time_s.begin(), r.time_s.end(), std::greater_equal<>()) != r.time_s.end())
-      throw InputError(fmt::format("run '{}' wants as many `drift_um` as `time_s`, which rise", r.source));
+      throw InputError(fmt::format("run '{}' must have as many `drift_um` as `time_s`, which rise", r.source));
     runs.push_back(std::move(r));
   }
-  if (runs.empty()) throw InputError("`runs` is empty; a run at least is wanted");
+  if (runs.empty()) throw InputError("`runs` is empty; at least one run is required");
   return std::make_shared<EarlierRunsPredictor>(runs, target);
 }
 
@@ -100,13 +100,14 @@ void require_guards(const DeployedPredictor& d) {
 
 PredictorFile file_of(const Json& j) {
   if (!j.is_object() || value<std::string>(j, "format") != kFormat)
-    throw InputError(fmt::format("no predictor (key `format` must be \"{}\"); `validate` writes them", kFormat));
+    throw InputError(
+        fmt::format("this file holds no predictor (key `format` must be \"{}\"); `validate` writes them", kFormat));
   PredictorFile file;
   DeployedPredictor& d = file.predictor;
   d.name = value<std::string>(j, "name");
   d.target = value<std::string>(j, "target");
   if (value<std::string>(j, "target_unit") != "um")
-    throw InputError(fmt::format("key `target_unit` is {}; drift is told in um", j.at("target_unit").dump()));
+    throw InputError(fmt::format("key `target_unit` is {}; drift must be in um", j.at("target_unit").dump()));
   d.from_start = value<bool>(j, "from_start");
   d.is_baseline = value<bool>(j, "baseline");
   d.sensors = value<std::vector<std::string>>(j, "sensors");
@@ -148,7 +149,7 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
 
 PredictorFile read_predictor(const std::string& path) {
   if (!std::filesystem::is_regular_file(path))
-    throw InputError(fmt::format("{}: no such file; a predictor of `validate` is wanted, models/NAME.json", path));
+    throw InputError(fmt::format("{}: there is no such file; it must be a predictor of `validate`, models/NAME.json", path));
   const std::string text = read_bytes(path);
   try {
     return file_of(parse_json(text));

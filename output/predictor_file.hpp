@@ -12,7 +12,7 @@ namespace driftwright::output {
 
 struct PredictorFile {
   compensation::DeployedPredictor predictor;
-  /// Under which conditions it was judged, and the verdict: as `validate` wrote it (docs/validation.md). null where nobody has judged it.
+  /// Under which conditions it was judged, and the verdict: as `validate` wrote it (docs/how-to/validation.md). null where nobody has judged it.
   nlohmann::ordered_json judged;
 };
 

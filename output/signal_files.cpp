@@ -38,7 +38,8 @@ struct Timescale {
 
 Timescale timescale_for(double row_s) {
   const double row_ps = row_s * 1e12;
-  if (!(row_ps >= 0.5 && row_ps < 1e18)) throw InputError(fmt::format("a row of {} s; 1 ps or longer is wanted", row_s));
+  if (!(row_ps >= 0.5 && row_ps < 1e18))
+    throw InputError(fmt::format("a row lasts {} s; it must last 1 ps or longer", row_s));
   std::int64_t scale_ps = 1, ticks = std::llround(row_ps);
   while (ticks % 10 == 0 && scale_ps < 100'000'000'000'000) {
     ticks /= 10;
@@ -134,7 +135,7 @@ std::string hal_text(const std::string& stream_path, const HalStreamFile& stream
   std::string text = fmt::format(
       "# {}\n"
       "# Plays {} into LinuxCNC's encoder, one row a millisecond: halrun -f THIS_FILE\n"
-      "# streamer.0.pin.{} shows the row that has been played; behind row {} encoder.0.rawcounts is {}.\n"
+      "# streamer.0.pin.{} shows the row that has been played; after row {} encoder.0.rawcounts is {}.\n"
       "loadrt streamer depth={} cfg={}\n"
       "loadrt encoder num_chan=1\n"
       "loadrt threads name1=fast period1=1000000\n"

@@ -181,7 +181,7 @@ DrawnView draw_surface(const ColouredSurface& surface, const View& view, int wid
   for (const auto& t : surface.triangle) {
     for (int n : t) {
       if (n < 0 || n >= surface.point.cols())
-        throw std::logic_error("draw_surface: a triangle of a point that is not there");
+        throw std::logic_error("draw_surface: a triangle of a point that does not exist");
     }
   }
   const Projection p = project(surface, view, width, height);

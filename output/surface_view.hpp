@@ -43,7 +43,7 @@ struct DrawnView {
 /// @throws std::logic_error  for a surface without triangles, or a triangle of points that are not there
 [[nodiscard]] DrawnView draw_surface(const ColouredSurface& surface, const View& view, int width, int height);
 
-/// A colour of the map "inferno" (Smith & van der Walt, 2015), dark to bright; told apart by the colour-blind too. @param share  0 to 1
+/// A colour of the map "inferno" (Smith & van der Walt, 2015), dark to bright; distinguished by the colour-blind too. @param share  0 to 1
 [[nodiscard]] std::array<float, 3> inferno(double share);
 /// Colours for things without order, Okabe & Ito 2008, lighter with each round.
 [[nodiscard]] std::array<float, 3> distinct_colour(int index);

@@ -29,7 +29,7 @@ struct Aggregates {
   std::vector<int> of;  ///< aggregate of each node; -1 for nodes that need none
 };
 
-/// First whole neighbourhoods, then what is left joins a neighbour's aggregate, then what is left gathers by itself.
+/// First whole neighbourhoods, then what is left joins a neighbour's aggregate, then what is left gathers on its own.
 /// @param idle  not 0 for nodes without unknowns, which get no aggregate
 [[nodiscard]] Aggregates aggregate(const BlockPattern& strong, const std::vector<char>& idle);
 

@@ -120,7 +120,7 @@ class Finder {
 }  // namespace
 
 void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
-  if (!balance.radiations.empty()) throw std::logic_error("bind_laws: radiation is wanted as films");
+  if (!balance.radiations.empty()) throw std::logic_error("bind_laws: radiation must be given as films");
   Finder find(system, balance);
   std::vector<std::vector<const Law*>> laws(system.sources.size());
   const auto of_heat =

@@ -28,10 +28,10 @@ void check_materials(const Mesh& mesh, const RegionMaterials& materials) {
     const std::string region = r < mesh.regions.size() ? mesh.regions[r] : "?";
     if (!(m.youngs_modulus_Pa > 0.0 && std::isfinite(m.youngs_modulus_Pa))) {
       throw InputError(
-          fmt::format("region '{}': a Young's modulus of {:g} Pa; one above zero is wanted", region, m.youngs_modulus_Pa));
+          fmt::format("region '{}': Young's modulus is {:g} Pa; it must be above zero", region, m.youngs_modulus_Pa));
     }
     if (!(m.poisson_ratio > -1.0 && m.poisson_ratio < 0.5)) {
-      throw InputError(fmt::format("region '{}': a Poisson ratio of {:g}; -1 to 0.5, both excluded, is allowed", region,
+      throw InputError(fmt::format("region '{}': Poisson's ratio is {:g}; -1 to 0.5, both excluded, is allowed", region,
                                    m.poisson_ratio));
     }
     for (double a_1_K : {m.expansion_1_K.x, m.expansion_1_K.y, m.expansion_1_K.z}) {
@@ -88,10 +88,10 @@ struct Elasticity::Parts {
         kMostMultigridIterations);
     report.most_iterations = std::max(report.most_iterations, outcome.iterations);
     if (!outcome.converged) {
-      throw SolveError(fmt::format(
-          "elastic displacements: multigrid came to a relative error of {:.1e} in {} iterations, {:.0e} is wanted. "
-          "Springs or materials of too different stiffness, or cells almost without volume",
-          outcome.error, outcome.iterations, kElasticTolerance));
+      throw SolveError(
+          fmt::format("elastic displacements: multigrid came to a relative error of {:.1e} in {} iterations, but {:.0e} is "
+                      "required. Springs or materials differ too much in stiffness, or cells have almost no volume",
+                      outcome.error, outcome.iterations, kElasticTolerance));
     }
     return u;
   }

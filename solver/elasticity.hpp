@@ -38,13 +38,13 @@ enum class ElasticMethod { kAutomatic, kFactor, kMultigrid };
 
 /// Up to here a Cholesky factor takes a fraction of a second, and each solve after it is cheap. Above, multigrid needs
 /// less time in all for a few solves, and far less memory; a factor pays from 10 solves at 57 000 unknowns and from 20 at 279 000
-/// (docs/performance.md), as long as it fits into half of the memory.
+/// (docs/theory/performance.md), as long as it fits into half of the memory.
 inline constexpr int kMostUnknownsToFactorise = 20000;
 [[nodiscard]] bool factor_pays(int n_unknowns, int n_solves);
 
 /// Of multigrid's solutions, in the norm of K. A displacement d = l'K⁻¹f is then wrong by less than this times
 /// sqrt(l'K⁻¹l f'K⁻¹f): for a machine of 1e8 N/m that is strained by 10 K, 1e-10 x 1e-4 x 20 = 2e-13 m. What is left over of the
-/// 1e-10 m that is wanted is for parts on springs a million times softer than themselves.
+/// 1e-10 m that is required is for parts on springs a million times softer than themselves.
 inline constexpr double kElasticTolerance = 1e-10;
 
 struct ElasticReport {
@@ -60,7 +60,7 @@ class Elasticity {
  public:
   /// @param joints    those that are not tied
   /// @param n_solves  how many are to be expected, influence vectors and fields, for the choice of a method
-  /// @throws SolveError  when the factorisation fails for want of memory; later, when multigrid does not converge
+  /// @throws SolveError  when the factorisation fails for lack of memory; later, when multigrid does not converge
   /// @throws InputError  when supports and joints leave a part free to move (it names part and motion), for unknown joints
   ///                     and such as do not touch, and for a material without sense: E > 0, -1 < nu < 0.5, finite expansion
   Elasticity(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,

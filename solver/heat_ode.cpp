@@ -421,7 +421,7 @@ void HeatOde::count(const PcgOutcome& outcome) {
   n_iterations_ += outcome.iterations;
   if (outcome.converged) return;
   throw SolveError(
-      fmt::format("PCG stopped after {} iterations at a residual of {:.2e} K (wanted {:.2e} K); is a film, "
+      fmt::format("PCG stopped after {} iterations at a residual of {:.2e} K (required: {:.2e} K); is a film, "
                   "joint or material value extreme?",
                   outcome.iterations, outcome.residual, tolerance_K_));
 }

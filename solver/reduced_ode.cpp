@@ -30,7 +30,7 @@ ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& ambient)
       heat_(n_),
       flow_W_(static_cast<Eigen::Index>(flows_.size())) {
   if (!system.mass.isIdentity(1e-8))
-    throw std::logic_error("ReducedOde: a unit mass matrix is wanted, see with_unit_mass()");
+    throw std::logic_error("ReducedOde: the mass matrix must be the unit matrix, see with_unit_mass()");
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
     if (system.sources[s].power_W.looks_at_state()) live_sources_.push_back({s, 0.0, {}});
   }

@@ -169,7 +169,7 @@ std::vector<SpringLayer> spring_layers(const Mesh& mesh, const RegionMaterials& 
     if (!mesh.joint(j.joint)) {
       throw InputError(fmt::format("the mesh has no joint '{}'; there are {}", j.joint, fmt::join(known, ", ")));
     }
-    if (!seen.insert(j.joint).second) throw InputError(fmt::format("joint '{}' stands there twice", j.joint));
+    if (!seen.insert(j.joint).second) throw InputError(fmt::format("joint '{}' is listed twice", j.joint));
   }
   std::vector<SpringLayer> layers;
   for (const mesh::Joint& joint : mesh.joints) {

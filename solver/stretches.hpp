@@ -18,7 +18,7 @@ template <class Matrix>
   return knots_s;
 }
 
-/// Stretches of constant drive and linear ambient in which no law jumps by itself.
+/// Stretches of constant drive and linear ambient in which no law jumps on its own.
 template <class Matrix>
 [[nodiscard]] std::vector<LinearStretch> stretches_of(const ThermalSystem<Matrix>& system, const Cyclogram& cyclogram,
                                                       const TimeSeries& ambient) {

@@ -66,7 +66,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
   constexpr int kDense = 60;  // unknowns up to which a dense solver is no slower, and gives every mode there is
   if (!system.is_linear()) throw std::logic_error("thermal modes are those of a linear system");
   if (n_modes < 1 || n_modes > (n <= kDense ? n : n - 2)) {
-    throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
+    throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be computed", n_modes, n));
   }
   if (n <= kDense) return dense_modes(system, at, n_modes);
   const ConductionFactor factor = factor_at(system, at);

@@ -84,7 +84,7 @@ CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredict
   const auto unknown = std::find_if(ahead_um.begin(), ahead_um.end(), [](double v) { return std::isnan(v); });
   if (unknown != ahead_um.end() && d.predictor->inputs().empty())
     throw InputError(fmt::format(
-        "a schedule wants the drift of the whole run, and '{}' says nothing of it at {:.0f} min; take another --model",
+        "a schedule requires the drift of the whole run, and '{}' says nothing of it at {:.0f} min; take another --model",
         d.name, run.readings.time_s[static_cast<std::size_t>(unknown - ahead_um.begin())] / 60.0));
   if (unknown != ahead_um.end())
     throw InputError(fmt::format(

@@ -45,7 +45,7 @@ compensation::Physics physics_for(const Scenario& scenario, const scenarios::Mod
   }
   throw InputError(
       scenario.machine->where,
-      "this predictor wants a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
+      "this predictor requires a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
 }
 
 Errors rings_of(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,

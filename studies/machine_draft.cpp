@@ -170,7 +170,7 @@ void add_feet_of(Geometry& g, MachineDraft& draft, const std::function<bool(cons
       if (!counts(plane)) continue;
       surfaces.insert(plain_name(g.region(plane.region) + "_rest"));
       draft.remarks.push_back(
-          fmt::format("no plane face carries '{}': its whole surface stands on springs", g.region(plane.region)));
+          fmt::format("no plane face carries '{}': its whole surface rests on springs", g.region(plane.region)));
       break;
     }
   }
@@ -186,7 +186,7 @@ void add_remarks_of_bodies(const Geometry& g, MachineDraft& draft, const std::ma
   std::vector<std::string> names;
   for (int body : bodies) names.push_back(fmt::format("{}", fmt::join(regions_of[body], " + ")));
   draft.remarks.push_back(
-      fmt::format("the geometry falls into {} bodies that do not touch in a plane: {}. Each stands on springs of its own; "
+      fmt::format("the geometry falls into {} bodies that do not touch in a plane: {}. Each rests on springs of its own; "
                   "give them joints",
                   bodies.size(), fmt::join(names, "; ")));
   const double extent_m = (g.mesh.coords.rowwise().maxCoeff() - g.mesh.coords.rowwise().minCoeff()).maxCoeff();

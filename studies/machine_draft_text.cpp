@@ -37,8 +37,8 @@ std::string direction(const Eigen::Vector3d& n) {
 }
 
 constexpr const char* kGuess =
-    "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` stands for one that\n"
-    "  # you know (docs/scenario.md).\n";
+    "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` is for one that\n"
+    "  # you know (docs/how-to/scenario.md).\n";
 
 /// Two digits: it is a guess.
 double rounded(double x) {
@@ -93,7 +93,8 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
 
 /// What both kinds of machines are run with and judged by.
 std::string runs_block() {
-  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record (docs/cyclograms.md)\n"
+  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record "
+         "(docs/how-to/cyclograms.md)\n"
          "\ncyclograms:                              # guesses: [duration, spindle speed]\n"
          "  warm_up: [[120 min, 3000 rpm]]\n"
          "  steps: [[40 min, 1000 rpm], [40 min, 3000 rpm], [40 min, 0 rpm]]\n"
@@ -111,9 +112,9 @@ std::string study_block(const std::string& target, std::size_t n_sensors) {
 
 std::string head(const std::string& name, const std::string& what) {
   return fmt::format(
-      "# {}, as `driftwright init` has written it. It runs as it stands:\n#\n#     driftwright run THIS_FILE\n#\n"
-      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/scenario.md; effects: "
-      "driftwright list effects.\n"
+      "# {}, as `driftwright init` has written it. It runs as it is:\n#\n#     driftwright run THIS_FILE\n#\n"
+      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/reference/scenario.md; "
+      "effects: driftwright list effects.\n"
       "name: {}\n\nreference_temperature: 20 degC           # a guess: at it the machine is straight\n",
       what, name);
 }
@@ -151,8 +152,8 @@ std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry
   if (!draft.joints.empty())
     text += "  # Joints: guesses; bolted and scraped 2000 to 10000, a guideway 500 to 3000 W/(m^2 K).\n";
   for (const auto& joint : draft.joints)
-    text += fmt::format("  - {{type: contact, joint: {}, conductance: 2000 W/(m^2 K), known_to: guess}}\n",
-                        quoted(joint.name));
+    text +=
+        fmt::format("  - {{type: contact, joint: {}, conductance: 2000 W/(m^2 K), known_to: guess}}\n", quoted(joint.name));
   text += "\nsensors:                                 # one on each part: put them where your thermometers sit\n";
   for (const auto& sensor : draft.thermometers)
     text += fmt::format("  - {{name: {}, region: {}, at: {}}}\n", quoted(fmt::format("t_{}", plain_name(sensor.region))),
@@ -187,7 +188,8 @@ std::string lumped_scenario_text(const std::string& name) {
       "\nsensors:\n  - {name: t_spindle, node: spindle}\n  - {name: t_housing, node: housing}\n"
       "\ndisplacements:\n  - name: drift_z                        # 0.22 m of steel grow by 2.5 µm for each kelvin\n"
       "    sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]\n";
-  return fmt::format("{}{}{}{}{}{}", head(name, "A machine of lumped nodes"), machine, kGuess, rest, runs_block(), study_block("drift_z", 2));
+  return fmt::format("{}{}{}{}{}{}", head(name, "A machine of lumped nodes"), machine, kGuess, rest, runs_block(),
+                     study_block("drift_z", 2));
 }
 
 }  // namespace driftwright::studies

@@ -94,7 +94,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   diagnosis::leave_out_foreign_units(m.runs, whole);
   diagnosis::require_plausible_times(m.runs, whole);
   diagnosis::find_warm_starts(m.runs, whole);
-  listener.begin("looking what states the measured runs come to");
+  listener.begin("computing the states that the measured runs reach");
   m.focus = std::make_unique<diagnosis::Focus>(
       diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));
   m.twin.emplace(m.fine->augmented, m.focus->machine, tolerances);

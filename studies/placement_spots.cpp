@@ -22,16 +22,18 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_no_place(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::any_of(std::begin(kNoPlace), std::end(kNoPlace), [&](const char* word) { return name.find(word) != std::string::npos; });
+  return std::any_of(std::begin(kNoPlace), std::end(kNoPlace),
+                     [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
 /// Names among those there are that the rules allow; those left out by their names go into `spots`.
-std::vector<std::string> allowed(const std::vector<std::string>& known, const SpotRules& rules, const char* what, Spots& spots) {
+std::vector<std::string> allowed(const std::vector<std::string>& known, const SpotRules& rules, const char* what,
+                                 Spots& spots) {
   const auto check = [&](const char* option, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       if (!is_in(known, name))
-        throw InputError(fmt::format("{} '{}': the machine has no such {}; there are {}.{}", option, name, what, fmt::join(known, ", "),
-                                     did_you_mean(name, known)));
+        throw InputError(fmt::format("{} '{}': the machine has no such {}; there are {}.{}", option, name, what,
+                                     fmt::join(known, ", "), did_you_mean(name, known)));
     }
   };
   check("--region", rules.regions);
@@ -46,8 +48,10 @@ std::vector<std::string> allowed(const std::vector<std::string>& known, const Sp
     }
   }
   if (names.empty())
-    throw InputError(fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names want --region; --exclude takes away what --region gives",
-                                 what, fmt::join(known, ", ")));
+    throw InputError(
+        fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names "
+                    "require --region; --exclude takes away what --region gives",
+                    what, fmt::join(known, ", ")));
   return names;
 }
 
@@ -59,7 +63,8 @@ std::vector<int> spread(const mesh::Mesh& mesh, const std::vector<int>& nodes, s
   for (std::size_t i = 0; i < nodes.size(); ++i) distance_m2[i] = (mesh.coords.col(nodes[i]) - middle).squaredNorm();
   std::vector<int> chain;
   while (chain.size() < std::min(n, nodes.size())) {
-    const auto furthest = static_cast<std::size_t>(std::max_element(distance_m2.begin(), distance_m2.end()) - distance_m2.begin());
+    const auto furthest =
+        static_cast<std::size_t>(std::max_element(distance_m2.begin(), distance_m2.end()) - distance_m2.begin());
     if (!chain.empty() && !(distance_m2[furthest] > 0.0)) break;
     if (chain.empty()) std::fill(distance_m2.begin(), distance_m2.end(), std::numeric_limits<double>::infinity());
     chain.push_back(nodes[furthest]);
@@ -82,7 +87,8 @@ Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules) {
     const auto& t = skin.triangle[i];
     if (!std::all_of(t.begin(), t.end(), [&](int node) { return reached[static_cast<std::size_t>(node)]; })) continue;
     const auto region = static_cast<std::size_t>(skin.region[i]);
-    area_m2[region] += 0.5 * (mesh.coords.col(t[1]) - mesh.coords.col(t[0])).cross(mesh.coords.col(t[2]) - mesh.coords.col(t[0])).norm();
+    area_m2[region] +=
+        0.5 * (mesh.coords.col(t[1]) - mesh.coords.col(t[0])).cross(mesh.coords.col(t[2]) - mesh.coords.col(t[0])).norm();
     nodes[region].insert(nodes[region].end(), t.begin(), t.end());
   }
   double all_m2 = 0.0;
@@ -95,7 +101,8 @@ Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules) {
     const double share = area_m2[region] / all_m2;
     const auto n = static_cast<std::size_t>(std::max<long>(kLeastOfRegion, std::lround(share * rules.n_points)));
     spots.regions.push_back(name);
-    for (int node : spread(mesh, nodes[region], n)) spots.points.push_back({.region = name, .at_m = mesh.coords.col(node), .node = node});
+    for (int node : spread(mesh, nodes[region], n))
+      spots.points.push_back({.region = name, .at_m = mesh.coords.col(node), .node = node});
   }
   if (spots.points.empty())
     throw InputError(fmt::format("no point of {} can be reached from outside", fmt::join(names, ", ")));

@@ -24,7 +24,8 @@ struct SpotRules {
 };
 
 /// Parts whose names have one of these words carry no thermometer unless they are asked for: they turn, flow or hang.
-inline constexpr const char* kNoPlace[] = {"spindle", "bearing", "shaft", "rotor", "tool", "coolant", "cooler", "oil", "air", "cable", "hose", "chip"};
+inline constexpr const char* kNoPlace[] = {"spindle", "bearing", "shaft", "rotor", "tool", "coolant",
+                                           "cooler",  "oil",     "air",   "cable", "hose", "chip"};
 
 struct Spots {
   std::vector<Spot> points;
@@ -34,7 +35,7 @@ struct Spots {
 
 /// Points of a mesh's outside that a hand can reach (mesh::reachable_nodes()): each region has its share by area, twelve at least, and of its nodes
 /// always the one that lies furthest from all before it.
-/// @throws InputError  for a region that is not there, and where none is left
+/// @throws InputError  for a region that does not exist, and where none is left
 [[nodiscard]] Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules);
 /// The lumped nodes. @throws InputError  the same
 [[nodiscard]] Spots spots_of(const std::vector<std::string>& nodes, const SpotRules& rules);

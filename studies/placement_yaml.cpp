@@ -14,10 +14,12 @@ namespace driftwright::studies {
 std::string sensor_entry(const std::string& name, const Spot& spot) {
   if (spot.node < 0) return fmt::format("{{name: {}, node: {}}}", name, spot.region);
   const Eigen::Vector3d mm = 1e3 * spot.at_m;
-  return fmt::format("{{name: {}, region: {}, at: [{:.1f} mm, {:.1f} mm, {:.1f} mm]}}", name, spot.region, mm.x(), mm.y(), mm.z());
+  return fmt::format("{{name: {}, region: {}, at: [{:.1f} mm, {:.1f} mm, {:.1f} mm]}}", name, spot.region, mm.x(), mm.y(),
+                     mm.z());
 }
 
-std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries, const std::vector<std::string>& head) {
+std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries,
+                         const std::vector<std::string>& head) {
   YamlText yaml(scenario_path);
   const auto left = scenarios::give_absolute_paths(yaml, std::filesystem::absolute(scenario_path).parent_path());
   if (!left.empty())
@@ -33,7 +35,7 @@ std::string with_sensors(const std::string& scenario_path, const std::vector<std
   }
   if (!is_written)
     throw InputError((sensors ? *sensors : yaml.root()).where("sensors"),
-                     "this list is an alias or shared with one, and no sensors can be added where it stands; write it out");
+                     "this list is an alias or shared with one, and no sensors can be added to it; write it out");
   return yaml.text(head);
 }
 

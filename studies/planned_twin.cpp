@@ -60,7 +60,7 @@ PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::st
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(p.parts->augmented, p.parts->machine, tolerances);
-  listener.begin("looking what states such runs come to");
+  listener.begin("computing the states that such runs reach");
   p.focus = std::make_unique<diagnosis::Focus>(
       diagnosis::focus(whole, runs, diagnosis::scatter(whole), diagnosis::candidates(whole, runs, {})));
   p.twin.emplace(p.parts->augmented, p.focus->machine, tolerances);

@@ -24,7 +24,7 @@ double duration_s(const std::string& option, const std::string& text) {
   constexpr double kMost_s = 1e7;
   const double value_s = option_quantity(option, text, "s");
   if (value_s >= 0.0 && value_s <= kMost_s) return value_s;
-  throw InputError(fmt::format("{} '{}': a time from 0 s to {:g} s is wanted", option, text, kMost_s));
+  throw InputError(fmt::format("{} '{}' must be a time from 0 s to {:g} s", option, text, kMost_s));
 }
 
 std::vector<std::string> sensors_on_ambient(const scenarios::MachineModel& machine) {

@@ -57,10 +57,10 @@ class PredictingModels {
 struct Outlook {
   scenarios::MachineModel machine;  ///< the scenario's, in the ambient of the series
   std::shared_ptr<const scenarios::Model> model;
-  Eigen::VectorXd start;        ///< state of the model at the start of the series
-  scenarios::JobSeries series;  ///< what was before, the pause, the job
-  std::optional<Record> before; ///< the record that the series starts from
-  std::string started_from;     ///< in words; empty: the scenario's start
+  Eigen::VectorXd start;         ///< state of the model at the start of the series
+  scenarios::JobSeries series;   ///< what was before, the pause, the job
+  std::optional<Record> before;  ///< the record that the series starts from
+  std::string started_from;      ///< in words; empty: the scenario's start
 };
 /// @param job, verb  as predict_drift() @throws InputError  the same
 [[nodiscard]] Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
@@ -88,7 +88,7 @@ struct Outlook {
 /// The cyclogram of that name in the scenario, or the one that a record CSV tells, named as the file without its folder and ending; looked
 /// at by check_cyclogram().
 /// @param name_or_file  a file ends with .csv
-/// @throws InputError  for a name that is not there, for a CSV that tells no cyclogram, for a cyclogram that the machine cannot run
+/// @throws InputError  for a name that does not exist, for a CSV that tells no cyclogram, for a cyclogram that the machine cannot run
 [[nodiscard]] Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file);
 
 }  // namespace driftwright::studies

@@ -226,9 +226,9 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
       std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
                scenarios::felt_ambient_at_start_K(machine)) < kBalance_K;
   if (!starts_with_the_ambient) {
-    throw InputError(programme.where,
-                     "tests and cyclograms of a programme start in balance with the ambient; `start: ambient` or `start: "
-                     "steady` is wanted");
+    throw InputError(
+        programme.where,
+        "tests and cyclograms of a programme start in balance with the ambient; write `start: ambient` or `start: steady`");
   }
   if (effects::has_reading_effects(machine.effects)) {
     throw InputError(

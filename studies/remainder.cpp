@@ -107,8 +107,8 @@ BesideRecords beside(const std::vector<diagnosis::MeasuredRun>& runs, const std:
   }
   if (b.roles.speed.empty() && b.roles.drives.empty())
     throw InputError(
-        fmt::format("{}: nothing that drives the machine changes, so that nothing can be learned of it: required is a "
-                    "spindle that turns, or a column such as heater_W that is switched",
+        fmt::format("{}: nothing that drives the machine changes, so that nothing can be learned of it: a spindle that "
+                    "turns is required, or a column such as heater_W that is switched",
                     runs.front().path));
   if (b.roles.thermometers.empty() && b.roles.displacements.empty())
     throw InputError(fmt::format("{}: no channel of the scenario is in all records", runs.front().path));

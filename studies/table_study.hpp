@@ -23,7 +23,7 @@ struct ExpansionFactors {
 };
 
 /// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its scales'
-/// thermometers, simulated or predicted; docs/table.md has the formula. @throws InputError  for a channel that is not there
+/// thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel that does not exist
 [[nodiscard]] TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun run,
                                  const ExpansionFactors& factor = {});
 

@@ -103,12 +103,13 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
   if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
   const scenarios::MachineModel& machine = *scenario.machine;
   if (!how.count_from_start)
-    return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
+    return {std::nullopt, "a model knows drift since the start of a run, so `study: {count_from_start: true}` is required"};
   if (effects::has_reading_effects(machine.effects))
-    return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
+    return {std::nullopt, "the scenario's effects change what instruments read, and a model gives what is true"};
   if (machine.start != scenarios::Start::kAmbient && machine.start != scenarios::Start::kSteady)
     return {std::nullopt,
-            "every record begins at an ambient temperature of its own; `start: ambient` is needed, or `start: steady` for a "
+            "every record begins at an ambient temperature of its own, so `start: ambient` is required, or `start: steady` "
+            "for a "
             "machine with heat at rest"};
   std::vector<const Cyclogram*> cyclograms;
   for (const compensation::ObservedRun* run : runs) {
@@ -124,7 +125,8 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     }
   }
   if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) reduced.solver.model = scenarios::ModelKind::kReduced;
-  if (reduced.solver.model != scenarios::ModelKind::kReduced) return {std::nullopt, "`solver: {model: reduced}` is needed"};
+  if (reduced.solver.model != scenarios::ModelKind::kReduced)
+    return {std::nullopt, "`solver: {model: reduced}` is required"};
   try {
     const scenarios::Model model = scenarios::open_model(reduced, cyclograms, listener, false);
     const auto& outputs = model.outputs().name;

@@ -41,8 +41,9 @@ double fastest_within_rpm(const WarmUpTrials& trials, double most_rpm, double mo
   while (fastest_rpm + kWarmUpStep_rpm <= most_rpm && heat_of_speed_W(trials, fastest_rpm + kWarmUpStep_rpm) <= most_W)
     fastest_rpm += kWarmUpStep_rpm;
   if (fastest_rpm > 0.0) return fastest_rpm;
-  throw InputError(fmt::format("--power-limit: {:.0f} rpm brings {:.3g} W already, and {:.3g} W are allowed; allow more",
-                               kWarmUpStep_rpm, heat_of_speed_W(trials, kWarmUpStep_rpm), most_W));
+  throw InputError(
+      fmt::format("--power-limit: {:.0f} rpm brings {:.3g} W already, but only {:.3g} W are allowed; allow more",
+                  kWarmUpStep_rpm, heat_of_speed_W(trials, kWarmUpStep_rpm), most_W));
 }
 
 }  // namespace driftwright::studies

@@ -136,7 +136,7 @@ TEST(SampleRows, SayThatAnAnswerDoesNotGoOnAndAskAgainAtTheirPace) {
     std::vector<std::string> said;
     SampleRows source(agent.url(), speed(), 0.2, [&](const std::string& words) { said.push_back(words); });
     EXPECT_THAT(rows(source, 2, 1s), ElementsAre(std::pair(0.0, 1000.0)));  // nothing that may be there twice
-    EXPECT_THAT(said, ElementsAre(HasSubstr("does not go on behind observation 2"))) << answer;
+    EXPECT_THAT(said, ElementsAre(HasSubstr("does not continue after observation 2"))) << answer;
     EXPECT_THAT(agent.asked_from(), SizeIs(::testing::Le(7U)));  // in 1 s, every 0.2 s
     EXPECT_THAT(agent.asked_from(), ::testing::Each("2"));
   }

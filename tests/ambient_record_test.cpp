@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Cause{"a_slow_thermometer", "{type: ambient, lag: 9 min}", "slow thermometer", 9.0, 1.0},
                       Cause{"air_that_the_machine_warms",
                             "{type: ambient, with_speed: 2.5 K, at_speed: 1800 rpm, behind: 10 min}",
-                            "with the speed, behind one lag, at 1000 rpm", 2.5 / 1.8, 0.2}),
+                            "with the speed, with one lag, at 1000 rpm", 2.5 / 1.8, 0.2}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST(AnAmbientOfARightRecord, IsNotBlamed) {

@@ -366,7 +366,7 @@ TEST(MissingData, NamesTheChannelsTheThermometersAndTheTime) {
               AllOf(HasSubstr("3 readings of 1 channel are too few"), HasSubstr("do not hold t_shaft, t_housing."),
                     HasSubstr("a thermometer on each of shaft, housing"),
                     HasSubstr("No ambient temperature (ambient_degC) in cycle"), HasSubstr("at 800 rpm throughout"),
-                    HasSubstr("A row comes every 180 min; one every 10 min is wanted.")));
+                    HasSubstr("A row comes every 180 min; one every 10 min is required.")));
 }
 
 TEST(MissingData, IsSilentOnWhatIsThere) {

@@ -45,7 +45,7 @@ TEST(BoundedJson, BracketsInATextAndBesideOneAnotherNestNothing) {
 
 TEST(BoundedJson, SaysFromWhereOnATextIsNoJson) {
   EXPECT_THAT([] { (void)parse_json("{\n \"a\": 1,\n \"b\" 2}"); },
-              ThrowsMessage<InputError>(HasSubstr("no JSON from line 3, column 6 on")));
+              ThrowsMessage<InputError>(HasSubstr("not valid JSON from line 3, column 6 on")));
   EXPECT_THAT([] { (void)parse_json("[1, 2"); }, ThrowsMessage<InputError>(HasSubstr("line 1, column 6")));
   EXPECT_THAT([] { (void)parse_json(""); }, ThrowsMessage<InputError>(HasSubstr("line 1, column 1")));
   EXPECT_THAT([] { (void)parse_json("[1e999]"); }, ThrowsMessage<InputError>(HasSubstr("beyond 1.8e308")));

@@ -79,9 +79,9 @@ INSTANTIATE_TEST_SUITE_P(
             "2 entries of 'effects' are named 'link': [1] link@shaft@housing (line 7), [2] link@shaft@ambient"},
         Bad{"numbers[two]", "entries of 'numbers' have no names"}, Bad{"materials[0]", "'materials' is no list"},
         Bad{"materials.part.density", "'materials.part' is no map and has no key 'density'"},
-        Bad{"effects[0", "wants a number or name between [ and ]"}, Bad{"effects[]", "wants a number or name"},
-        Bad{"effects[0]capacity", "a dot is wanted before 'capacity'"}, Bad{"effects[0].", "a key is wanted after each dot"},
-        Bad{"", "has no key ''"}));
+        Bad{"effects[0", "a number or a name is required between [ and ]"},
+        Bad{"effects[]", "a number or a name is required"}, Bad{"effects[0]capacity", "a dot is required before 'capacity'"},
+        Bad{"effects[0].", "a key is required after each dot"}, Bad{"", "has no key ''"}));
 
 TEST(EditedTree, SharesTheRestAndKeepsTheLinesOfBoth) {
   const ConfigNodePtr study = read_config_tree(write_file("config_address_study.yaml", "values:\n  - -3 W/K\n"));
@@ -104,7 +104,7 @@ TEST(ConfigTree, AnAliasStandsForItsAnchorAndNeverForItself) {
   const ConfigNodePtr root = read_config_tree(write_file("alias.yaml", "a: &x {b: 1}\nc: *x\n"));
   EXPECT_EQ(root->items[0], root->items[1]);
   EXPECT_THAT([] { (void)read_config_tree(write_file("alias.yaml", "a: &x [*x]\n")); },
-              ThrowsMessage<InputError>(HasSubstr(":1:8: an alias stands inside its own anchor")));
+              ThrowsMessage<InputError>(HasSubstr(":1:8: an alias is used inside its own anchor")));
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(ConfigMap, OfSeveralFormsTheOneWhoseConditionHolds) {
   EXPECT_EQ(read("csv: a").described_by(forms).description().name, "file");
   EXPECT_EQ(read("type: square").described_by(forms).description().name, "square");
   EXPECT_THAT([&] { (void)read("type: oval").described_by(forms); },
-              ThrowsMessage<InputError>(HasSubstr("one of round, square is wanted")));
+              ThrowsMessage<InputError>(HasSubstr("write one of round, square instead")));
   EXPECT_THAT([&] { (void)read("a: b").described_by(forms); },
               ThrowsMessage<InputError>(HasSubstr("key 'type' is missing")));
 }
@@ -198,21 +198,23 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"length: .nan m\n", length, ":1:9: '.nan m' is not a number"},
         Bad{"length: nan m\n", length, "not a finite number"},
         Bad{"length: 2 m\n", length, "outside what is allowed, 0 to 1 m"},
-        Bad{"length: [1 m]\n", length, "a single value is wanted"}, Bad{"length:\n", length, "the value is empty. Give one"},
-        Bad{"count: 101\n", count, "'101' is no whole number from 0 to 100"}, Bad{"count: 2.5\n", count, "no whole number"},
-        Bad{"count: .nan\n", count, "no whole number"}, Bad{"count: 99999999999999\n", count, "no whole number"},
+        Bad{"length: [1 m]\n", length, "this must be a single value"},
+        Bad{"length:\n", length, "the value is empty. Give one"},
+        Bad{"count: 101\n", count, "'101' must be a whole number from 0 to 100"},
+        Bad{"count: 2.5\n", count, "must be a whole number"}, Bad{"count: .nan\n", count, "must be a whole number"},
+        Bad{"count: 99999999999999\n", count, "must be a whole number"},
         Bad{"ambient: -300 degC\n", get<kQuantityOf, kAmbient>,
             "-300 degC lies outside what is allowed, -272.15 to 2726.85 degC"},
-        Bad{"kind: c\n", get<kChoiceOf, kKind>, "one of a, b is wanted"},
-        Bad{"axes: [x, w]\n", get<&ConfigMap::texts, kAxes>, ":1:11: 'w' is not known here; one of x, y is wanted"},
-        Bad{"axes: []\n", get<&ConfigMap::texts, kAxes>, "at least 1 are wanted"},
+        Bad{"kind: c\n", get<kChoiceOf, kKind>, "write one of a, b instead"},
+        Bad{"axes: [x, w]\n", get<&ConfigMap::texts, kAxes>, ":1:11: 'w' is not known here; write one of x, y instead"},
+        Bad{"axes: []\n", get<&ConfigMap::texts, kAxes>, "at least 1 are required"},
         Bad{"spring: 1 N/m\n", get<kQuantityOf, kSpring>, "1 N/m lies outside what is allowed, 0 N/m or 1000 to 1e+13 N/m"},
         Bad{"at: [1 m, 2 m]\n", get<&ConfigMap::vector3, kAt>, "three quantities"},
         Bad{"rows: [[1 s]]\n", get<kRowsOf, kRows>, "rows of [s, rpm]"},
         Bad{"rows: [[1 s, 6000 rpm]]\n", get<kRowsOf, kRows>, ":1:14: 6000 rpm lies outside what is allowed, 0 to 5000 rpm"},
         Bad{"rows: []\n", get<kRowsOf, kRows>, "at least one"},
-        Bad{"part: 3\n", get<&ConfigMap::map, kPart>, "a map of keys is wanted"},
-        Bad{"list: {}\n", get<&ConfigMap::maps, kList>, "a list of maps is wanted"},
+        Bad{"part: 3\n", get<&ConfigMap::map, kPart>, "this must be a map of keys"},
+        Bad{"list: {}\n", get<&ConfigMap::maps, kList>, "this must be a list of maps"},
         Bad{"name: ''\n", get<kTextOf, kName>, "the value is empty"}, Bad{"a: [1\n", nothing, "not valid YAML"},
         Bad{"- a\n", nothing, "no map of keys"}, Bad{"[a, b]: 1\n", nothing, "a key must be a word"}));
 

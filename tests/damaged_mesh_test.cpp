@@ -73,7 +73,7 @@ TEST(ReadApart, ADeathIsASentenceAboutTheFile) {
               ThrowsMessage<InputError>(AllOf(HasSubstr("a.step"), HasSubstr("Segmentation fault"), HasSubstr("damaged"))));
   EXPECT_THAT(dying([] { std::abort(); }), ThrowsMessage<InputError>(HasSubstr("Aborted")));
   EXPECT_THAT(dying([] { throw 42; }), ThrowsMessage<InputError>(HasSubstr("Aborted")));
-  EXPECT_THAT(dying([] { std::raise(SIGKILL); }), ThrowsMessage<InputError>(HasSubstr("want of memory")));
+  EXPECT_THAT(dying([] { std::raise(SIGKILL); }), ThrowsMessage<InputError>(HasSubstr("lack of memory")));
   EXPECT_THAT(dying([] { _exit(0); }), ThrowsMessage<InputError>(HasSubstr("ended before its time")));
   EXPECT_THAT(dying([] {
                 const BoundedTime bounded(most_to_read_s("no such file"));

@@ -1,4 +1,4 @@
-// Keys of diagnosis.json that others rely on (docs/diagnosis.md), from causes by hand.
+// Keys of diagnosis.json that others rely on (docs/reference/diagnosis.md), from causes by hand.
 
 #include "findings/diagnosis_data.hpp"
 

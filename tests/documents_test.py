@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it; so does every example that a verb's --help shows. Not among them: docs/fl_thermal.md and docs/measured.md, whose
-records others published, and docs/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
+"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it; so does every example that a verb's --help shows. Not among them: docs/start/fl_thermal.md and docs/theory/measured.md, whose
+records others published, and docs/how-to/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
 
     documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from result_schema import errors
 
-PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/identification.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md", "docs/view.md", "docs/warmup.md", "docs/test_planning.md"]
+PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 

@@ -160,7 +160,7 @@ TEST(LeftWithLoss, ChoosesASetThatBearsTheLossOfItsBest) {
   EXPECT_LT(with_loss.worst(robust), 0.2 * with_loss.worst(std::vector<int>{0, 2}));
 }
 
-// Exchange is no proof, but seldom misses; how often stands in docs/placement.md.
+// Exchange is no proof, but seldom misses; how often stands in docs/how-to/placement.md.
 TEST(ExchangeSearch, FindsTheBestOfAllSets) {
   int n_equal = 0, n_all = 0;
   double worst = 1.0;

@@ -102,14 +102,14 @@ TEST(RecordedDrive, HeatsByAPowerOfItsColumn) {
 
 TEST(RecordedDrive, WantsOneLawAndAColumn) {
   const auto refused = [](const std::string& text) { return ThrowsMessage<InputError>(HasSubstr(text)); };
-  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W}"); }, refused("one of three"));
+  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W}"); }, refused("one of the three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, opening: 2}"); },
-              refused("one of three"));
+              refused("one of the three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, gain: 1}"); }, refused("column"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, exponent: 2}"); },
               refused("`gain` holds"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: valve_1, opening: 1, exponent: 2, at: 3}"); },
-              refused("of a `gain`"));
+              refused("requires a `gain`"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: feed_x, gain: 1, lag: 3 min}"); }, refused("at once"));
 }
 
@@ -329,8 +329,8 @@ TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
 // --- documentation and errors -----------------------------------------------------------------------------------
 
 TEST(Documentation, HoldsTheTableThatTheCatalogueMakes) {
-  // after a change of the catalogue: driftwright list effects --markdown, put into docs/effects.md in place of the table there
-  std::ifstream file("docs/effects.md");
+  // after a change of the catalogue: driftwright list effects --markdown, put into docs/reference/effects.md in place of the table there
+  std::ifstream file("docs/reference/effects.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("\n\n" + catalogue_table()), std::string::npos);
 }

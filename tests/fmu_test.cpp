@@ -421,7 +421,7 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
   };
   const std::string target = "-o " + (fresh_folder("refused") / "x.fmu").string();
   refused(kHead, target, "--fmu");
-  refused(kHead, "--fmu -o x.zip", "ends with .fmu");
+  refused(kHead, "--fmu -o x.zip", "end with .fmu");
   refused(kHead, "--fmu --of observer " + target, "--model FILE");
   refused(kHead, "--fmu --model x.json " + target, "--of observer");
   refused(kHead, "--fmu --fmi 1 " + target, "--fmi");

@@ -46,7 +46,7 @@ def main():
         large = (json.dumps({"time_s": 1, "speed_rpm": 9000, "ambient_degC": 20}) + "\n") * 40000  # 2 MB; a row, were it read
         words, n_waited = [], 0
         threading.Thread(target=lambda: words.extend(iter(follow.stderr.readline, "")), daemon=True).start()
-        while not any("a header or a JSON row is waited for" in w for w in words):  # nothing that somebody publishes first ends it
+        while not any("waits for a header or a JSON row" in w for w in words):  # nothing that somebody publishes first ends it
             n_waited += 1
             assert n_waited < 100 and follow.poll() is None, words
             publish(port, "mill/row", nested)

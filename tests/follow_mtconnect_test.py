@@ -105,7 +105,7 @@ def main():
         running.send_signal(signal.SIGTERM)
         assert running.wait(30) == 0
         words = running.stderr.read()
-        assert "it is asked again every 0.2 s" in words and "answers again" in words, words
+        assert "asks it again every 0.2 s" in words and "answers again" in words, words
         # items that are not there, a device that is not there, an address that is none
         for where, topics, code, said in [(address, ["speed_rpm=S1speeed", "ambient_degC=e2"], 2, "Did you mean 'S1speed'?"), ("ftp://x", ["speed_rpm=c3", "ambient_degC=e2"], 2, "http://10.0.0.7:5000")]:
             wrong = follow(program, folder, where, *topics)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of docs/follow.md, "From a thermometer to a corrected axis", as they stand there, with a real broker. follow_page_test.py PROGRAM PROJECT"""
+"""The commands of docs/how-to/follow.md, "From a thermometer to a corrected axis", as they stand there, with a real broker. follow_page_test.py PROGRAM PROJECT"""
 import json
 import os
 import pathlib
@@ -29,7 +29,7 @@ def main():
     if is_taken or not shutil.which("mosquitto") or not shutil.which("mosquitto_pub"):
         print("no mosquitto here (Debian's mosquitto and mosquitto-clients have it), or a broker runs already")
         sys.exit(77)
-    page = (project / "docs/follow.md").read_text()
+    page = (project / "docs/how-to/follow.md").read_text()
     commands = page.split("## From a thermometer to a corrected axis")[1].split("```\n")[1]
     with tempfile.TemporaryDirectory(prefix="driftwright_page-") as folder:
         work = pathlib.Path(folder)

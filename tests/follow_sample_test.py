@@ -118,7 +118,7 @@ def main():
 
         observe(60)
         agent.leave()
-        wait_for("word that it is away", lambda: any("it is asked again" in w for w in words))
+        wait_for("word that it is away", lambda: any("asks it again" in w for w in words))
         observe(60)
         agent.open(agent.port)
         wait_for("word that it is back", lambda: any("answers again" in w for w in words))
@@ -142,7 +142,7 @@ def main():
         agent.size = 30
         observe(40)
         agent.open(agent.port)
-        wait_for("word that it has forgotten", lambda: any("has forgotten observations" in w for w in words))
+        wait_for("word that it has forgotten", lambda: any("no longer has the observations" in w for w in words))
         said[n_said:] = said[-1:]  # what it tells then is the last
         observe(5)
         time.sleep(1.5)

@@ -309,7 +309,7 @@ def with_token(program, folder, chromium):
         page = chromium.open(address + "?token=" + TOKEN)
         shows(page, follow, 1, "2000,20")
         refused = chromium.open(address + "?token=wrong")
-        refused.wait("document.body.innerText.includes('wants the token')")
+        refused.wait("document.body.innerText.includes('requires the token')")
         follow.end()
     follow = Follow(program, "head.yaml", "--serve", port, folder=folder)
     follow.header("time_s,speed_rpm,ambient_degC")

@@ -192,13 +192,13 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
   refused("head.yaml", "echo 'time_s,speed_rpm' |", "'ambient_degC', which the stream does not have");
   refused("head.yaml", "echo 'nonsense' |", "no unit");
   refused("head.yaml --pace 3", "true |", "--pace");
-  refused("head.yaml --slew '0 um/s'", "true |", "more than 0");
+  refused("head.yaml --slew '0 um/s'", "true |", "must be above 0");
   refused("head.yaml head.yaml", "true |", "corrected by another model");
   refused("nowhere.json", "true |", "no such file");
   refused("head.yaml --replay /dev/zero", "true |", "a header or a JSON row comes first");
   refused("head.yaml --replay .", "true |", "--replay .: Is a directory");
-  refused("head.yaml --state pipe", "mkfifo pipe; cat day.csv |", "a file is wanted");
-  refused("head.yaml --state /dev/zero", "cat day.csv |", "a file is wanted");
+  refused("head.yaml --state pipe", "mkfifo pipe; cat day.csv |", "it must be a file");
+  refused("head.yaml --state /dev/zero", "cat day.csv |", "it must be a file");
   std::string grows = kHead;
   grows.insert(grows.find("start: ambient"),
                "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");

@@ -152,7 +152,7 @@ TEST_F(Fp3Spindle, CompensateThroughTheInjectorJudgesRowsAtRest) {
   const CommandOutcome refused =
       run_program("compensate " + other + " --model modes --through injector -o " + folder.string());
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.output, HasSubstr("the axis corrects 'drift_z', but the predictor tells 'drift_y'"));
+  EXPECT_THAT(refused.output, HasSubstr("the axis corrects 'drift_z', but the predictor gives 'drift_y'"));
 }
 
 TEST_F(Fp3Spindle, FewModesMissTheBearingAndSteadyResponsesMendIt) {

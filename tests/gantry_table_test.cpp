@@ -88,7 +88,7 @@ TEST(GantryTable, JudgesTableLessScale) {
   EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
 }
 
-// docs/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
+// docs/how-to/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
 // leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings alone miss, and 90 %, which no frame reaches.
 TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
@@ -157,7 +157,7 @@ CommandOutcome edited(const std::string& what, const std::string& with) {
   return run_program("check " + edited_file({{what, with}}));
 }
 
-// docs/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's instrument), 48.6 um by the
+// docs/how-to/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's instrument), 48.6 um by the
 // table's thermometer alone (30.9), 59.7 um by the control's own (47.9). All of them read the same instrument.
 TEST(GantryTable, ThermometersHelpNoMoreThanTheirInstrumentLetsThem) {
   const std::string file = edited_file({{"sensor_noise: 0.02 K", "sensor_noise: 0.1 K"},
@@ -183,7 +183,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [4.75 m", "identical");
   refuses("{name: low, at: [-4.8 m, 0 m, 0 m]}", "{name: low, at: [4.9 m, 0 m, 0 m]}", "swapped");
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [-5.8 m", "outside");
-  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "at least 2 are wanted");
+  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "at least 2 are required");
   refuses("    - {name: high, at", "    - {name: middle, at: [-4.8 m, 0 m, 0 m]}\n    - {name: high, at",
           "identical with ring 'low'");
   refuses("    - {name: high, at", "    - {name: low, at: [0 m, 0 m, 0 m]}\n    - {name: high, at",
@@ -204,7 +204,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("sensor: table_mid, update", "sensor: nowhere, update", "nowhere");
   refuses("at: [2.4 m, 0.4 m, 0 m]", "at: [4.4 m, 0.4 m, 0 m]", "does not lie on the table");
   EXPECT_THAT(edited("judge_until: 24 h", "judge_until: 0 h").output, HasSubstr("scenario.yaml:93"));
-  refuses("gauge: 1.8 m", "gauge: 2.8 m", "stand out");
+  refuses("gauge: 1.8 m", "gauge: 2.8 m", "reach beyond");
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST(AGuard, FindsSomethingToTake) {
 }
 
 // Two guards, each of them around bodies of its own: one is written and the other one is to be found. Not reached: the first search finds it (53 nats), the second one, with sharper noise,
-// begins anew, where 'a body that follows the tank' explains more to first order, and says sensor_lag at t_tank (docs/diagnosis.md).
+// begins anew, where 'a body that follows the tank' explains more to first order, and says sensor_lag at t_tank (docs/theory/diagnosis.md).
 TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
   const std::string other =
       "{type: node, node: motor, capacity: 3 kJ/K}\n  - {type: node, node: tank, capacity: 9 kJ/K}\n  - {type: heat_source, "
@@ -187,7 +187,7 @@ TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
 TEST(AGuard, WantsANodeForItsAir) {
   for (const auto& [entry, message] :
        {std::pair{"{type: guard, node: spindle}", "key 'air' is missing"},
-        std::pair{"{type: guard, node: spindle, air: ambient}", "a lumped node is wanted"},
+        std::pair{"{type: guard, node: spindle, air: ambient}", "this must be a lumped node"},
         std::pair{"{type: guard, node: spindle, air: spindle}", "another node than the body"}}) {
     EXPECT_THAT([&] { (void)scenarios::read_scenario(write_file("bad_guard.yaml", with_effect(kMachine, entry))); },
                 ThrowsMessage<InputError>(HasSubstr(message)));

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Cause{"a_motor_that_holds",
                             "{type: servo_loss, node: column, power: 0 W, at_feed: 10 m/min, holding: 30 W, axis: z}",
                             "column",
-                            "while the axis z stands",
+                            "while the axis z is at rest",
                             {{30.0, 4.0}}}),
     [](const auto& one) { return std::string(one.param.name); });
 

@@ -208,7 +208,7 @@ TEST(IdentifiedModes, NameWhatIsWrongWithTests) {
   EXPECT_THAT(message_of([&] {
                 (void)identify_modes({good[0], good[1]}, kChannels);
               }),
-              HasSubstr("tests at 2 speeds above 0 rpm cannot give steady levels by 3 powers of speed: 1 more is wanted"));
+              HasSubstr("tests at 2 speeds above 0 rpm cannot give steady levels by 3 powers of speed: 1 more is required"));
   std::vector<ThermalTest> bad = good;
   bad[2].time_s[7] = bad[2].time_s[6];
   EXPECT_THAT(message_of([&] { (void)identify_modes(bad, kChannels); }), HasSubstr("time does not increase at 360 s"));
@@ -240,7 +240,7 @@ TEST(IdentifiedModes, RefuseWhatTestsSayNothingAbout) {
   for (double rpm : {400.0, 800.0, 2000.0}) never_off.push_back(of({"test", {{14400, {.speed_rpm = rpm}}}}, 0.0));
   const IdentifiedModes hot = identify_modes(never_off, kChannels, two_modes());
   EXPECT_THAT(message_of([&] { (void)hot.predict(on_and_off(), kQuietAmbient, {0.0}); }),
-              HasSubstr("stands still, which no test does"));
+              HasSubstr("keeps the spindle at rest, which no test does"));
 }
 
 TEST(AveragedTests, NeverAverageAcrossAChangeOfTheDrive) {

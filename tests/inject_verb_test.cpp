@@ -83,9 +83,9 @@ TEST(InjectVerb, ClockedItGivesARowForARow) {
   EXPECT_EQ(counted(fast.rows).count(), 0);
   EXPECT_THAT(
       fast.words,
-      AllOf(
-          HasSubstr("inserted +0 of +12"),
-          HasSubstr("nothing was inserted: an insertion wants 5 rows with both lines low, and the longest stretch had 4")));
+      AllOf(HasSubstr("inserted +0 of +12"),
+            HasSubstr(
+                "nothing was inserted: an insertion requires 5 rows with both lines low, but the longest stretch had 4")));
   EXPECT_THAT(slow.words, Not(HasSubstr("nothing was inserted")));
 }
 
@@ -98,8 +98,9 @@ TEST(InjectVerb, ClockedItTellsWhatFoundNoRoom) {
   EXPECT_THAT(f.words, Not(HasSubstr("nothing was inserted")));
   const Filtered anywhere =
       inject("anywhere", "--clocked --anywhere --period '1 um' --correction " + c, row_text(legs({40}), 3));
-  EXPECT_THAT(anywhere.words,
-              HasSubstr("nothing was inserted: an insertion wants 5 rows between two edges, and the longest stretch had 3"));
+  EXPECT_THAT(
+      anywhere.words,
+      HasSubstr("nothing was inserted: an insertion requires 5 rows between two edges, but the longest stretch had 3"));
 }
 
 TEST(InjectVerb, ClockedItCompletesWhatHasBegunWhenTheInputEnds) {
@@ -207,8 +208,8 @@ TEST(InjectVerb, ABadRowHoldsIsCountedAndLogged) {
       inject("bad_row", "--period '1 um' --log log.csv --correction " + c, "x\n0 0\n1 0\n1 2\n\n1 1\n0 1 1\n0 1\n");
   EXPECT_EQ(f.exit_code, 0);
   EXPECT_EQ(f.rows, "0 0\n1 0\n1 0\n1 0\n1 1\n1 1\n0 1\n");
-  EXPECT_THAT(f.words,
-              AllOf(HasSubstr("line 4: '1 2'"), HasSubstr("4 rows and 0 corrections were none"), HasSubstr("encoder +3")));
+  EXPECT_THAT(f.words, AllOf(HasSubstr("line 4: '1 2'"), HasSubstr("4 rows and 0 corrections were invalid"),
+                             HasSubstr("encoder +3")));
   EXPECT_THAT(read_text(temporary_folder() / "bad_row" / "log.csv"), HasSubstr("# fault at row"));
   const Filtered raw = inject("bad_raw", "--bypass --period '1 um' --correction " + c, "0 0\n0 2\n1 0\n");
   EXPECT_EQ(raw.rows, "0 0\n0 2\n1 0\n");  // a wire
@@ -358,26 +359,26 @@ constexpr const char* kGood = "row,e_um\n1,3\n";
 INSTANTIATE_TEST_SUITE_P(
     InjectVerb, BadInjection,
     ::testing::Values(
-        BadCase{"row2", kGood, "--strict --period '1 um'", "0 0\n0 2\n", "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
-        BadCase{"first", kGood, "--strict --period '1 um'", "0\n", "line 1: '0'; two or three columns"},
-        BadCase{"columns", kGood, "--strict --period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
+        BadCase{"row2", kGood, "--strict --period '1 um'", "0 0\n0 2\n", "line 2: '0 2' must be 2 columns of 0 and 1"},
+        BadCase{"first", kGood, "--strict --period '1 um'", "0\n", "line 1: '0' must be two or three columns"},
+        BadCase{"columns", kGood, "--strict --period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0' must be 3 columns"},
         BadCase{"empty_line", kGood, "--strict --period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
-        BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
+        BadCase{"no_period", kGood, "", "0 0\n", "requires --period"},
         BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
-        BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
-        BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
+        BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "must be above 0"},
+        BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "requires --row-time"},
         BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
         BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
-        BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
+        BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x' must be two finite numbers"},
         BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
         BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
         BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
         BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
-        BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
+        BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction follows after the header"},
         BadCase{"three_columns", "row,a_um,b_um\n1,2,3\n", "--period '1 um'", "0 0\n", "no column 'predicted_um'"},
         BadCase{"no_such_column", "row,a_um,b_um\n1,2,3\n", "--period '1 um' --column c_um", "0 0\n", "no column 'c_um'"},
         BadCase{"ragged", "row,predicted_um,b_um\n1,2\n", "--period '1 um'", "0 0\n",
-                ":2: '1,2': 2 columns; the header has 3"},
+                ":2: '1,2' has 2 columns, but the header has 3"},
         BadCase{"strict_and_hold", kGood, "--period '1 um' --strict --on-fault hold", "0 0\n", "--on-fault"},
         BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
         BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},

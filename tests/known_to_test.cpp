@@ -103,10 +103,11 @@ TEST(KnownTo, AnotherWordIsRefusedWhereItStands) {
       return e.what();
     }
   };
-  EXPECT_THAT(message("conductance: 12 W/K, known_to: roughly"), HasSubstr("'roughly' is not how well a number is known"));
+  EXPECT_THAT(message("conductance: 12 W/K, known_to: roughly"),
+              HasSubstr("'roughly' does not say how well a number is known"));
   EXPECT_THAT(message("conductance: 12 W/K, known_to: 500 %"), HasSubstr("known_to"));
   EXPECT_THAT(message("conductance: 12 W/K, known_to: 3 W/K"), HasSubstr("known_to"));
-  EXPECT_THAT(message("conductance: 12 W/K, known_to: {power: 5 %}"), HasSubstr("calibrates is wanted: conductance"));
+  EXPECT_THAT(message("conductance: 12 W/K, known_to: {power: 5 %}"), HasSubstr("calibrates: conductance"));
   EXPECT_THAT(message("conductance: 12 W/K, known_to: 20 %"), IsEmpty());
 }
 

@@ -130,10 +130,11 @@ TEST(LoggerImport, SaysWhatItCannotMakeOut) {
   const auto import = [](const std::string& text) {
     return [=] { (void)studies::import_logger(write_file("log.csv", text), "", {}); };
   };
-  EXPECT_THAT(import("a;b\n1;2\n2;3\n3;4\n"), ThrowsMessage<InputError>(HasSubstr("no column tells the time")));
+  EXPECT_THAT(import("a;b\n1;2\n2;3\n3;4\n"), ThrowsMessage<InputError>(HasSubstr("no column holds the time")));
   EXPECT_THAT(import("10:00:00;2\n10:00:01;3\n10:00:02;4\n"),
               ThrowsMessage<InputError>(HasSubstr("there is no line of names")));
-  EXPECT_THAT(import("some words\nand others\n"), ThrowsMessage<InputError>(HasSubstr("no rows of numbers are made out")));
+  EXPECT_THAT(import("some words\nand others\n"),
+              ThrowsMessage<InputError>(HasSubstr("no rows of numbers were recognised")));
 }
 
 TEST(LoggerImport, ReadsStampsWithOffsets) {

@@ -114,9 +114,9 @@ TEST(Effects, WhatOnlyOneCanRuleIsRefusedTwice) {
   const auto at = [](const std::string& effects) { (void)place(*read(two_bodies("", effects)).machine); };
   EXPECT_NO_THROW(at(held));
   EXPECT_THAT([&] { at(held + "  - {type: fixed_temperature, node: hot, follows: ambient}\n"); },
-              ThrowsMessage<InputError>(HasSubstr("fixed_temperature hot stands there twice")));
+              ThrowsMessage<InputError>(HasSubstr("fixed_temperature hot is given twice there")));
   const std::string air = "  - {type: stratification, gradient: 1 K/m}\n";
-  EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification ambient stands there twice")));
+  EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification ambient is given twice there")));
 }
 
 TEST(LumpedMachine, HasNoFieldsToAskFor) {

@@ -36,11 +36,12 @@ std::string table() {
 
 TEST(MaterialLibrary, IsTheTableInTheDocumentation) {
   std::ostringstream text;
-  text << std::ifstream("docs/materials.md").rdbuf();
+  text << std::ifstream("docs/reference/materials.md").rdbuf();
   const std::string page = text.str();
   const auto at = page.find("| name |");
   ASSERT_NE(at, std::string::npos);
-  EXPECT_EQ(page.substr(at, page.find("\n\n", at) + 1 - at), table()) << "the table that docs/materials.md should hold";
+  EXPECT_EQ(page.substr(at, page.find("\n\n", at) + 1 - at), table())
+      << "the table that docs/reference/materials.md should hold";
 }
 
 TEST(MaterialLibrary, ValuesArePlausibleAndHaveASource) {

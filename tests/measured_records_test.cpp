@@ -103,7 +103,7 @@ TEST(FlThermal, ALongRecordIsCutIntoRunsAndJudgedByItsOtherPart) {
   EXPECT_NEAR(cell(csv, "no correction", "peak_before_um"), 69.131, 1e-3);
 }
 
-// The network of docs/fl_thermal.md, in the recorded ambient: what it leaves of the hours that it was not fitted to.
+// The network of docs/start/fl_thermal.md, in the recorded ambient: what it leaves of the hours that it was not fitted to.
 TEST(FlThermalNetwork, LeavesOfTheHoursKeptOutWhatItsTutorialSays) {
   const std::filesystem::path file = std::filesystem::absolute("../shared/data/fl_thermal/first_28h.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;

@@ -214,7 +214,7 @@ TEST_F(MeasuredRunTest, CutsOffASensorInCoarseStepsFromWhereItNoLongerFollows) {
   // from the first reading that it repeats; a step of 0.5 K takes 3 min there
   EXPECT_TRUE(v.tail(130).array().isNaN().all());
   EXPECT_FALSE(v.head(106).array().isNaN().any());
-  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stands still at "), HasSubstr(" min on (stuck: as "),
+  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stays at "), HasSubstr(" min on (stuck: as "),
                                HasSubstr("these readings are left out")));
 }
 
@@ -405,7 +405,7 @@ TEST_F(MeasuredRunTest, RefusesWhatCannotBeComparedAndSaysWhatIsWanted) {
   EXPECT_THAT(refusal("time_s,speed_rpm,other_degC\n0,0,20\n60,0,21\n120,0,22\n"),
               AllOf(HasSubstr("no channel to compare"), HasSubstr("t_front")));
   EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,0,20\n60,0,21\n"), HasSubstr("2 rows"));
-  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,-5,20\n60,0,21\n120,0,22\n"), HasSubstr("speeds are positive"));
+  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,-5,20\n60,0,21\n120,0,22\n"), HasSubstr("speeds must be positive"));
 }
 
 }  // namespace

@@ -394,7 +394,7 @@ TEST(JointMechanics, UnknownNameIsAnErrorThatListsTheJoints) {
       [&] {
         Elasticity(bars.mesh, {kSteel, kSteel}, bars.supports, {{"a/b", Tied{}}, {"a/b", Sliding{}}});
       },
-      ThrowsMessage<InputError>(HasSubstr("'a/b' stands there twice")));
+      ThrowsMessage<InputError>(HasSubstr("'a/b' is listed twice")));
 }
 
 TEST(JointMechanics, SurfacesThatDoNotTouchAreRefused) {

@@ -263,7 +263,7 @@ Record hours_of(const Record& whole, double from_h, double to_h) {
 }
 
 // A machine at 0, 1250, 2500, 3750 and 5000 rpm in blocks of 4 h. Three ways to part 28 h; in two of them the part judged is faster than all that was
-// fitted on. Beside it two ridge regressions written apart from this program (bench/real/baselines.py, rows "fl_thermal" of docs/measured.md): on
+// fitted on. Beside it two ridge regressions written apart from this program (bench/real/baselines.py, rows "fl_thermal" of docs/theory/measured_strategies.md): on
 // the thermometers, and on them with memories of speed, whose penalties are chosen in the same way.
 TEST(MeasuredMachine, IsPredictedBetterThanByPlainRidgeOnHoursNotFittedOn) {
   const std::filesystem::path data = "../shared/data/fl_thermal/first_28h.csv";

@@ -67,7 +67,7 @@ def try_name(trial, label, name, wanted=(0,), says=""):
         return path
     scenario, records = work / "small.yaml", work / "simulated/records"
     record, named_scenario = copy(records / "shift.csv", b""), copy(scenario, b".yaml")
-    # calibrated.yaml names a record by its path; YAML has no word for a path that is no UTF-8 (docs/verification.md)
+    # calibrated.yaml names a record by its path; YAML has no word for a path that is no UTF-8 (docs/theory/verification_faults.md)
     fitted = records / "climb.csv" if label == "no UTF-8" else record
     climb = records / "climb.csv"
     for words in (["check", named_scenario], ["predict", scenario, "--cyclogram", record], ["compare", record, climb],

@@ -116,7 +116,7 @@ TEST(NcPlaces, SayWhyABlockCannotBeDivided) {
   EXPECT_EQ(why("N10 G1 X5 Y2 F100"), "");
   EXPECT_EQ(why("X5 (comment)"), "");
   EXPECT_EQ(why("G2 X2 I1 F100"), "an arc");
-  EXPECT_EQ(why("G4 P5"), "the axes stand");
+  EXPECT_EQ(why("G4 P5"), "the axes are at rest");
   EXPECT_EQ(why("G28 X0"), "in machine coordinates");
   EXPECT_EQ(why("G81 X1 Z-1 R1 F100"), "a canned cycle");
   EXPECT_EQ(why("G91 X5"), "G91");
@@ -124,7 +124,7 @@ TEST(NcPlaces, SayWhyABlockCannotBeDivided) {
   EXPECT_EQ(why("/X5"), "a block that '/' may leave out");
   EXPECT_EQ(why("G41 D1 G1 X5 F100"), "cutter compensation");
   const std::vector<NcStep> steps = steps_of("G0 X5\nM2\n");
-  EXPECT_EQ(why_not_divisible(steps[0]), "nobody has said where it starts");
+  EXPECT_EQ(why_not_divisible(steps[0]), "its starting point is not stated");
 }
 
 const NcOffsetOptions kXZ{.dialect = NcDialect::kLinuxCnc,

@@ -135,9 +135,10 @@ TEST(NcSubprograms, SayWhatIsKnownAtTheMachineAloneAndPlanTheRest) {
                                             "G21 G90 G54\nG0 X0 Y0 Z10\nG38.2 Z-5 F60\n#<top>=#5063\nG0 Z10\nG1 Z#<top> "
                                             "F120\no1 if [#5070 EQ 0]\nG4 P1000\no1 endif\n"
                                             "G10 L20 P1 Z0\nG1 Z2\nG1 X[#5221+1]\nM2\n"));
-  EXPECT_THAT(program.notes, ElementsAre(AllOf(HasSubstr("line 3: G38.2"), HasSubstr("known only at the machine")),
-                                         AllOf(HasSubstr("line 7: IF"), HasSubstr("planned as if it were false")),
-                                         AllOf(HasSubstr("line 1"), HasSubstr("#5221: known only at the machine"))));
+  EXPECT_THAT(program.notes,
+              ElementsAre(AllOf(HasSubstr("line 3: G38.2"), HasSubstr("known only at the machine")),
+                          AllOf(HasSubstr("line 7: IF"), HasSubstr("planned as if it were false")),
+                          AllOf(HasSubstr("line 1"), HasSubstr("#5221: its value is known only at the machine"))));
   EXPECT_NEAR(program.steps[2].duration_s(), 15.0, 1e-9);  // all of its way
   EXPECT_FALSE(program.steps[3].known[2]);                 // where the probe touched nobody knows
   EXPECT_TRUE(program.steps[4].known[2]);                  // behind G0 Z10
@@ -181,16 +182,16 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"recursion", "o1 sub\no1 call\no1 endsub\no1 call\nM2\n", {":2:1:", "nested more than 10 deep"}},
         Mistaken{"no_subroutine", "o<away> call\nM2\n", {":1:1:", "no subroutine O<AWAY>", "away.ngc"}},
         Mistaken{"no_subprogram", "M98 P7\nM2\n", {"no subprogram O7"}},
-        Mistaken{"no_end_of_loop", "o1 while [0]\nM2\n", {":1:1: O1 WHILE with nothing that ends it"}},
+        Mistaken{"no_end_of_loop", "o1 while [0]\nM2\n", {":1:1: O1 WHILE has nothing that ends it"}},
         Mistaken{"break_of_a_repetition",
                  "o4 repeat [2]\no4 break\no4 endrepeat\nM2\n",
-                 {":2:1: O4 BREAK with nothing that ends it"}},
+                 {":2:1: O4 BREAK has nothing that ends it"}},
         Mistaken{"unset_name", "G1 X#<a> F100\nM2\n", {":1:10: #<A> has no value yet"}},
-        Mistaken{"no_bracket", "G1 X[1+2 F100\nM2\n", {":1:10: ']' is wanted"}},
-        Mistaken{"division", "#1=[1/0]\nM2\n", {":1:", "a division by zero"}},
-        Mistaken{"root", "#1=SQRT[-1]\nM2\n", {"the root of a negative number"}},
+        Mistaken{"no_bracket", "G1 X[1+2 F100\nM2\n", {":1:10: ']' is expected"}},
+        Mistaken{"division", "#1=[1/0]\nM2\n", {":1:", "the expression divides by zero"}},
+        Mistaken{"root", "#1=SQRT[-1]\nM2\n", {"the number under the root is negative"}},
         Mistaken{"function", "#1=FOO[1]\nM2\n", {"'FOO' is no function"}},
-        Mistaken{"assignment", "#1 5\nM2\n", {"'=' is wanted"}}),
+        Mistaken{"assignment", "#1 5\nM2\n", {"'=' is expected"}}),
     [](const auto& each) { return std::string(each.param.name); });
 
 // --- corrections, run by LinuxCNC -------------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a verb writes every verb reads: records of `simulate`, `predict`, `run` and `schedule` through select, validate, predict, calibrate and
 diagnose. Nothing may end with 1 or a signal, and where the record has what a verb asks for it must end with 0. What a scenario has
-simulated itself is consistent with it, and diagnosis.json has the keys that others rely on (docs/diagnosis.md).
+simulated itself is consistent with it, and diagnosis.json has the keys that others rely on (docs/reference/diagnosis.md).
 
     own_records_test.py PROGRAM [SCENARIO ...]      [lumped_spindle]
 """

@@ -281,7 +281,7 @@ TEST(ProgramSchedule, SaysWhatCannotBeDivided) {
   const Corrected c = correct(text, program, std::vector<double>{0, program.duration_s()}, axes, {.split = true});
   ASSERT_EQ(c.plan.long_stretches.size(), 2u);
   EXPECT_EQ(c.plan.long_stretches[0].not_divisible, "an arc");
-  EXPECT_EQ(c.plan.long_stretches[1].not_divisible, "the axes stand");
+  EXPECT_EQ(c.plan.long_stretches[1].not_divisible, "the axes are at rest");
 }
 
 // The tool changes at 600 s: a second operation.

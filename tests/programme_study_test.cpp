@@ -175,14 +175,14 @@ TEST(ProgrammeMistakes, EndWithTwoAndWriteNothing) {
     EXPECT_NE(text.find(what), std::string::npos) << what;
     return text.replace(text.find(what), what.size(), with);
   };
-  expect("scenarios/c_frame.yaml", {"the key `validation` or `programme` in the scenario", "docs/prediction.md"});
+  expect("scenarios/c_frame.yaml", {"the key `validation` or `programme` in the scenario", "docs/how-to/prediction.md"});
   expect(write_file("p1.yaml", lumped + replaced(kProgramme, "heating", "heat")), {"p1.yaml:", "heating", "missing"});
   expect(write_file("p2.yaml", lumped + replaced(kProgramme, "[4000 rpm, 8000 rpm, 12000 rpm]", "[0 rpm]")),
-         {"p2.yaml:", "a list of quantities in rpm is wanted, at least 3"});
+         {"p2.yaml:", "this must be a list of quantities in rpm, at least 3"});
   expect(write_file("p3.yaml", lumped + replaced(kProgramme, "count", "cont")), {"p3.yaml:", "count"});
   expect(write_file("p4.yaml", replaced(lumped, "ambient: [[0 h, 22 degC]", "ambient: [[0 h, 20 degC]") + kProgramme),
          {"p4.yaml:", "start in balance with the ambient", "`start: steady`"});
-  expect("scenarios/fp3_spindle.yaml --train missing.csv", {"wants --test too"});
+  expect("scenarios/fp3_spindle.yaml --train missing.csv", {"requires --test too"});
 }
 
 }  // namespace

@@ -105,12 +105,13 @@ TEST(Learned, FollowsARecordedColumn) {
 
 TEST(Learned, RefusesWhatDoesNotGoTogether) {
   for (const auto& [entry, says] : {
-           std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) are of a sensor"},
-           {"{type: learned, sensor: a}", "nothing is learned"},
-           {"{type: learned, sensor: a, follows: running}", "go together"},
-           {"{type: learned, displacement: z, offset: 1 K, keeps: 0.5}", "it is of a sensor"},
-           {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` go together"},
-           {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}", "the `column` go together"},
+           std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) of a sensor"},
+           {"{type: learned, sensor: a}", "the entry learns nothing"},
+           {"{type: learned, sensor: a, follows: running}", "must be given together"},
+           {"{type: learned, displacement: z, offset: 1 K, keeps: 0.5}", "only for a sensor"},
+           {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` must be given together"},
+           {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}",
+            "the `column` must be given together"},
        })
     EXPECT_THAT(([entry = std::string(entry)] { (void)read(entry); }), ThrowsMessage<InputError>(HasSubstr(says))) << entry;
 }
@@ -137,13 +138,13 @@ TEST(DisplacementPath, ReadsAShareOfAnotherDisplacementAfterWhatThatOneFollows) 
     EXPECT_NEAR(t(2, i), 0.25 * t(4, i), 1e-15);
   }
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y}"); },
-              ThrowsMessage<InputError>(HasSubstr("go together")));
+              ThrowsMessage<InputError>(HasSubstr("must be given together")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: z, share: 0.1}"); },
-              ThrowsMessage<InputError>(HasSubstr("another displacement is wanted")));
+              ThrowsMessage<InputError>(HasSubstr("this must be another displacement")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y, share: 0.1, gain: 2}"); },
               ThrowsMessage<InputError>(HasSubstr("no sensitivity, tilt or gain")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y, body: a, share: 0.1}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of three is wanted")));
+              ThrowsMessage<InputError>(HasSubstr("exactly one of the three is required")));
 }
 
 TEST(Readings, AreTheTruthWithoutEffects) {
@@ -215,17 +216,17 @@ TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
 
 TEST(DisplacementPath, WantsOneThingToFollow) {
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, sensitivity: 1 um/K}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of three")));
+              ThrowsMessage<InputError>(HasSubstr("one of the three")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, column: b, sensitivity: 1 um/K}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of three")));
+              ThrowsMessage<InputError>(HasSubstr("one of the three")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, sensitivity: 1 um/K, tilt: 1 urad/K}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of two")));
+              ThrowsMessage<InputError>(HasSubstr("one of the two")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: feed_x, sensitivity: 1 um/K}"); },
               ThrowsMessage<InputError>(HasSubstr("of the drive")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: a_N, gain: 1, sensitivity: 1 um/K}"); },
               ThrowsMessage<InputError>(HasSubstr("one of them")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, gain: 1}"); },
-              ThrowsMessage<InputError>(HasSubstr("of a `column`")));
+              ThrowsMessage<InputError>(HasSubstr("only beside a `column`")));
 }
 
 TEST(MountShift, IsAStepFromItsTimeOn) {
@@ -322,19 +323,20 @@ TEST_P(BadReadingEffect, IsAnInputError) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, BadReadingEffect,
-    ::testing::Values(Bad{"{type: sensor_bias, bias: 1 K}", "key 'sensor' is missing"},
-                      Bad{"{type: sensor_bias, sensor: a}", "key 'bias' is missing"},
-                      Bad{"{type: sensor_bias, sensor: a, bias: 20 degC}", "a temperature difference in K is wanted"},
-                      Bad{"{type: sensor_swap, sensor: a}", "key 'with' is missing"},
-                      Bad{"{type: sensor_swap, sensor: a, with: a}", "another sensor is wanted"},
-                      Bad{"{type: sensor_detached, sensor: a, share: 1.5, time: 1 min}", "outside what is allowed"},
-                      Bad{"{type: clock_offset, clock: x, offset: 1 min}", "unknown key 'clock'"},
-                      Bad{"{type: spindle_growth, displacement: z, growth: 1 um}", "key 'lag' is missing"},
-                      Bad{"{type: spindle_growth, displacement: z, lag: 1 min}", "one of two is wanted: `growth`"},
-                      Bad{"{type: centrifugal, displacement: z, growth: 1 um, tilt: 1 urad}",
-                          "one of two is wanted: `growth`"},
-                      Bad{"{type: mount_shift, displacement: z, time: 1 min}", "one of two is wanted: `shift`"},
-                      Bad{"{type: scale_expansion, displacement: z}", "`factor`, `lag` or both"}));
+    ::testing::Values(
+        Bad{"{type: sensor_bias, bias: 1 K}", "key 'sensor' is missing"},
+        Bad{"{type: sensor_bias, sensor: a}", "key 'bias' is missing"},
+        Bad{"{type: sensor_bias, sensor: a, bias: 20 degC}", "this must be a temperature difference in K"},
+        Bad{"{type: sensor_swap, sensor: a}", "key 'with' is missing"},
+        Bad{"{type: sensor_swap, sensor: a, with: a}", "this must be another sensor"},
+        Bad{"{type: sensor_detached, sensor: a, share: 1.5, time: 1 min}", "outside what is allowed"},
+        Bad{"{type: clock_offset, clock: x, offset: 1 min}", "unknown key 'clock'"},
+        Bad{"{type: spindle_growth, displacement: z, growth: 1 um}", "key 'lag' is missing"},
+        Bad{"{type: spindle_growth, displacement: z, lag: 1 min}", "exactly one of the two is required: `growth`"},
+        Bad{"{type: centrifugal, displacement: z, growth: 1 um, tilt: 1 urad}",
+            "exactly one of the two is required: `growth`"},
+        Bad{"{type: mount_shift, displacement: z, time: 1 min}", "exactly one of the two is required: `shift`"},
+        Bad{"{type: scale_expansion, displacement: z}", "`factor`, `lag` or both"}));
 
 }  // namespace
 }  // namespace driftwright::effects::reading_effects_test

@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Each, RecordCsvErrors,
                                            BadCsv{"time_s,a_K\n0,1\n4e9,2\n", "127 years; 100 years are allowed"},
                                            BadCsv{"time_s,a_K,a_K\n0,1,1\n", "appears twice"},
                                            BadCsv{"t,a_K\n0,1\n", "time_s, time_min or time_h"},
-                                           BadCsv{"time_s,a_K\n0,1,2\n", "3 cells where the header has 2"}));
+                                           BadCsv{"time_s,a_K\n0,1,2\n", "3 cells, but the header has 2"}));
 
 TEST(RecordCsv, IsReadFromAnyEncodingAndWrittenInOne) {
   const Record record = read_record_csv(write_file("latin1.csv", "time_s,t_Geh\xE4use_degC\n0,20\n1,21\n"));

@@ -131,9 +131,9 @@ TEST(RecordedRun, RefusesStrictlyWhatItSaysLeniently) {
   in_percent.channels[0].unit = "percent";
   const Record kelvin = with(record(), {"ambient", "degC", std::vector<double>(5, 293.0)});
   const Record volts = with(record(), {"ambient", "V", std::vector<double>(5, 0.2)});
-  const std::pair<Record, const char*> cases[] = {{no_speed, "no channel speed_rpm"}, {reversed, "speeds are positive"},
-                                                  {empty, "speed_rpm is empty"},      {in_percent, "rpm is wanted"},
-                                                  {kelvin, "looks like kelvin"},      {volts, "degC is wanted"}};
+  const std::pair<Record, const char*> cases[] = {{no_speed, "no channel speed_rpm"}, {reversed, "speeds must be positive"},
+                                                  {empty, "speed_rpm is empty"},      {in_percent, "it must be in rpm"},
+                                                  {kelvin, "looks like kelvin"},      {volts, "it must be in degC"}};
   for (const auto& [bad, words] : cases) {
     EXPECT_THAT([&] { (void)run_of(bad, &machine, {}, Reading::kStrict); },
                 ThrowsMessage<InputError>(AllOf(HasSubstr("monday.csv"), HasSubstr(words))));

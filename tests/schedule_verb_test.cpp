@@ -457,7 +457,7 @@ TEST_P(ScheduleMistakes, EndWithTwoAndNameTheKey) {
 INSTANTIATE_TEST_SUITE_P(
     Each, ScheduleMistakes,
     ::testing::Values(BadSchedule{"no_base", "  rapid: 10 m/min\n", "  rapid: 10 m/min\n  offset: absolute\n",
-                                  "absolute offsets want `base_offset`"},
+                                  "absolute offsets require `base_offset`"},
                       BadSchedule{"base_of_an_addition", "  rapid: 10 m/min\n",
                                   "  rapid: 10 m/min\n  base_offset: [0 mm, 0 mm, 0 mm]\n", "write `offset: absolute`"},
                       BadSchedule{"sign", "sign: -1", "sign: minus", "'minus' is not known here"},

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Writes the tables of what files may hold into docs/ anew.
+# Writes the tables of what files may hold into docs/reference/ anew.
 #
 #     schema_tables.sh PROGRAM FOLDER_OF_THE_PROJECT
 set -eu
 write() {  # PROGRAM FOLDER PAGE COMMAND...
-  file="$2/docs/$3.md"
+  file="$2/docs/reference/$3.md"
   program=$1
   shift 3
   "$program" "$@" --markdown >"$file.tables"

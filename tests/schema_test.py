@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What `driftwright schema` prints, by a validator of another make: every shipped file is valid; what the schema refuses, the program refuses with
-exit 2, and what is written otherwise but right both take; the tables in docs/ are those that the program prints.
+exit 2, and what is written otherwise but right both take; the tables in docs/reference/ are those that the program prints.
 
     schema_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -95,13 +95,13 @@ WRONG = [
     (SPINDLE, "runs: always", "runs: often", "'often' is not known here"),
     (SPINDLE, "type: motor_loss, node: shaft", "type: motor_los, node: shaft", "'motor_los' is not known here"),
     (SPINDLE, "name: t_stator", "name: t/stator", "is no name"),
-    (MILL, "sensors_to_choose: 4", "sensors_to_choose: 0", "no whole number"),
+    (MILL, "sensors_to_choose: 4", "sensors_to_choose: 0", "must be a whole number"),
     (MILL, "counts: x1 ", "counts: x3 ", "'x3' is not known here"),
     (MILL, "dialect: linuxcnc", "dialect: fanuc", "'fanuc' is not known here"),
-    (MILL, "train: [continuous_1000, continuous_1600, continuous_2000]", "train: [continuous_1000]", "at least 2 are wanted"),
+    (MILL, "train: [continuous_1000, continuous_1600, continuous_2000]", "train: [continuous_1000]", "at least 2 are required"),
     # keys that do not go together
-    (SPINDLE, "{type: link, node: stator, to: shaft", "{type: link, node: stator, region: a, to: shaft", "wants one place"),
-    (MILL, "signal_period: 1 um", "signal_period: 1 um\n  pitch: 2 mm\n  lines: 2000", "either `signal_period`"),
+    (SPINDLE, "{type: link, node: stator, to: shaft", "{type: link, node: stator, region: a, to: shaft", "requires exactly one place"),
+    (MILL, "signal_period: 1 um", "signal_period: 1 um\n  pitch: 2 mm\n  lines: 2000", "`signal_period` and `pitch`"),
     (MILL, "signal_period: 1 um", "pitch: 2 mm", "key 'lines' is missing"),
     (TABLE, "scale_y: {sensor: beam,", "scale_y: {", "one of `sensor` and `sensors`"),
     (MILL, "fixed: [x, y, z]", "", "how is this surface held?"),
@@ -111,7 +111,7 @@ WRONG = [
     # studies
     ("lumped_sweep", "samples: 48", "samples: 48\nsample: 3", "unknown key 'sample'"),
     ("lumped_sweep", "samples: 48\n", "", "key 'samples' is missing"),
-    ("lumped_sweep", "design: latin_hypercube", "design: grid", "a distribution wants"),
+    ("lumped_sweep", "design: latin_hypercube", "design: grid", "a distribution requires"),
     ("lumped_sweep", "uniform: [210 N, 390 N]", "uniform: [210 N, 390 N]\n    from: 3 N", "one of values, from"),
 ]
 RIGHT = [
@@ -171,15 +171,15 @@ class Schema(unittest.TestCase):
     def test_tables_of_the_documentation_are_those_of_the_program(self):
         for page, words in (("scenario.md", "schema scenario"), ("sweep.md", "schema sweep"), ("diagnosis.md", "schema diagnosis"), ("scenario.md", "list ranges")):
             with self.subTest(words):
-                text = (TOP / "docs" / page).read_text()
+                text = (TOP / "docs/reference" / page).read_text()
                 begin, end = f"<!-- driftwright {words} --markdown -->\n", "<!-- end -->\n"
                 self.assertIn(begin, text)
                 table = text.split(begin)[1].split(end)[0]
-                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/{page} is stale: tests/schema_tables.sh writes it anew")
+                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/reference/{page} is stale: tests/schema_tables.sh writes it anew")
 
     def test_the_reference_has_every_key(self):
         """of the scenario's upper two levels, told from the JSON and not from the tables"""
-        text = (TOP / "docs" / "scenario.md").read_text()
+        text = (TOP / "docs/reference/scenario.md").read_text()
         for block, schema in VALIDATORS["scenario"].schema["then"]["properties"].items():
             self.assertIn(f"`{block}`", text)
             if block == "effects":

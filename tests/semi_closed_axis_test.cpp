@@ -128,7 +128,7 @@ TEST(SemiClosedAxis, HalfADisplacementOrAnUnknownBodyIsRefused) {
   refuses("table: {region: column, at: [50 mm, 100 mm, 0 mm]}, " + kScrew,
           AllOf(HasSubstr("'along'"), HasSubstr("missing")));
   refuses(kPoints + ", sensitivities: [{node: srew, sensitivity: 1 um/K}]", HasSubstr("Did you mean 'screw'?"));
-  refuses(kPoints + ", sensitivities: []", HasSubstr("a list of {node or region, sensitivity} is wanted"));
+  refuses(kPoints + ", sensitivities: []", HasSubstr("this must be a list of {node or region, sensitivity}"));
   refuses(kPoints + ", sensitivity: 1 um/K", HasSubstr("unknown key 'sensitivity'"));
 }
 

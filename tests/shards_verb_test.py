@@ -77,7 +77,7 @@ def main():
             expect("note: pieces of an earlier version" in done.stderr and len(kept.read_text().splitlines()) == n_rows,
                    f"{verb}: stale pieces are dropped with a note: {done.stderr.strip()[-200:]}")
             for words, message in (
-                (["--shard", "4/3"], "--shard '4/3': i/n with 1 <= i <= n is wanted"),
+                (["--shard", "4/3"], "--shard '4/3' must be i/n with 1 <= i <= n"),
                 (["--shard", "1/2", "--merge"], "leave out --shard"),
             ):
                 done = call(*command, *words, "-o", "refused")

@@ -318,7 +318,7 @@ TEST(Sweep, RefusesBadInputBeforeAnythingRuns) {
   for (const char* shard : {"0/3", "4/3", "x/3", "3", "1/", "-1/3"}) {
     const CommandOutcome outcome = run_program(fmt::format("sweep {} --shard={} -o {}", study, shard, out));
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.output, HasSubstr("i/n with 1 <= i <= n is wanted"));
+    EXPECT_THAT(outcome.output, HasSubstr("must be i/n with 1 <= i <= n"));
   }
   EXPECT_EQ(run_program("sweep " + study + " --merge --shard 1/2 -o " + out).exit_code, 2);
   EXPECT_EQ(run_program("sweep " + lumped() + " -o " + out).exit_code, 2);

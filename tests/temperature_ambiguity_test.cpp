@@ -115,7 +115,7 @@ TEST(TemperatureAmbiguity, RefusesBadInput) {
   in_kelvin.channels[0].unit = "K";
   EXPECT_THROW((void)find({good}, 0.0), RangeError);
   EXPECT_THROW((void)find({good}, NAN), RangeError);
-  EXPECT_THAT([&] { (void)find({in_mm}); }, ThrowsMessage<InputError>(HasSubstr("is in mm; um is wanted")));
+  EXPECT_THAT([&] { (void)find({in_mm}); }, ThrowsMessage<InputError>(HasSubstr("is in mm; it must be in um")));
   EXPECT_THAT([&] { (void)find({good, in_kelvin}); }, ThrowsMessage<InputError>(HasSubstr("in degC in a but in K")));
   EXPECT_THROW((void)temperature_ambiguity(std::vector{good}, "nowhere", "d"), InputError);
 }

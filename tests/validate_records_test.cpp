@@ -380,7 +380,7 @@ TEST_F(ValidateRecords, ARecordThatContinuesAnotherIsCorrectedAsJudged) {
   const std::string file = (out / "models/ridge_all_sensors.json").string();
   EXPECT_THAT(compensate(file, measured + " --after " + record("day_0")).output, HasSubstr("does not continue"));
   EXPECT_THAT(compensate(file, measured + ":0h..1h --after " + record("day_1")).output, HasSubstr("whole records"));
-  EXPECT_THAT(compensate(file, " --after " + record("day_1")).output, HasSubstr("--after goes with --measured"));
+  EXPECT_THAT(compensate(file, " --after " + record("day_1")).output, HasSubstr("--after requires --measured"));
 }
 
 // A simulated run is corrected by the readings that it was judged by: noise and steps of `validation`, drawn as there.

@@ -74,7 +74,7 @@ bool is_intact(const CsvRow& r) {
 }
 
 // What is wanted of the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst run. An exchange of
-// two of its thermometers (0.57, docs/validation.md) and an ambient thermometer that drifts (0.51) are beyond it: both look like a model that is wrong, and a wrong
+// two of its thermometers (0.57, docs/how-to/validation.md) and an ambient thermometer that drifts (0.51) are beyond it: both look like a model that is wrong, and a wrong
 // model's correction fades. So it is safe within limits.
 TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) {
   double intact = 0.0, failed = 0.0, exchanged = 0.0, drifting_ambient = 0.0;
@@ -220,7 +220,7 @@ TEST_F(ValidationStudy, WhatCannotBeCorrectedIsRefused) {
     EXPECT_THAT(o.output, HasSubstr(words)) << arguments;
   };
   expect("scenarios/cnc_mill_13.yaml --model observer --through schedule", "models/observer.json");
-  expect("scenarios/cnc_mill_13.yaml --model modes --through none --measured a.csv", "--measured goes with");
+  expect("scenarios/cnc_mill_13.yaml --model modes --through none --measured a.csv", "--measured is allowed only with");
   expect("scenarios/cnc_mill_13.yaml --model modes --through injector", "axis_loop");
   expect("scenarios/cnc_mill_13.yaml --model modes --through frame", "table");
   expect("scenarios/cnc_mill_13.yaml --model no_such.json --through schedule", "no_such.json");

@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"unknown_judge",
             "train: [warm_up, steps]\nfamilies:\n  c: [chaos]\n",
             {":3:", "no cyclogram 'chaos'", "[families.c]"}},
-        Bad{"one_training", "train: [warm_up]\nfamilies: {c: [chaotic]}\n", {":1:", "at least 2 are wanted"}},
+        Bad{"one_training", "train: [warm_up]\nfamilies: {c: [chaotic]}\n", {":1:", "at least 2 are required"}},
         Bad{"the_same_twice",
             "train: [warm_up, warm_up]\nfamilies: {c: [chaotic]}\n",
             {":1:", "'warm_up'", "fitted on twice"}},

@@ -219,7 +219,7 @@ def why_class(experiment):
         return "no proposal"
     if happened_once(experiment):
         return "happened once: a thermometer, should it happen again" if experiment["proposes"] == "extra_sensor" else "happened once, and no thermometer tells"
-    if "no cyclogram of the family surely tells" in experiment["why"]:
+    if "no cyclogram of the family surely " in experiment["why"]:
         return "a cyclogram that does not surely tell (d' below 5)"
     return "a cyclogram" if experiment["proposes"] == "cyclogram" else "a cyclogram with a thermometer more"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measured records as others publish them -> record CSVs that `driftwright diagnose` reads (docs/record.md, docs/measured.md).
+"""Measured records as others publish them -> record CSVs that `driftwright diagnose` reads (docs/reference/record.md, docs/theory/measured.md).
 
     to_record.py spindle_22    run1.csv                   out.csv   speed 1000 rpm throughout: the source says none
     to_record.py lathe         2016-12-30_TM1.csv         out.csv   nominal levels, stopped where the spindle cools

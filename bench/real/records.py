@@ -148,7 +148,7 @@ IMBD_VARYING = ["0708", "0709", "0710", "0713", "0813", "0814", "0817"]
 
 
 def later_cases(data):
-    """Written on 27 November 2026, before the blend was run on any of them; what came of it is in docs/measured.md."""
+    """Written on 27 November 2026, before the blend was run on any of them; what came of it is in docs/theory/measured_strategies.md."""
     result = []
     for target in ("x_um", "z_um"):
         result.append(imbd_lathe(data, IMBD_DAYS[:10], IMBD_DAYS[10:], "fit 10 days, judge the 9 after them", target))

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #ifdef __FAST_MATH__
-#error "drift_correction.c tells missing readings by NAN: compile it without -ffast-math"
+#error "drift_correction.c marks missing readings by NAN: compile it without -ffast-math"
 #endif
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF

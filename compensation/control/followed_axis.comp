@@ -1,7 +1,7 @@
 component followed_axis "A correction that comes from outside, as external offset of an axis";
 description """
 Leads a correction that another program gives (`driftwright follow` through follow_hal.py) to an axis as external offset: enable, watchdog, slew limit.
-axis_offset.h and axis_offset.c must stand beside this file when it is compiled:
+axis_offset.h and axis_offset.c must lie beside this file when it is compiled:
 
   halcompile --install followed_axis.comp
 

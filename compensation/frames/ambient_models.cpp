@@ -70,7 +70,7 @@ double predicted_at(const Fit& fit, const std::vector<const Eigen::VectorXd*>& c
 }
 
 AmbientModel judged(const std::string& name, int n_parameters, const Search& search, const Eigen::VectorXd& y,
-                 const std::function<std::string(const Fit&, double limit)>& words) {
+                    const std::function<std::string(const Fit&, double limit)>& words) {
   AmbientModel model{.name = name, .n_parameters = n_parameters};
   const auto n = static_cast<double>(y.size());
   const Fit fit = best_of(search, -1);
@@ -120,7 +120,8 @@ std::vector<double> lagged(const TimeSeries& ambient, double lag, std::span<cons
     };
     for (std::size_t i = 1; i < ambient.time_s.size() && now_s < t_s; ++i) {
       const double end_s = std::min(t_s, ambient.time_s[i]), span_s = ambient.time_s[i] - ambient.time_s[i - 1];
-      const double to = ambient.value[i - 1] + (ambient.value[i] - ambient.value[i - 1]) * (end_s - ambient.time_s[i - 1]) / span_s;
+      const double to =
+          ambient.value[i - 1] + (ambient.value[i] - ambient.value[i - 1]) * (end_s - ambient.time_s[i - 1]) / span_s;
       follow(ambient.value[i - 1], to, end_s - now_s);
       now_s = end_s;
     }
@@ -131,9 +132,10 @@ std::vector<double> lagged(const TimeSeries& ambient, double lag, std::span<cons
 }
 
 std::vector<AmbientModel> compare_ambient_models(const TimeSeries& ambient, std::span<const double> time_s,
-                                           std::span<const double> values, double table, double scale) {
+                                                 std::span<const double> values, double table, double scale) {
   if (values.size() < 6)
-    throw InputError(fmt::format("{} readings are too few to compare models of the ambient; six are wanted", values.size()));
+    throw InputError(
+        fmt::format("{} readings are too few to compare models of the ambient; six are required", values.size()));
   const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   const auto column = [&](double lag) {
     const std::vector<double> t = lagged(ambient, lag, time_s);

@@ -24,7 +24,7 @@ TableFrame AxisTemperatureData::frame() const {
 }
 
 AxisTemperatureData data_at(const AxisTemperature& axis, double temperature_K) {
-  if (!std::isfinite(temperature_K)) throw RangeError("the control's temperature compensation wants a temperature");
+  if (!std::isfinite(temperature_K)) throw RangeError("the control's temperature compensation requires a temperature");
   const double dT_K = temperature_K - axis.reference_K;
   return {.absolute_m = rounded(axis.k0_m + axis.k0_m_K * dT_K, kAbsoluteStep_m),
           .slope = rounded(axis.slope_1_K * dT_K, kSlopeStep),

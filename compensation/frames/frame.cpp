@@ -16,7 +16,7 @@ Frame frame_of(const FrameParts& parts) {
   Eigen::Vector3d scale = parts.scale;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(scale[axis] > 0.0))
-      throw RangeError(fmt::format("a frame's scale along {} is {:g}; above 0 is wanted", "XYZ"[axis], scale[axis]));
+      throw RangeError(fmt::format("a frame's scale along {} is {:g}; it must be above 0", "XYZ"[axis], scale[axis]));
     if (parts.mirror[axis]) scale[axis] = -scale[axis];
   }
   const auto about = [&](int axis) {

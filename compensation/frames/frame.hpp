@@ -22,7 +22,7 @@ struct Frame {
   [[nodiscard]] Eigen::Vector3d map(const Eigen::Vector3d& point_m) const { return linear * point_m + shift_m; }
 };
 
-/// linear = Rz Ry Rx diag(scale) diag(mirror ? -1 : 1), shift as it stands.
+/// linear = Rz Ry Rx diag(scale) diag(mirror ? -1 : 1), shift as it is.
 /// @throws RangeError  for a scale that is not above 0, and for values that are not finite
 [[nodiscard]] Frame frame_of(const FrameParts& parts);
 

@@ -39,8 +39,8 @@ std::string why_no_program(const std::vector<ProgramRing>& rings) {
   if (rings.size() != 2) return fmt::format("{} rings; a program measures exactly two", rings.size());
   const Eigen::Vector3d apart_m = rings[1].at_m - rings[0].at_m;
   if (!(apart_m[0] >= kLeastRingDistance_m))
-    return fmt::format("the rings are {:.1f} mm apart along x; {:g} mm are wanted, by rising x", 1e3 * apart_m[0],
-                       1e3 * kLeastRingDistance_m);
+    return fmt::format("the rings are {:.1f} mm apart along x; they must be {:g} mm apart or more, in the order of rising x",
+                       1e3 * apart_m[0], 1e3 * kLeastRingDistance_m);
   const double off_m = apart_m.tail<2>().cwiseAbs().maxCoeff();
   if (off_m <= kMostOffLine * apart_m[0]) return "";
   return fmt::format(

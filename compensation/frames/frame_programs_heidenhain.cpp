@@ -14,7 +14,7 @@ std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
   const auto add = [&](std::string block) { blocks.push_back(std::move(block)); };
   for (const char* block :
        {"; By PGM CALL, with the probe called and the datum at machine zero. Q40 to Q43 keep the frame in force",
-        "; X alone is scaled (cycle 26), and this control wants equal factors in the plane of arcs: programs with C, CR, "
+        "; X alone is scaled (cycle 26), and this control requires equal factors in the plane of arcs: programs with C, CR, "
         "CT, CP or CC in X Y need Q45 = 1,",
         "; which scales Y alike about the rings' Y: right for a table that grows evenly, else an error of Y by that factor "
         "away from there",

@@ -53,7 +53,7 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "this anew)\n"
       "(G59.2 is used for probing. T and M6 of the probe first: its length comes from the tool table)\n"
       "G21 G90 G94 G17 G40\n";
-  text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is wanted");
+  text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is required");
   text += refusal(91, "#5210 EQ 1", "", "G92 is in force, G92.1 first");
   text +=
       "G43\n"

@@ -14,8 +14,7 @@ std::string siemens_therm_frame(const FrameProgram& p) {
                                  last_numbers(p), origin_words(p));
   text += fmt::format(
       "; {}\n; and the control may refuse G2, G3 in X Y where factors differ. For such programs run THERMDATA in place of "
-      "this: it moves the axis itself, behind the "
-      "interpolation,\n; where no arc is scaled\n",
+      "this: it moves the axis itself, after the interpolation,\n; where no arc is scaled\n",
       arc_words(p));
   text +=
       "; Call with the probe in the spindle and its D number active. TF_STATUS: 0, or the alarm; then the old frame stays.\n"
@@ -107,7 +106,7 @@ std::string ring_measurement(const FrameProgram& p) {
   };
   text += refusal("NORING", 65013, "ring missing", "GOTOF AWAY") +
           refusal("WRONGSIDE", 65014, "touched at the wrong side", "GOTOF AWAY") +
-          refusal("NOLENGTH", 65015, "no D number: the length of the probe is wanted", "RET") +
+          refusal("NOLENGTH", 65015, "no D number: the length of the probe is required", "RET") +
           refusal("OTHERFRAME", 65016, "a global, system or external frame is in force", "RET") +
           refusal("WRONGHEIGHT", 65017, "height: look at the length of the probe and the origin", "GOTOF AWAY");
   text += fmt::format("AWAY:\nG0 Z=TF_CZ+{}\nRET\n", mm(p.clearance_m, 3));
@@ -122,9 +121,8 @@ std::string setting_data(const FrameProgram& p) {
       "; {}\n; Temperature compensation of X at {:.1f} degC: dK = K0 + tan_beta (P - P0), the axis moves by {}dK.\n",
       p.made_by, p.temperature_K - kZeroCelsius_K, sign_word);
   text += fmt::format(
-      "; The sign is the scenario's (axis_moves); the manual does not tell it. Check: SD43900=0.1, a dial gauge on the "
-      "standing "
-      "axis must go 0.1 mm\n; toward {}X; else set axis_moves: {} and write this file anew.\n",
+      "; The sign is the scenario's (axis_moves); the manual does not give it. Check: SD43900=0.1, a dial gauge on the axis "
+      "at rest must go 0.1 mm\n; toward {}X; else set axis_moves: {} and write this file anew.\n",
       sign_word, p.against_dk ? "by_dk" : "against_dk");
   text += fmt::format(
       "; tan_beta = {:.3f}e-6 /K (T - {:.2f} degC), K0 = {} mm {:+.6f} mm/K (T - T0); write both anew as T changes\n",

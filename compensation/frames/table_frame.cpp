@@ -40,9 +40,9 @@ void check_scale(double scale) {
 
 void check_order(double before_m, double now_m) {
   if (!(std::abs(before_m) >= kLeastRingDistance_m)) {
-    throw InputError(
-        fmt::format("the rings are identical: {:.3f} mm apart along X; {:g} mm are wanted, best the length of the table",
-                    1e3 * before_m, 1e3 * kLeastRingDistance_m));
+    throw InputError(fmt::format(
+        "the rings are identical: {:.3f} mm apart along X; they must be {:g} mm apart or more, best the length of the table",
+        1e3 * before_m, 1e3 * kLeastRingDistance_m));
   }
   if (before_m * now_m < 0.0) {
     throw InputError(
@@ -74,7 +74,7 @@ bool tells_scale_y(std::span<const RingPair> rings) {
 }
 
 TableFrame fit_table_frame(std::span<const RingPair> rings) {
-  if (rings.size() < 2) throw InputError(fmt::format("a ring is missing: {} given, two are wanted", rings.size()));
+  if (rings.size() < 2) throw InputError(fmt::format("a ring is missing: {} given, two are required", rings.size()));
   for (const RingPair& ring : rings) {
     const auto found = [](const std::optional<Eigen::Vector3d>& place) { return place && place->allFinite(); };
     if (!found(ring.before_m)) throw InputError(fmt::format("ring '{}' is missing: it was not measured before", ring.name));

@@ -22,7 +22,7 @@ Line fit_line(std::span<const double> x, const std::vector<double>& values) {
   Line line;
   const auto n = static_cast<double>(x.size());
   if (x.size() < 3)
-    throw InputError(fmt::format("a line over temperature wants three measurements; {} are there", x.size()));
+    throw InputError(fmt::format("a line over temperature requires three measurements; there are {}", x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) {
     line.mean_x += x[i] / n;
     line.mean += values[i] / n;
@@ -32,7 +32,7 @@ Line fit_line(std::span<const double> x, const std::vector<double>& values) {
     xx += (x[i] - line.mean_x) * (x[i] - line.mean_x);
     xv += (x[i] - line.mean_x) * (values[i] - line.mean);
   }
-  if (!(xx > 1e-6)) throw InputError("a line over temperature wants temperatures that differ; all of training are alike");
+  if (!(xx > 1e-6)) throw InputError("a line over temperature requires temperatures that differ; all of training are alike");
   line.slope = xv / xx;
   return line;
 }

@@ -34,7 +34,7 @@ std::int64_t rolled(std::int64_t counts, int bits) {
 }
 
 void require(bool ok, const char* what) {
-  if (!ok) throw RangeError(fmt::format("a touch wants {}", what));
+  if (!ok) throw RangeError(fmt::format("a touch requires {}", what));
 }
 
 }  // namespace
@@ -106,11 +106,12 @@ double latched_and_undone_m(const Touch& touch, double lag_cycles) {
 }
 
 ProbeCalibration calibrate_probe(double cycle_s, std::span<const FeedTouch> slow, std::span<const FeedTouch> fast) {
-  if (slow.empty()) throw InputError("a calibration wants a reference touch at 30 mm/min or less");
-  if (fast.size() < 2) throw InputError("a calibration wants at least two touches faster than the reference");
+  if (slow.empty()) throw InputError("a calibration requires a reference touch at 30 mm/min or less");
+  if (fast.size() < 2) throw InputError("a calibration requires at least two touches faster than the reference");
   for (const FeedTouch& t : slow) {
     if (!(t.feed_m_s <= kFastestReference_m_s * (1.0 + 1e-9)))
-      throw InputError(fmt::format("a reference touch at {:g} mm/min; 30 mm/min at most is wanted", 6e4 * t.feed_m_s));
+      throw InputError(
+          fmt::format("the reference touch has a feed of {:g} mm/min; 30 mm/min at most are allowed", 6e4 * t.feed_m_s));
   }
   // position along the approach = surface + feed lag: a line over the feed.
   double n = 0.0, feed = 0.0, feed_2 = 0.0, latched = 0.0, feed_latched = 0.0, plain = 0.0, feed_plain = 0.0;

@@ -49,7 +49,7 @@ double quarters_per(const std::string& unit, const CorrectionScale& scale, const
   if (unit == "count") return compensation::quarters_per_count(scale.counting);
   if (!(scale.period_um > 0.0))
     throw InputError(fmt::format(
-        "{}: a correction in um wants --period, the travel of one signal period, such as --period '4 um'", path));
+        "{}: a correction in um requires --period, the travel of one signal period, such as --period '4 um'", path));
   return compensation::kQuartersPerPeriod / scale.period_um;
 }
 
@@ -78,7 +78,7 @@ constexpr double kMostQuarters = 1e15;
 
 double checked_quarters(double quarters, const std::string& path, std::int64_t line) {
   if (!(std::abs(quarters) <= kMostQuarters))
-    fail(path, line, fmt::format("{:g} quarter steps; at most {:g}", quarters, kMostQuarters));
+    fail(path, line, fmt::format("{:g} quarter steps are too many; at most {:g} are allowed", quarters, kMostQuarters));
   return quarters;
 }
 
@@ -88,12 +88,13 @@ CorrectionInput::CorrectionInput(const std::string& path, const CorrectionScale&
   struct stat status;
   if (path == "-") throw InputError("--correction -: standard input has the rows; name a file, a FIFO or /dev/fd/3");
   if (stat(path.c_str(), &status) != 0) throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
-  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a folder; a file or a FIFO is wanted", path));
+  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: this is a folder; it must be a file or a FIFO", path));
   if (S_ISREG(status.st_mode)) {
     if (scale.unit != "um")
-      throw InputError(fmt::format(
-          "--unit {} is for numbers from a pipe; {} is a table, whose second column tells by its name: end it in _{}",
-          scale.unit, path, scale.unit));
+      throw InputError(
+          fmt::format("--unit {} is for numbers from a pipe; {} is a table, whose second column gives the unit by its name: "
+                      "end it in _{}",
+                      scale.unit, path, scale.unit));
     read_table();
     return;
   }
@@ -113,7 +114,7 @@ std::size_t CorrectionInput::column_of(const std::vector<std::string>& header, s
     if (trimmed(header[c]) == wanted) return c;
   }
   fail(path_, line,
-       fmt::format("no column '{}' among {}; --column NAME says which holds the correction", wanted,
+       fmt::format("there is no column '{}' among {}; --column NAME says which holds the correction", wanted,
                    fmt::join(header, ", ")));
 }
 
@@ -132,16 +133,16 @@ void CorrectionInput::read_table() {
     if (rows_per_unit == 0.0) column = column_of(cells, n_lines);
     if (cells.size() < 2 || cells.size() != n_cells + (n_cells == 0 ? cells.size() : 0))
       fail(path_, n_lines,
-           n_cells > 2 ? fmt::format("'{}': {} columns; the header has {}", text, cells.size(), n_cells)
-                       : fmt::format("'{}': two columns are wanted, such as 'row,correction_um'", text));
+           n_cells > 2 ? fmt::format("'{}' has {} columns, but the header has {}", text, cells.size(), n_cells)
+                       : fmt::format("'{}': the line must have two columns, such as 'row,correction_um'", text));
     n_cells = cells.size();
     const std::string_view first = trimmed(cells[0]), second = trimmed(cells[column]);
     if (rows_per_unit == 0.0) {
       by_row = first == "row";
       if (!by_row && first != "time_s" && first != "time_min")
-        fail(path_, n_lines, fmt::format("the first column is '{}'; row, time_s or time_min is wanted", first));
+        fail(path_, n_lines, fmt::format("the first column is '{}'; it must be row, time_s or time_min", first));
       if (!by_row && !(scale_.row_s > 0.0))
-        fail(path_, n_lines, "a correction by time wants --row-time, the time of one row, such as --row-time '1 ms'");
+        fail(path_, n_lines, "a correction by time requires --row-time, the time of one row, such as --row-time '1 ms'");
       rows_per_unit = by_row ? 1.0 : (first == "time_s" ? 1.0 : 60.0) / scale_.row_s;
       const bool um = second.ends_with("_um");
       if (!um && !second.ends_with("_count"))
@@ -152,10 +153,10 @@ void CorrectionInput::read_table() {
       continue;
     }
     const auto key = number(first), value = number(second);
-    if (!key || !value) fail(path_, n_lines, fmt::format("'{}': two finite numbers are wanted", text));
+    if (!key || !value) fail(path_, n_lines, fmt::format("'{}' must be two finite numbers", text));
     if (by_row && (*key < 1.0 || *key != std::floor(*key)))
-      fail(path_, n_lines, fmt::format("row {}; a whole number from 1 on is wanted", first));
-    if (*key < 0.0) fail(path_, n_lines, fmt::format("time {}; 0 or later is wanted", first));
+      fail(path_, n_lines, fmt::format("row {} must be a whole number from 1 on", first));
+    if (*key < 0.0) fail(path_, n_lines, fmt::format("time {} must be 0 or later", first));
     if (!(*key > last_key)) fail(path_, n_lines, fmt::format("{} does not come after the line before", first));
     last_key = *key;
     // row i stands for the time (i - 1) row_s
@@ -163,8 +164,9 @@ void CorrectionInput::read_table() {
     if (!(row < 9e18)) fail(path_, n_lines, fmt::format("{} lies beyond the last row that can be counted", first));
     steps_.push_back({static_cast<std::int64_t>(row), checked_quarters(*value * quarters_per_unit, path_, n_lines)});
   }
-  if (rows_per_unit == 0.0) fail(path_, n_lines, "no header; two columns are wanted, such as 'row,correction_um'");
-  if (steps_.empty()) fail(path_, n_lines, "no correction behind the header");
+  if (rows_per_unit == 0.0)
+    fail(path_, n_lines, "the header is missing; two columns are required, such as 'row,correction_um'");
+  if (steps_.empty()) fail(path_, n_lines, "no correction follows after the header");
 }
 
 double CorrectionInput::quarters_at(std::int64_t row) {
@@ -192,7 +194,8 @@ void CorrectionInput::poll() {
     }
     rest_.erase(0, begin);
     if (rest_.size() > bytes.size()) {
-      const std::string why = fmt::format("longer than {} characters; one number a line is wanted", bytes.size());
+      const std::string why =
+          fmt::format("the line is longer than {} characters; one number a line is expected", bytes.size());
       if (scale_.is_strict) fail(path_, n_lines_ + 1, why);
       if (!is_endless_) faults_.push_back(fmt::format("{}:{}: {}", path_, n_lines_ + 1, why));
       is_endless_ = true;
@@ -207,9 +210,8 @@ void CorrectionInput::take_line(std::string_view line) {
     const std::string& unit = line.starts_with('{') ? kMicrometres : scale_.unit;
     if (!value)
       fail(path_, n_lines_,
-           fmt::format("'{}': one finite number a line is wanted, in {}, or what `follow` writes of {}",
-                       line.substr(0, kShown), scale_.unit,
-                       scale_.column.empty() ? "one axis" : "the axis '" + scale_.column + "'"));
+           fmt::format("'{}' must be one finite number a line, in {}, or what `follow` writes of {}", line.substr(0, kShown),
+                       scale_.unit, scale_.column.empty() ? "one axis" : "the axis '" + scale_.column + "'"));
     quarters_ = checked_quarters(*value * quarters_per(unit, scale_, path_), path_, n_lines_);
     ++n_told_;
   } catch (const InputError& e) {

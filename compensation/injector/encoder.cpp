@@ -13,7 +13,7 @@ EncoderEdges::EncoderEdges(const Encoder& encoder, double position_um) : encoder
   if (!(encoder.period_um > 0.0)) throw RangeError(fmt::format("signal period {} um must be positive", encoder.period_um));
   if (!(encoder.jitter >= 0.0 && encoder.jitter < 0.5))
     throw RangeError(
-        fmt::format("jitter of {} quarters; from 0 to below 0.5, or edges would change places", encoder.jitter));
+        fmt::format("jitter is {} quarters; it must be from 0 to below 0.5, or edges would change places", encoder.jitter));
   phase_ = static_cast<std::int64_t>(std::floor(position_um / encoder.quarter_um())) - 1;
   while (place_um(phase_ + 1) <= position_um) ++phase_;
 }

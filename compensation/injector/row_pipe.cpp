@@ -57,9 +57,9 @@ void RowReader::take_good_line(const char* begin, const char* end) {
   good = good && n >= 2;
   if (good && n_columns_ == 0) n_columns_ = n;
   if (!good || n != n_columns_) {
-    throw InputError(fmt::format(
-        "standard input, line {}: '{}'; {} of 0 and 1 are wanted, A B{}", n_lines_, line.substr(0, 60),
-        n_columns_ == 0 ? "two or three columns" : fmt::format("{} columns", n_columns_), n_columns_ == 2 ? "" : " index"));
+    throw InputError(fmt::format("standard input, line {}: '{}' must be {} of 0 and 1, A B{}", n_lines_, line.substr(0, 60),
+                                 n_columns_ == 0 ? "two or three columns" : fmt::format("{} columns", n_columns_),
+                                 n_columns_ == 2 ? "" : " index"));
   }
   rows_.push_back(lines);
 }

@@ -69,7 +69,7 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
                                 left_out_um(d), words)};
   };
   const auto rest = [&](const DeployedPredictor& d) {
-    return &d == best ? std::string("the least of all") : said(*best) + ", too little less to tell them apart";
+    return &d == best ? std::string("the least of all") : said(*best) + ", with too small a difference to distinguish them";
   };
   if (physics && is_alike(*physics)) {
     const DeployedPredictor& simplest = simplest_near(

@@ -50,7 +50,8 @@ std::vector<Piece> pieces_of(std::span<const Record> records, const std::string&
     const Channel& t = records[r].at(temperature);
     const Channel& d = records[r].at(displacement);
     if (d.unit != "um") {
-      throw InputError(fmt::format("channel '{}' of {} is in {}; um is wanted", displacement, records[r].source, d.unit));
+      throw InputError(
+          fmt::format("channel '{}' of {} is in {}; it must be in um", displacement, records[r].source, d.unit));
     }
     if (const std::string& unit = records.front().at(temperature).unit; t.unit != unit) {
       throw InputError(fmt::format("channel '{}' is in {} in {} but in {} in {}; give it one unit", temperature, unit,

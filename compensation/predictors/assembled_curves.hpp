@@ -5,7 +5,7 @@
 // - to a speed whose curve passes that level: along its heating curve from there on (stepwise up, intermittent on);
 // - to standstill: along the cooling curve measured after the speed just run, from where it has that level; a level above that curve's start
 //   shrinks with it in proportion (intermittent off);
-// - down to a speed whose curve never reaches the level (stepwise down), where the paper says that steps are wanted and not which: the excess over the
+// - down to a speed whose curve never reaches the level (stepwise down), where the paper says that steps are required and not which: the excess over the
 //   steady level of the new speed falls as the cooling curve after that speed does, δ = δ∞(n) + (δ0 - δ∞(n)) c(t) / c(0). This rule is ours.
 // Curves between tested speeds are linear in speed at equal times. The ambient is not looked at: the tests' own is in their curves.
 // A channel whose heating curve turns round has two times at one level, and one whose level lies beyond both curves has none: the first time, or the

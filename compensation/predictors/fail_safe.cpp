@@ -136,7 +136,7 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
     }
   }
   if (steps_s.empty())
-    throw InputError("training records of one row tell nothing about steps; two rows at least are needed");
+    throw InputError("training records of one row say nothing about steps; at least two rows are required");
   std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
   safe.period_s = steps_s[steps_s.size() / 2];
   safe.stale_s = 5.0 * safe.period_s;

@@ -49,7 +49,7 @@ void require_two(const ProductSums& sums) {
   (void)held_out_rmse(sums, {});
 }
 
-/// Products about the means of the rows behind the sums; 0 for what does not move in them.
+/// Products about the means of the rows of the sums; 0 for what does not move in them.
 struct Centred {
   Eigen::MatrixXd xx;
   Eigen::VectorXd xy, mean_x;

@@ -78,7 +78,7 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
   for (const ThermalTest& test : tests) {
     if (test.readings.rows() != static_cast<Eigen::Index>(channels.name.size()) ||
         test.readings.cols() != static_cast<Eigen::Index>(test.time_s.size()) || test.time_s.size() < 8) {
-      throw InputError(fmt::format("test '{}': {} channels at 8 times or more are wanted; there are {} x {}",
+      throw InputError(fmt::format("test '{}': {} channels at 8 times or more are required; there are {} x {}",
                                    test.cyclogram.name, channels.name.size(), test.readings.rows(), test.readings.cols()));
     }
     for (std::size_t i = 0; i < test.time_s.size(); ++i) {
@@ -110,7 +110,7 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
   const int n_missing = options.powers - 1 - static_cast<int>(speeds.size());
   if (n_missing > 0) {
     throw InputError(
-        fmt::format("tests at {} speeds above 0 rpm cannot give steady levels by {} powers of speed: {} more {} wanted",
+        fmt::format("tests at {} speeds above 0 rpm cannot give steady levels by {} powers of speed: {} more {} required",
                     speeds.size(), options.powers - 1, n_missing, n_missing == 1 ? "is" : "are"));
   }
   const auto n_channels = static_cast<Eigen::Index>(channels.name.size());
@@ -166,7 +166,7 @@ Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_
 }
 
 /// Steady levels of given time constants: least squares with a prior that none is larger than the channel itself (1 sigma is its range), and that
-/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests tell apart badly would cancel each other there and not elsewhere.
+/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests distinguish badly would cancel each other there and not elsewhere.
 struct Linear {
   Eigen::MatrixXd amplitude;  ///< n_columns x n_channels, in units of noise
   Eigen::MatrixXd residual;   ///< of the rows that take part, then amplitude over its prior

@@ -16,7 +16,7 @@
 namespace driftwright::compensation {
 namespace {
 
-// On the record fl_thermal (docs/measured.md) finer and coarser lags leave the same on data left out, within its scatter.
+// On the record fl_thermal (docs/theory/measured_strategies.md) finer and coarser lags leave the same on data left out, within its scatter.
 constexpr double kTemperatureLags_min[] = {20, 60, 180};
 constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
 // The least keeps levels that were never tried from being made up out of differences of columns that are nearly alike.

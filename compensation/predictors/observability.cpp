@@ -45,8 +45,7 @@ Selection select_by_observability(const solver::ReducedSystem& system, const Eig
     return static_cast<Eigen::Index>(found - system.outputs.name.begin());
   };
   const Eigen::MatrixXd nominal = outputs_of(system, start, runs);
-  if (nominal.cols() == 0)
-    throw InputError(fmt::format("runs of fewer than {} rows tell nothing about sensors", kEvery + 1));
+  if (nominal.cols() == 0) throw InputError(fmt::format("runs of fewer than {} rows say nothing about sensors", kEvery + 1));
   std::vector<Eigen::MatrixXd> by_factor;  // each n_outputs x n_rows, per standard deviation of the factor
   std::vector<double> factor(system.sources.size() + system.exchanges.size(), 1.0);
   for (double& f : factor) {

@@ -187,7 +187,7 @@ class Observer::Run final : public ObserverFollower {
       const Channel& c = run.readings.at(name);
       if (c.unit != unit)
         throw InputError(
-            fmt::format("channel '{}' of {} is in {}; the model tells it in {}", name, run.readings.source, c.unit, unit));
+            fmt::format("channel '{}' of {} is in {}; the model gives it in {}", name, run.readings.source, c.unit, unit));
       return static_cast<std::size_t>(&c - run.readings.channels.data());
     };
     for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name, "degC"));

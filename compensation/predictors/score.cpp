@@ -43,7 +43,7 @@ std::vector<double> baseline_last(std::span<const Record> train, const Record& t
 }
 
 std::vector<double> baseline_same_time(std::span<const Record> train, const Record& test, const std::string& channel) {
-  if (train.empty()) throw InputError("no training record was given; at least one is needed");
+  if (train.empty()) throw InputError("no training record was given; at least one is required");
   std::vector<double> predicted;
   for (double t_s : test.time_s) {
     double sum = 0.0;

@@ -12,7 +12,7 @@ namespace driftwright::compensation {
 
 TermColumns term_columns(std::span<const Record> records, const std::vector<DriftModel::Term>& terms,
                          const std::string& target) {
-  if (records.empty()) throw InputError("no record was given; at least one is needed");
+  if (records.empty()) throw InputError("no record was given; at least one is required");
   TermColumns result;
   for (std::size_t i = 0; i < terms.size(); ++i) result.names.push_back(fmt::format("column_{}", i));
   for (const Record& record : records) {

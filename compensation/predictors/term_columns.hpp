@@ -1,5 +1,5 @@
 #pragma once
-// The terms of a formula as columns: readings at their powers and behind their lags, ready for a fit; and a fit of columns as a formula.
+// The terms of a formula as columns: readings at their powers and with their lags, ready for a fit; and a fit of columns as a formula.
 
 #include <span>
 #include <string>

@@ -72,11 +72,11 @@ void require_tested(const Cyclogram& cyclogram, const TestedSpeeds& tested, bool
           "cyclogram '{}' has feeds or cutting power, which tests at fixed speeds say nothing about", cyclogram.name));
     }
     if (rpm == 0.0 && !tested.has_standstill)
-      throw InputError(fmt::format("cyclogram '{}' stands still, which no test does", cyclogram.name));
+      throw InputError(fmt::format("cyclogram '{}' keeps the spindle at rest, which no test does", cyclogram.name));
     if (extrapolate || rpm == 0.0 || (rpm >= tested.lowest_rpm - 1e-9 && rpm <= tested.top_rpm + 1e-9)) continue;
     throw InputError(
-        fmt::format("cyclogram '{}' runs at {:g} rpm, but the tests ran at {:g} to {:g} rpm; a test there, or "
-                    "extrapolate: true, is wanted",
+        fmt::format("cyclogram '{}' runs at {:g} rpm, but the tests ran at {:g} to {:g} rpm; add a test there, or write "
+                    "`extrapolate: true`",
                     cyclogram.name, rpm, tested.lowest_rpm, tested.top_rpm));
   }
 }

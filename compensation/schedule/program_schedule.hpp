@@ -60,7 +60,7 @@ struct ProgramSchedule {
   int n_divided = 0;  ///< blocks
 };
 
-/// Plans each axis by itself, at the places that nc_entries() allows for it: rapids that name the axis are preferred to places after
+/// Plans each axis on its own, at the places that nc_entries() allows for it: rapids that name the axis are preferred to places after
 /// a rapid, those to places in feed; among equals, a place where an axis before it changes. An axis that stands changes at once, one
 /// that a rapid brings goes from the old correction to the new one on the rapid's way.
 ///

@@ -10,7 +10,7 @@
 namespace driftwright::compensation {
 
 CompleteRows complete_rows(std::span<const Record> records, const std::vector<std::string>& channels) {
-  if (records.empty()) throw InputError("no record was given; at least one is needed");
+  if (records.empty()) throw InputError("no record was given; at least one is required");
 
   CompleteRows rows;
   std::vector<std::vector<double>> kept;

@@ -165,7 +165,7 @@ double held_out_rmse(const ProductSums& sums, std::span<const int> columns, doub
   }
   if (n_records < 2) {
     throw InputError(
-        "an error on runs not fitted on wants two training records at least: one to fit, one to judge; give another "
+        "an error on runs not fitted on requires at least two training records: one to fit, one to judge; give another "
         "--train");
   }
   return std::sqrt(squares / n) * sums.deviation(sums.n_inputs());

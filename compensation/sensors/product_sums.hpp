@@ -45,11 +45,11 @@ struct ScaledFit {
 /// @param penalty   >= 0, per row: 0 is ordinary least squares
 [[nodiscard]] ScaledFit fit_columns(const Eigen::MatrixXd& sums, std::span<const int> columns, double penalty = 0.0);
 
-/// True where a column moves in the rows behind some sums: its deviation there is at least 1e-5 of that over all rows, and of its
+/// True where a column moves in the rows of some sums: its deviation there is at least 1e-5 of that over all rows, and of its
 /// distance from the overall mean. Less is what rounding leaves of sums.
 [[nodiscard]] bool moves(const Eigen::MatrixXd& sums, int column);
 
-/// Sum of squared residuals of a fit over the rows behind some sums, in scaled units.
+/// Sum of squared residuals of a fit over the rows of some sums, in scaled units.
 [[nodiscard]] double residual_squares(const Eigen::MatrixXd& sums, std::span<const int> columns, const ScaledFit& fit);
 
 /// @throws InputError  for fewer rows than coefficients (columns and intercept)

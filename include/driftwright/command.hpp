@@ -13,7 +13,7 @@ namespace driftwright {
 /// @return the exit code: 0 done, 2 the input is wrong, 3 the numerics gave up, 130 ended by Ctrl-C, 1 a bug of ours
 [[nodiscard]] DRIFTWRIGHT_API int command(const std::vector<std::string>& arguments);
 
-/// Version of the library, such as "0.1.0".
+/// Version of the library, such as "0.2.0".
 [[nodiscard]] DRIFTWRIGHT_API const char* version();
 
 }  // namespace driftwright

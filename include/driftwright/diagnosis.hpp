@@ -1,5 +1,5 @@
 #pragma once
-// What measurements say about a machine. Words and numbers are those of diagnosis.json (docs/diagnosis.md).
+// What measurements say about a machine. Words and numbers are those of diagnosis.json (docs/reference/diagnosis.md).
 
 #include <string>
 #include <vector>

@@ -39,7 +39,7 @@ struct DRIFTWRIGHT_API Record {
 /// Units that a record's header may name, longest first.
 [[nodiscard]] DRIFTWRIGHT_API std::span<const std::string> known_units();
 
-/// Reads a record CSV (format: docs/record.md).
+/// Reads a record CSV (format: docs/reference/record.md).
 /// @throws InputError  file, line and column, for a missing file, fewer than two rows, a header without unit, a cell
 ///                     that is no number, NaN or infinity written out, time that does not increase, ragged rows
 [[nodiscard]] DRIFTWRIGHT_API Record read_record_csv(const std::string& path);

@@ -1,5 +1,5 @@
 #pragma once
-// A law of the catalogue as a table that C can look up: whatever its formula, over each variable of the drive by itself.
+// A law of the catalogue as a table that C can look up: whatever its formula, over each variable of the drive on its own.
 
 #include <functional>
 #include <optional>

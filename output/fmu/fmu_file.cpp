@@ -61,7 +61,8 @@ std::string page(const FmuOrder& order, const Provenance& made_by, const std::st
   return fmt::format(
       "<!DOCTYPE html>\n<html><head><meta "
       "charset=\"utf-8\"><title>{0}</title></head><body>\n<h1>{0}</h1>\n<p>{1}.</p>\n<p>Made by "
-      "Driftwright {2} of the scenario {3}; {4}.</p>\n{5}<p>docs/fmu.md of Driftwright says what the variables mean and how "
+      "Driftwright {2} of the scenario {3}; {4}.</p>\n{5}<p>docs/how-to/fmu.md of Driftwright says what the variables mean "
+      "and how "
       "exact the unit "
       "is.</p>\n</body></html>\n",
       order.model.name, order.model.description, made_by.version, made_by.scenario, guid, reference);

@@ -45,7 +45,7 @@ DriveLaw table_of(const Scenario& scenario, const solver::BoundLaw& law, const s
                   const std::vector<DriveRange>& ranges) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(scenario.machine->where,
-                     fmt::format("'{}' {}; no FMU is made of such a machine yet (docs/fmu.md)", name, why));
+                     fmt::format("'{}' {}; no FMU is made of such a machine yet (docs/how-to/fmu.md)", name, why));
   };
   if (law.thermostat >= 0) refuse("obeys a thermostat");
   if (law.looks_at_state()) refuse("follows temperatures of the machine");
@@ -74,13 +74,14 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
 /// All but start and what is of one kind alone, sources and exchanges apart.
 FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system) {
   const MachineModel& machine = *scenario.machine;
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: a unit mass matrix is wanted");
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: the mass matrix must be the unit matrix");
   if (!system.thermostats.empty())
     throw InputError(machine.where,
-                     fmt::format("thermostat '{}' switches; no FMU is made of such a machine yet (docs/fmu.md)",
+                     fmt::format("thermostat '{}' switches; no FMU is made of such a machine yet (docs/how-to/fmu.md)",
                                  system.thermostats.front().name));
   if (!system.change_times_s.empty())
-    throw InputError(machine.where, "a law changes with time by itself; no FMU is made of such a machine yet (docs/fmu.md)");
+    throw InputError(machine.where,
+                     "a law changes with time on its own; no FMU is made of such a machine yet (docs/how-to/fmu.md)");
   FmuModel model{.name = scenario.name, .drive = ranges_of(scenario), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;
@@ -120,7 +121,8 @@ void sum_up_constants(FmuModel& model) {
 void require_exportable(const Scenario& scenario) {
   const MachineModel& machine = *scenario.machine;
   const auto refuse = [](const effects::Effect& e, const std::string& why) {
-    throw InputError(e.where, fmt::format("{} {}; leave it out of what is exported as an FMU (docs/fmu.md)", e.name(), why));
+    throw InputError(e.where,
+                     fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
   };
   for (const effects::Effect& e : machine.effects) {
     if (e.kind->change_readings) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
@@ -134,7 +136,7 @@ void require_exportable(const Scenario& scenario) {
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
       throw InputError(machine.where,
                        fmt::format("an effect follows the recorded column '{}', which is no input of an FMU yet "
-                                   "(docs/fmu.md)",
+                                   "(docs/how-to/fmu.md)",
                                    columns.front()));
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The page beside a running machine: its picture, which rows of a stream then colour (docs/follow.md). What it shows comes by the stream alone.
+// The page beside a running machine: its picture, which rows of a stream then colour (docs/how-to/follow.md). What it shows comes by the stream alone.
 
 #include <optional>
 #include <string>

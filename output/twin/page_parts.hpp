@@ -23,7 +23,7 @@ struct TwinNetwork {
 /// Numbers as base64 of their bytes, little-endian, as pages read them.
 template <class Number>
 [[nodiscard]] std::string text_of(const Number* data, std::size_t n) {
-  return base64({reinterpret_cast<const char*>(data), n * sizeof(Number)});  // NOLINT: bytes are wanted
+  return base64({reinterpret_cast<const char*>(data), n * sizeof(Number)});  // NOLINT: bytes are required
 }
 template <class Number>
 [[nodiscard]] std::string text_of(const std::vector<Number>& v) {

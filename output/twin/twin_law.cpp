@@ -43,7 +43,7 @@ bool is_same(double a, double b, double scale) {
   return std::abs(a - b) <= kSame * (std::abs(scale) + std::abs(a) + std::abs(b));
 }
 
-/// Whether two probes do more together than each by itself.
+/// Whether two probes do more together than each on its own.
 bool act_together(const AnyLaw& law, int p, int q, const std::vector<Trial>& trials, double usual_K) {
   return std::any_of(trials.begin(), trials.end(), [&](const Trial& t) {
     const auto at = [&](std::initializer_list<int> probes) { return law(t.drive, only(t.probe_K, probes, usual_K)); };

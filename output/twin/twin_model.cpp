@@ -76,9 +76,10 @@ TwinTimedLaw timed_law(const Scenario& scenario, const solver::BoundLaw& bound, 
     if (!table)
       throw InputError(
           scenario.machine->where,
-          fmt::format("'{}' depends on temperatures, or on variables of the drive, together in a way that no "
-                      "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/view.md)",
-                      name));
+          fmt::format(
+              "'{}' depends on temperatures, or on variables of the drive, together in a way that no "
+              "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/how-to/view.md)",
+              name));
     auto known = std::find_if(timed.laws.begin(), timed.laws.end(), [&](const TwinLaw& l) { return is_equal(l, *table); });
     timed.of_stretch.push_back(static_cast<int>(known - timed.laws.begin()));
     if (known == timed.laws.end()) timed.laws.push_back(std::move(*table));
@@ -94,7 +95,7 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
     if (effects::changes_drive(e))
       notes.push_back(fmt::format(
           "{} {}", e.name(),
-          e.kind->key == "heat_source" && e.has("lasts") ? "comes behind each stop of the spindle; here it never comes."
+          e.kind->key == "heat_source" && e.has("lasts") ? "comes after each stop of the spindle; here it never comes."
           : e.kind->contribute                           ? "follows what the drive was before; here it is as it is set."
                                : "changes the recorded drive or ambient; here both are as they are set."));
     if (!e.in.empty())
@@ -107,17 +108,18 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
 
 TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& system, const Eigen::VectorXd& start) {
   const MachineModel& machine = *scenario.machine;
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: a unit mass matrix is wanted");
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: the mass matrix must be the unit matrix");
   for (const Cyclogram& c : scenario.cyclograms) {
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
       throw InputError(machine.where,
                        fmt::format("an effect follows the recorded column '{}', which is no input of the page "
-                                   "yet (docs/view.md)",
+                                   "yet (docs/how-to/view.md)",
                                    columns.front()));
   }
   if (system.change_times_s.size() > kMostTimes)
-    throw InputError(machine.where, fmt::format("laws change {} times by themselves; the page holds up to {} (docs/view.md)",
-                                                system.change_times_s.size(), kMostTimes));
+    throw InputError(machine.where,
+                     fmt::format("laws change {} times on their own; the page holds up to {} (docs/how-to/view.md)",
+                                 system.change_times_s.size(), kMostTimes));
   TwinModel model{.drive = ranges_of(scenario),
                   .system = system,
                   .start = start,
@@ -136,7 +138,7 @@ LumpedSystem lumped_system(const MachineModel& model) {
     if (!f.follows_ambient && f.theta.value.size() > 1)
       throw InputError(
           model.where,
-          fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/view.md)", f.name));
+          fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/how-to/view.md)", f.name));
   }
   solver::FullSystem system = machine.system;
   solver::hold_by_exchanges(system);

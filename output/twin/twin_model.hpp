@@ -9,7 +9,7 @@
 
 namespace driftwright::output {
 
-/// A law of a source or exchange between the times at which it changes by itself.
+/// A law of a source or exchange between the times at which it changes on its own.
 struct TwinTimedLaw {
   std::vector<TwinLaw> laws = {};    ///< different ones
   std::vector<int> of_stretch = {};  ///< index of the law before the first time of change, behind it, ...

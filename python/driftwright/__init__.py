@@ -39,7 +39,7 @@ def _table(record):
     return table
 
 
-# Longest first, so that mm_min is found before min; as in docs/record.md.
+# Longest first, so that mm_min is found before min; as in docs/reference/record.md.
 _UNITS = sorted(["rpm", "mm_min", "degC", "K", "um", "mm", "urad", "W", "W_m2", "V", "percent", "count", "1", "s", "min", "h"],
                 key=len, reverse=True)
 
@@ -49,7 +49,7 @@ def _record(table, source=None):
     for header in table.columns:
         unit = next((u for u in _UNITS if str(header).endswith("_" + u)), None)
         if unit is None:
-            raise InputError(f"column '{header}' names no unit; '<channel>_<unit>' is required with one of {', '.join(_UNITS)}")
+            raise InputError(f"column '{header}' names no unit; it must be called '<channel>_<unit>' with one of {', '.join(_UNITS)}")
         columns.append((header[:-len(unit) - 1], unit, np.asarray(table[header], dtype=float).tolist()))
     if table.index.name not in (None, "time_s"):
         raise InputError(f"the index is '{table.index.name}'; time_s is required")

@@ -41,7 +41,7 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
   }
   if (knows("gain") && effect.has("gain")) return;  // in um or urad, as its displacement is
   throw InputError(effect.where,
-                   is_tilt ? fmt::format("'{}' is a tilt; {} wants `tilt` in urad there", effect.place, effect.kind->key)
+                   is_tilt ? fmt::format("'{}' is a tilt; {} requires `tilt` in urad there", effect.place, effect.kind->key)
                            : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
 }
 
@@ -83,7 +83,7 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
       for (const Cyclogram::Column& c : cyclogram.columns) known.push_back(c.header());
       throw InputError(
           effect.where,
-          fmt::format("{} wants the column '{}', which cyclogram '{}' does not have ({}); take a record that has "
+          fmt::format("{} requires the column '{}', which cyclogram '{}' does not have ({}); take a record that has "
                       "it (`{{csv: FILE}}`), or give it in rows (`columns: [duration, speed, {}]`)",
                       effect.name(), name, cyclogram.name,
                       known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
@@ -114,9 +114,10 @@ FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& rec
 void require_nothing_before(const MachineModel& model, const std::string& verb) {
   for (const effects::Effect& e : model.effects) {
     if (effects::drive_change({e}, e.in).before.empty()) continue;
-    throw InputError(e.where, fmt::format("{} has the machine driven before cyclogram '{}'; `{}` begins every cyclogram at the "
-                                          "scenario's `start`: take it out (`simulate`, `diagnose`, `predict` and `view` know it)",
-                                          e.name(), e.in, verb));
+    throw InputError(e.where,
+                     fmt::format("{} has the machine driven before cyclogram '{}'; `{}` begins every cyclogram at the "
+                                 "scenario's `start`: take it out (`simulate`, `diagnose`, `predict` and `view` know it)",
+                                 e.name(), e.in, verb));
   }
 }
 

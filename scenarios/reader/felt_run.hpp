@@ -43,7 +43,7 @@ void require_nothing_before(const MachineModel& model, const std::string& verb);
 [[nodiscard]] std::vector<std::string> sensor_channels(const Record& record);
 
 /// Looks up the sensors, displacements, tilts and cyclograms that effects name.
-/// @throws InputError  for one that is not there, and for an amount that fits no such channel
+/// @throws InputError  for one that does not exist, and for an amount that fits no such channel
 void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& cyclograms);
 
 }  // namespace driftwright::scenarios

@@ -31,7 +31,7 @@ schema::Map programme_schema() {
       .name = "programme, tests",
       .keys = {compulsory("speeds", list(quantity("rpm", 1.0, 1e6), kFewestSpeeds), "one test at each"),
                compulsory("heating", quantity("s", 60.0, 1e7), "time at the speed, from the start on"),
-               compulsory("cooling", quantity("s", 60.0, 1e7), "time at standstill behind it"),
+               compulsory("cooling", quantity("s", 60.0, 1e7), "time at standstill after it"),
                schema::optional("temperature_noise", quantity("K", 0.0, 10.0), p.temperature_noise_K,
                                 "of the tests' readings, white, 1 sigma"),
                schema::optional("displacement_noise", quantity("um", 0.0, 1e3), p.displacement_noise_um,
@@ -50,8 +50,8 @@ schema::Map programme_schema() {
                schema::optional("tolerance", quantity("um", 1e-3, 1e6), p.tolerance_um, "of scheduled corrections")},
       .groups = {{Group::Rule::kAtLeastOne,
                   {"cyclograms", "random"},
-                  "`cyclograms` or `random` is wanted, to judge predictors on"}},
-      .about = "What predictors of drift are judged on by `validate` (docs/prediction.md)."};
+                  "`cyclograms` or `random` is required, to judge predictors on"}},
+      .about = "What predictors of drift are judged on by `validate` (docs/how-to/prediction.md)."};
 }
 
 Programme::Random read_random(const ConfigMap& in) {
@@ -69,7 +69,7 @@ Programme read_programme(const ConfigMap& in) {
   p.test_rpm = tests.quantities("speeds");
   std::sort(p.test_rpm.begin(), p.test_rpm.end());
   if (std::adjacent_find(p.test_rpm.begin(), p.test_rpm.end()) != p.test_rpm.end())
-    tests.fail("speeds", "a speed stands there twice");
+    tests.fail("speeds", "a speed is listed twice");
   p.heating_s = tests.quantity("heating");
   p.cooling_s = tests.quantity("cooling");
   p.temperature_noise_K = tests.quantity("temperature_noise");
@@ -90,7 +90,7 @@ Programme read_programme(const ConfigMap& in) {
     random->reject_unknown_keys();
   }
   if (p.cyclograms.empty() && p.random.count == 0)
-    in.fail("cyclograms", "neither `cyclograms` nor `random` to judge predictors on");
+    in.fail("cyclograms", "`cyclograms` or `random` is required, to judge predictors on");
   p.most_modes = in.integer("most_modes");
   p.model_scatter = in.quantity("model_scatter");
   p.extrapolate = in.flag("extrapolate");
@@ -99,11 +99,9 @@ Programme read_programme(const ConfigMap& in) {
       const double rpm = s.drive.speed_rpm;
       if (p.extrapolate || rpm == 0.0 || (rpm >= p.test_rpm.front() - 1e-9 && rpm <= p.test_rpm.back() + 1e-9)) continue;
       in.map("cyclograms")
-          .fail(
-              c.name,
-              fmt::format("it runs at {:g} rpm, but the tests at {:g} to {:g} rpm; a test there, or `extrapolate: true` in "
-                          "the programme, is wanted",
-                          rpm, p.test_rpm.front(), p.test_rpm.back()));
+          .fail(c.name, fmt::format("it runs at {:g} rpm, but the tests at {:g} to {:g} rpm; add a test there, or write "
+                                    "`extrapolate: true` in the programme",
+                                    rpm, p.test_rpm.front(), p.test_rpm.back()));
     }
   }
   p.tolerance_um = in.quantity("tolerance");

@@ -45,10 +45,10 @@ schema::Key ambient_key() {
                               .about = "The ambient temperature from a record."};
   return compulsory(
       "ambient",
-      Ways{rows({quantity("s"), temperature(kColdestAmbient_K, kHottestAmbient_K)}), temperature(kColdestAmbient_K, kHottestAmbient_K),
-           schema::map(record)},
+      Ways{rows({quantity("s"), temperature(kColdestAmbient_K, kHottestAmbient_K)}),
+           temperature(kColdestAmbient_K, kHottestAmbient_K), schema::map(record)},
       "ambient air: rows of [time, temperature], linear between and constant outside; one temperature; or a record "
-      "(docs/cyclograms.md)");
+      "(docs/how-to/cyclograms.md)");
 }
 
 TimeSeries read_ambient(const ConfigMap& in, double reference_K) {
@@ -56,7 +56,8 @@ TimeSeries read_ambient(const ConfigMap& in, double reference_K) {
   if (!in.is_list("ambient")) return {{0.0}, {in.quantity("ambient") - reference_K}};
   TimeSeries ambient;
   for (const std::vector<double>& row : in.rows("ambient")) {
-    if (!ambient.time_s.empty() && !(row[0] > ambient.time_s.back())) in.fail("ambient", "times must increase from row to row");
+    if (!ambient.time_s.empty() && !(row[0] > ambient.time_s.back()))
+      in.fail("ambient", "times must increase from row to row");
     ambient.time_s.push_back(row[0]);
     ambient.value.push_back(row[1] - reference_K);
   }

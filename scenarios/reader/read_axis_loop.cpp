@@ -40,12 +40,15 @@ Servo read_servo(const ConfigMap& in) {
   s.largest_acceleration_um_s2 = in.quantity("largest_acceleration");
   // The speed loop of a sampled drive with a = gain (v_ref - v) is stable below 2 / period, the cascade below a quarter of the inner loop.
   if (!(s.speed_gain_1_s * s.period_s <= 1.0))
-    in.fail("speed_gain", fmt::format("at most 1 / period = {:g} 1/s, or the speed rings", 1.0 / s.period_s));
+    in.fail("speed_gain",
+            fmt::format("the value must be at most 1 / period = {:g} 1/s, or the speed rings", 1.0 / s.period_s));
   if (!(s.position_gain_1_s <= 0.25 * s.speed_gain_1_s))
-    in.fail("position_gain", fmt::format("at most a quarter of speed_gain = {:g} 1/s", 0.25 * s.speed_gain_1_s));
+    in.fail("position_gain",
+            fmt::format("the value must be at most a quarter of speed_gain = {:g} 1/s", 0.25 * s.speed_gain_1_s));
   if (const double least_s = least_speed_reset_s(s); !(s.speed_reset_s > least_s))
-    in.fail("speed_reset", fmt::format("{:g} s; more than {:.3g} s, or the sampled loop is unstable at these gains",
-                                       s.speed_reset_s, least_s));
+    in.fail("speed_reset",
+            fmt::format("{:g} s is too short; it must be more than {:.3g} s, or the sampled loop is unstable at these gains",
+                        s.speed_reset_s, least_s));
   in.reject_unknown_keys();
   return s;
 }
@@ -56,13 +59,15 @@ AxisMotion read_motion(const ConfigMap& in) {
   m.feed_um_s = in.quantity("feed");
   m.every_s = in.quantity("every");
   if (!(m.stroke_um / m.feed_um_s <= 0.5 * m.every_s))
-    in.fail("every",
-            fmt::format("a pass takes {:g} s; at least twice that, or there is no rest in which errors are looked at",
-                        m.stroke_um / m.feed_um_s));
+    in.fail(
+        "every",
+        fmt::format(
+            "a pass takes {:g} s; `every` must be at least twice that, or there is no rest in which errors are looked at",
+            m.stroke_um / m.feed_um_s));
   if (!(m.every_s > m.busy_s()))
-    in.fail("every",
-            fmt::format("{:g} s; more than {:g} s, the pass and the time to settle behind it, or the axis never rests",
-                        m.every_s, m.busy_s()));
+    in.fail("every", fmt::format("{:g} s is too short; it must be more than {:g} s, the pass and the time to settle after "
+                                 "it, or the axis never rests",
+                                 m.every_s, m.busy_s()));
   in.reject_unknown_keys();
   return m;
 }
@@ -124,11 +129,11 @@ schema::Map axis_loop_schema() {
                                     "a correction changes once it is this much more than half an insertion off"),
                    schema::optional("seed", integer(0, 1'000'000'000), static_cast<double>(loop.seed), "of the noise"),
                    schema::optional("growth", schema::map(growth), Said{"none"}, "of the screw or scale itself")},
-          .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are wanted"},
+          .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are required"},
                      {Group::Rule::kAtMostOne,
                       {"pitch", "signal_period"},
-                      "either `signal_period`, or `pitch` and `lines`, is wanted"}},
-          .about = "The study's regression through a pulse injector, edge by edge (docs/injector.md)."};
+                      "`signal_period` and `pitch` with `lines` exclude each other; write only one of them"}},
+          .about = "The study's regression through a pulse injector, edge by edge (docs/how-to/injector.md)."};
 }
 
 AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& context) {
@@ -156,12 +161,12 @@ AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& cont
   }
   constexpr double kMostSamples = 1e6, kMostEdges = 3e8;
   if (!(context.duration_s / loop.sampling_s <= kMostSamples))
-    in.fail("sampling", fmt::format("{:.1e} samples of the judged cyclogram; at most {:.0e}",
+    in.fail("sampling", fmt::format("the judged cyclogram has {:.1e} samples; at most {:.0e} are allowed",
                                     context.duration_s / loop.sampling_s, kMostSamples));
   const double n_edges = context.duration_s / loop.motion.every_s * loop.motion.stroke_um / loop.encoder.quarter_um();
   if (!(n_edges <= kMostEdges))
-    in.fail("motion",
-            fmt::format("{:.1e} edges in the judged cyclogram; at most {:.0e}: take a shorter stroke", n_edges, kMostEdges));
+    in.fail("motion", fmt::format("the judged cyclogram has {:.1e} edges; at most {:.0e} are allowed; take a shorter stroke",
+                                  n_edges, kMostEdges));
   in.reject_unknown_keys();
   return s;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// An axis with a pulse injector in its feedback: `axis_loop:` of a scenario (docs/injector.md).
+// An axis with a pulse injector in its feedback: `axis_loop:` of a scenario (docs/how-to/injector.md).
 
 #include <string>
 #include <vector>

@@ -22,7 +22,7 @@ char read_separator(const ConfigMap& in) {
 /// The column that a map names by `column` or `position`.
 ColumnPlace read_place(const ConfigMap& in, bool has_header) {
   if (in.has("position")) return {.name = "", .position = in.integer("position"), .where = in.where("position")};
-  if (!has_header) in.fail("column", "without a header columns have no names; `position` (from 1) is wanted");
+  if (!has_header) in.fail("column", "without a header columns have no names; write `position` (from 1) instead");
   return {.name = in.text("column"), .position = 0, .where = in.where("column")};
 }
 
@@ -40,14 +40,14 @@ TimeColumns read_time(const ConfigMap& in, bool has_header) {
   TimeColumns time;
   if (in.has("interval")) {
     for (const char* key : {"unit", "format", "zone", "milliseconds"}) {
-      if (in.has(key)) in.fail(key, "`interval` counts rows; no column tells the time then");
+      if (in.has(key)) in.fail(key, "`interval` counts rows; no column gives the time then");
     }
     time.interval_s = in.quantity("interval");
     in.reject_unknown_keys();
     return time;
   }
   if (in.is_list("column")) {
-    if (!has_header) in.fail("column", "without a header columns have no names; `position` (from 1) is wanted");
+    if (!has_header) in.fail("column", "without a header columns have no names; write `position` (from 1) instead");
     for (const std::string& name : in.texts("column"))
       time.columns.push_back({.name = name, .position = 0, .where = in.where("column")});
   } else {
@@ -56,11 +56,11 @@ TimeColumns read_time(const ConfigMap& in, bool has_header) {
   if (in.has("unit")) {
     for (const char* key : {"format", "zone", "milliseconds"}) {
       if (in.has(key))
-        in.fail(
-            key,
-            "either `unit` (the time is a number) or `format` and what goes with it (it is a stamp) is wanted, not both");
+        in.fail(key,
+                "`unit` (the time is a number) and `format` with what belongs to it (it is a stamp) exclude each other; "
+                "write only one of them");
     }
-    if (time.columns.size() > 1) in.fail("column", "a number in `unit` stands in one column");
+    if (time.columns.size() > 1) in.fail("column", "a number in `unit` must be in one column");
     time.unit = in.text("unit");
     try {
       if (!std::isfinite(unit_factor(time.unit, "s"))) in.fail("unit", fmt::format("'{}' is no unit of time", time.unit));
@@ -101,9 +101,8 @@ MappedChannel read_channel(const ConfigMap& in, const std::string& name, bool ha
   MappedChannel channel;
   channel.name = name;
   if (has_tags != in.has("tag")) {
-    in.fail(has_tags ? "column" : "tag", has_tags
-                                             ? "a log of tags names its channels by `tag`"
-                                             : "`tag` goes with the key `tags` of the map, which says where tags stand");
+    in.fail(has_tags ? "column" : "tag", has_tags ? "a log of tags names its channels by `tag`"
+                                                  : "`tag` requires the key `tags` of the map, which says where tags are");
   }
   channel.column =
       has_tags ? ColumnPlace{.name = in.text("tag"), .position = 0, .where = in.where("tag")} : read_place(in, has_header);
@@ -135,15 +134,15 @@ schema::Map columns_schema() {
       .keys = {schema::optional("column", Ways{text(), list(text(), 1)},
                                 "its name in the header; several (date, time of day) are joined"),
                position(),
-               schema::optional("interval", quantity("s", 1e-9, 1e7), "or: time from row to row, where no column tells it"),
+               schema::optional("interval", quantity("s", 1e-9, 1e7), "or: time from row to row, where no column gives it"),
                schema::optional("unit", text(), "of a time that is a number"),
-               schema::optional("format", text(), Said{"found by itself"}, "of a time that is a stamp"),
+               schema::optional("format", text(), Said{"found automatically"}, "of a time that is a stamp"),
                schema::optional("zone", text(), Said{"clocks do not change"},
                                 "time zone of the stamps, such as Europe/Prague"),
                schema::optional("milliseconds", text(), "column that has them apart from the stamp")},
       .groups = {{Group::Rule::kExactlyOne,
                   {"column", "position", "interval"},
-                  "one of `column` (a name), `position` (from 1) and `interval` is wanted for the time"}}};
+                  "exactly one of `column` (a name), `position` (from 1) and `interval` is required for the time"}}};
   const schema::Map channel = {
       .name = "columns, channels",
       .keys = {schema::optional("column", text(), "its name in the header"), position(),
@@ -151,11 +150,12 @@ schema::Map columns_schema() {
                compulsory("unit", text(), "that its numbers are in; what records carry is converted"),
                schema::optional("factor", quantity("1", -1e12, 1e12), 1.0, "on its numbers, not 0"),
                schema::optional("offset", quantity("", -1e12, 1e12), Said{"0"},
-                                "added behind the factor; in its unit, of a temperature in K"),
+                                "added after the factor; in its unit, of a temperature in K"),
                schema::optional("magnitude", flag(), "false", "true: without its sign")},
       .groups = {{Group::Rule::kExactlyOne,
                   {"column", "position", "tag"},
-                  "one of `column` (a name), `position` (from 1) and, in a log of tags, `tag` is wanted for the channel"}},
+                  "exactly one of `column` (a name), `position` (from 1) and, in a log of tags, `tag` is required for the "
+                  "channel"}},
       .about = "A channel of the record, by its name without unit."};
   const schema::Map tags = {
       .name = "columns, tags",
@@ -169,18 +169,18 @@ schema::Map columns_schema() {
       .name = "columns, channels by name",
       .others = {schema::optional("channel", schema::map(channel), "where it is and what it is in")}};
   return {.name = "columns",
-          .keys = {schema::optional("separator", choice({";", ",", "|", "tab", "blank"}), Said{"found by itself"},
+          .keys = {schema::optional("separator", choice({";", ",", "|", "tab", "blank"}), Said{"found automatically"},
                                     "between cells"),
                    schema::optional("decimal", choice({".", ","}), ".", "sign of numbers"),
-                   schema::optional("header_line", Ways{integer(1, kMostLines), choice({"none"})}, Said{"found by itself"},
-                                    "line of the header, or `none`"),
+                   schema::optional("header_line", Ways{integer(1, kMostLines), choice({"none"})},
+                                    Said{"found automatically"}, "line of the header, or `none`"),
                    schema::optional("end", text(), Said{"the end of the file"},
-                                    "what the first line behind the data begins with"),
-                   schema::optional("missing", list(text()), "words that stand for a missing value"),
-                   compulsory("time", schema::map(time), "which columns tell it"),
-                   schema::optional("tags", schema::map(tags), "of a log with a tag in each row: where tag and value stand"),
+                                    "what the first line after the data begins with"),
+                   schema::optional("missing", list(text()), "words that mark a missing value"),
+                   compulsory("time", schema::map(time), "which columns give it"),
+                   schema::optional("tags", schema::map(tags), "of a log with a tag in each row: where tag and value are"),
                    compulsory("channels", schema::map(channels), "by name: which columns become channels")},
-          .about = "How records are written where a logger wrote them (docs/record.md)."};
+          .about = "How records are written where a logger wrote them (docs/reference/record.md)."};
 }
 
 ColumnMap read_columns(const ConfigMap& in) {
@@ -196,10 +196,11 @@ ColumnMap read_columns(const ConfigMap& in) {
   if (const auto tags = in.optional_map("tags")) map.tags = read_tags(*tags, has_header, map.time);
   const ConfigMap channels = in.map("channels");
   for (const std::string& name : channels.keys()) {
-    if (!is_name(name)) channels.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
+    if (!is_name(name))
+      channels.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
     map.channels.push_back(read_channel(channels.map(name), name, has_header, map.tags.has_value()));
   }
-  if (map.channels.empty()) in.fail("channels", "no channel; at least one column is wanted");
+  if (map.channels.empty()) in.fail("channels", "there is no channel; at least one column is required");
   in.reject_unknown_keys();
   return map;
 }

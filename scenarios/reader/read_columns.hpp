@@ -1,5 +1,5 @@
 #pragma once
-// The key `columns`: how the records of a scenario are written where a logger wrote them (docs/record.md).
+// The key `columns`: how the records of a scenario are written where a logger wrote them (docs/reference/record.md).
 
 #include "base/column_map.hpp"
 #include "base/config_map.hpp"

@@ -80,7 +80,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
   std::vector<Cyclogram::Section> sections;
   for (const std::vector<double>& row : in.rows(key, entries)) {
     if (!(row[0] >= kShortest_s))
-      in.fail(key, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
+      in.fail(key, fmt::format("the section lasts {:g} s; its duration must be 1 ms or more", row[0]));
     Cyclogram::Section section{row[0], {}};
     std::size_t n_before = 0;  // of the drive
     for (std::size_t j = 0; j < columns.is_further.size(); ++j) {
@@ -93,7 +93,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
       }
       const std::size_t i = n_before++;
       if (!(value >= 0.0 && value <= given[i]->most)) {
-        in.fail(key, fmt::format("a {} of {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
+        in.fail(key, fmt::format("the {} is {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
                                  given[i]->most, given[i]->unit));
       }
       *given[i]->place(section.drive) = value;
@@ -110,7 +110,8 @@ RowColumns row_columns(const ConfigMap& in) {
   for (const Column& c : columns()) known.emplace_back(c.name);
   const std::vector<std::string> names = in.texts("columns");
   if (names.empty() || names[0] != "duration")
-    in.fail("columns", fmt::format("the first column is duration; after it any of {}", fmt::join(known, ", ")));
+    in.fail("columns",
+            fmt::format("the first column must be duration; after it any of {} are allowed", fmt::join(known, ", ")));
   RowColumns columns_given;
   std::vector<const Column*>& given = columns_given.drive;
   for (std::size_t i = 1; i < names.size(); ++i) {
@@ -125,7 +126,7 @@ RowColumns row_columns(const ConfigMap& in) {
     }
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
         names.begin() + static_cast<std::ptrdiff_t>(i))
-      in.fail("columns", fmt::format("'{}' stands there twice", names[i]));
+      in.fail("columns", fmt::format("'{}' is listed twice", names[i]));
     columns_given.is_further.push_back(further.has_value());
     if (further) {
       columns_given.further.push_back(*further);
@@ -190,7 +191,7 @@ std::vector<schema::Key> nc_keys() {
   using namespace schema;
   return {
       schema::optional("dialect", choice(kDialects), kDialects.front().c_str(),
-                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO behind G291), Heidenhain "
+                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO after G291), Heidenhain "
                        "(DIN/ISO or plain language)"),
       schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
                        "speed of rapids along their line; compulsory for programs with rapids"),
@@ -243,7 +244,7 @@ schema::Map cyclograms_schema() {
           .others = {schema::optional(
               "cyclogram", Ways{schema::rows({quantity("s"), quantity("rpm")}), one_of({rows_map, csv, nc})},
               "rows of [duration, speed]; or a map with further columns, a record or an NC program")},
-          .about = "What drives the machine (docs/cyclograms.md)."};
+          .about = "What drives the machine (docs/how-to/cyclograms.md)."};
 }
 
 Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
@@ -278,7 +279,8 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
             fmt::format("{} times {} sections are more than {:g}", repeat, cyclogram.sections.size(), kMostSections));
   repeat_columns(cyclogram, repeat);
   cyclogram.sections = repeated(cyclogram.sections, repeat);
-  if (cyclogram.sections.empty()) cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is wanted");
+  if (cyclogram.sections.empty())
+    cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is required");
   return cyclogram;
 }
 
@@ -297,7 +299,7 @@ std::map<int, double> read_parameter_file(const std::string& path) {
       const int parameter = std::stoi(line, &behind);
       parameters[parameter] = parse_number(plain_name(line.substr(behind)), '.');
     } catch (const std::exception&) {
-      throw InputError(Where{path, number, 1, "", line}, "a parameter's number and value are wanted, such as 5221 100.0");
+      throw InputError(Where{path, number, 1, "", line}, "a parameter's number and value are required, such as 5221 100.0");
     }
   }
   return parameters;

@@ -1,5 +1,5 @@
 #pragma once
-// What drives the machine, as scenarios write it: rows, a record CSV or an NC program (docs/cyclograms.md).
+// What drives the machine, as scenarios write it: rows, a record CSV or an NC program (docs/how-to/cyclograms.md).
 
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"

@@ -18,7 +18,7 @@ schema::Map materials_schema() {
   like.name = "materials, like one of the library";
   like.keys.insert(like.keys.begin(),
                    compulsory("like", choice(names),
-                              "of the library (docs/materials.md); what stands beside it takes the place of its value"));
+                              "of the library (docs/reference/materials.md); what is written beside it replaces its value"));
   like.keys.push_back(known_to);
   like.when_key = "like";
   schema::Map values = solver::material_schema();

@@ -14,16 +14,15 @@ schema::Value stiffness() {
 
 schema::Map support_schema() {
   using namespace schema;
-  return {
-      .name = "supports",
-      .keys = {compulsory("surface", text(), "of the mesh; one surface may have several supports"),
-               schema::optional("fixed", list(choice({"x", "y", "z"})), "axes along which it does not move"),
-               schema::optional("sliding", flag(), "true: it does not move along its normal; plane or curved"),
-               schema::optional("springs", row({stiffness(), stiffness(), stiffness()}),
-                                "stiffness of the whole surface along x, y, z; 0 N/m: none")},
-      .groups = {{Group::Rule::kAtLeastOne,
-                  {"fixed", "sliding", "springs"},
-                  "how is this surface held? `fixed: [x, y, z]`, `sliding: true` or `springs: [kx, ky, kz]` is wanted"}}};
+  return {.name = "supports",
+          .keys = {compulsory("surface", text(), "of the mesh; one surface may have several supports"),
+                   schema::optional("fixed", list(choice({"x", "y", "z"})), "axes along which it does not move"),
+                   schema::optional("sliding", flag(), "true: it does not move along its normal; plane or curved"),
+                   schema::optional("springs", row({stiffness(), stiffness(), stiffness()}),
+                                    "stiffness of the whole surface along x, y, z; 0 N/m: none")},
+          .groups = {{Group::Rule::kAtLeastOne,
+                      {"fixed", "sliding", "springs"},
+                      "how is this surface held? Write `fixed: [x, y, z]`, `sliding: true` or `springs: [kx, ky, kz]`"}}};
 }
 
 schema::Map joint_schema() {
@@ -39,13 +38,12 @@ schema::Map joint_schema() {
                schema::optional("axis", choice({"x", "y", "z"}), "of a ring, such as a bearing"),
                schema::optional("axial_stiffness", stiffness(), "of the ring, along its axis; 0 N/m: a floating bearing"),
                schema::optional("radial_stiffness", stiffness(), "of the ring: force per sideways displacement")},
-      .groups = {
-          {Group::Rule::kExactlyOne,
-           {"mechanics", "normal_stiffness", "axis"},
-           "one of `mechanics: tied | sliding | none`, `normal_stiffness` with `tangential_stiffness`, and `axis` with "
-           "`axial_stiffness` and `radial_stiffness` is wanted"},
-          {Group::Rule::kAllOrNone, {"normal_stiffness", "tangential_stiffness"}, "both are wanted"},
-          {Group::Rule::kAllOrNone, {"axis", "axial_stiffness", "radial_stiffness"}, "all three are wanted"}}};
+      .groups = {{Group::Rule::kExactlyOne,
+                  {"mechanics", "normal_stiffness", "axis"},
+                  "exactly one of `mechanics: tied | sliding | none`, `normal_stiffness` with `tangential_stiffness`, and "
+                  "`axis` with `axial_stiffness` and `radial_stiffness` is required"},
+                 {Group::Rule::kAllOrNone, {"normal_stiffness", "tangential_stiffness"}, "both are required"},
+                 {Group::Rule::kAllOrNone, {"axis", "axial_stiffness", "radial_stiffness"}, "all three are required"}}};
 }
 
 SupportEntry read_support(const ConfigMap& in) {

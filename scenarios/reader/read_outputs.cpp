@@ -40,7 +40,7 @@ BySensitivity read_sensitivities(const ConfigMap& in) {
   }
   if (by.terms.empty()) {
     in.fail("sensitivities",
-            "a list of {node or region, sensitivity} is wanted, such as [{node: spindle, sensitivity: 8 um/K}]");
+            "this must be a list of {node or region, sensitivity}, such as [{node: spindle, sensitivity: 8 um/K}]");
   }
   return by;
 }
@@ -71,10 +71,8 @@ schema::Map sensor_schema() {
                    schema::optional("region", text(), "of the mesh that it sits on"),
                    schema::optional("at", schema::vector3("m"), "where on it; moved onto the region by at most 5 mm"),
                    schema::optional("node", text(), "or: a lumped node, or `ambient`")},
-          .groups = {{Group::Rule::kExactlyOne,
-                      {"node", "region"},
-                      "where does it sit? `region` and `at`, or `node`, is wanted"},
-                     {Group::Rule::kAllOrNone, {"region", "at"}, "both are wanted"}},
+          .groups = {{Group::Rule::kExactlyOne, {"node", "region"}, "where does it sit? Write `region` and `at`, or `node`"},
+                     {Group::Rule::kAllOrNone, {"region", "at"}, "both are required"}},
           .about = "Thermometers."};
 }
 
@@ -84,7 +82,7 @@ schema::Map displacement_schema() {
       .keys = {schema::optional("node", text(), "lumped node whose temperature it follows"),
                schema::optional("region", text(), "or: region of the mesh, by its mean temperature"),
                compulsory("sensitivity", quantity("um/K", -1e6, 1e6), "positive moves the tool along the axis")},
-      .groups = {{Group::Rule::kExactlyOne, {"node", "region"}, "one of `node` and `region` is wanted"}}};
+      .groups = {{Group::Rule::kExactlyOne, {"node", "region"}, "exactly one of `node` and `region` is required"}}};
   const schema::Map positions = {.name = "displacements, positions",
                                  .keys = {compulsory("axis", axis(), "that the table travels along"),
                                           compulsory("at", list(quantity("m"), 1), "where it has travelled to")}};
@@ -97,13 +95,13 @@ schema::Map displacement_schema() {
            schema::optional("table", point(), Said{"the ground"}, "point that the indicator's stand moves and turns with"),
            schema::optional(
                "positions", schema::map(positions),
-               "one output for each place that the table has travelled to: the indicator then stands on another spot of it"),
+               "one output for each place that the table has travelled to: the indicator then rests on another spot of it"),
            schema::optional("sensitivities", schema::maps(term),
                             "summed over T - T_reference, alone or beside what the points do (below)")},
-      .groups = {{Group::Rule::kAllOrNone, {"along", "tool"}, "both are wanted"},
+      .groups = {{Group::Rule::kAllOrNone, {"along", "tool"}, "both are required"},
                  {Group::Rule::kAtLeastOne,
                   {"along", "sensitivities"},
-                  "points (`along`, `tool`) or `sensitivities` are wanted"}},
+                  "points (`along`, `tool`) or `sensitivities` are required"}},
       .about = "Displacements of the tool against the table: actual - commanded."};
 }
 

@@ -82,7 +82,7 @@ schema::Map schedule_schema() {
                schema::optional("parts", integer(1, 1000), 1, "made one after another by the program"),
                schema::optional("between", quantity("s", 0.0, 1e7), 0.0, "at rest between two of them"),
                schema::optional("drift_from", choice({"reference", "start"}), "reference", "what the drift counts from")},
-      .about = "Corrections written into an NC program (docs/schedule.md)."};
+      .about = "Corrections written into an NC program (docs/how-to/schedule.md)."};
   for (Key& key : nc_keys()) map.keys.push_back(std::move(key));
   return map;
 }
@@ -109,7 +109,8 @@ ScheduleSettings read_schedule(const ConfigMap& in, const std::vector<Displaceme
     }
   }
   if (s.axes.empty())
-    in.fail("axes", "no axis to correct; a map such as {z: {displacement: nose_z, sign: +1, tolerance: 10 um}} is wanted");
+    in.fail("axes",
+            "no axis is to be corrected; write a map such as {z: {displacement: nose_z, sign: +1, tolerance: 10 um}}");
   s.policy = in.choice("policy");
   s.absolute = in.choice("offset") == "absolute";
   for (const char* key : {"base_offset", "work_offset"}) {
@@ -120,7 +121,7 @@ ScheduleSettings read_schedule(const ConfigMap& in, const std::vector<Displaceme
   }
   s.work_offset = kWorkOffsets.at(in.choice("work_offset"));
   if (s.absolute && !in.has("base_offset"))
-    in.fail("offset", "absolute offsets want `base_offset`, what the offset holds without corrections");
+    in.fail("offset", "absolute offsets require `base_offset`, what the offset holds without corrections");
   if (s.absolute) {
     const Eigen::Vector3d base_m = in.vector3("base_offset");
     s.base_offset_m = {base_m[0], base_m[1], base_m[2]};

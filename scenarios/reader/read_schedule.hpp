@@ -1,5 +1,5 @@
 #pragma once
-// What the corrections of an NC program are made for: `schedule:` of a scenario (docs/scenario.md).
+// What the corrections of an NC program are made for: `schedule:` of a scenario (docs/reference/scenario.md).
 
 #include <vector>
 

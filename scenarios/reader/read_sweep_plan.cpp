@@ -28,7 +28,7 @@ Where where_of(const ConfigMap& in, const std::string& key, const ConfigNode& no
 }
 
 Quantity read_number(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
-  if (!node.is_scalar()) throw InputError(where_of(in, key, node), "a number with its unit is wanted, such as 300 N");
+  if (!node.is_scalar()) throw InputError(where_of(in, key, node), "this must be a number with its unit, such as 300 N");
   try {
     return split_quantity(node.text);
   } catch (const RangeError& e) {
@@ -50,7 +50,7 @@ double read_number_in_unit(const ConfigMap& in, const std::string& key, const Co
 void read_values(const ConfigMap& in, Variation& v) {
   const ConfigNode& values = *in.value("values");
   if (!(values.is_list() || values.is_map()) || values.items.empty())
-    in.fail("values", "a list of values is wanted, or a map of names to values; at least one");
+    in.fail("values", "this must be a list of values, or a map of names to values; at least one is required");
   try {
     std::vector<double> numbers;
     for (const ConfigNodePtr& node : values.items) {
@@ -83,7 +83,7 @@ void read_steps(const ConfigMap& in, Variation& v) {
   const int n = in.integer("steps");
   const bool is_log = in.choice("spacing") == "log";
   if (is_log && (has_offset(v.unit) || !(first.number > 0.0 && last > 0.0)))
-    in.fail("from", "logarithmic steps want both ends above 0, and no degC");
+    in.fail("from", "logarithmic steps require both ends above 0, and no degC");
   for (double number : is_log ? log_steps(first.number, last, n) : linear_steps(first.number, last, n))
     v.values.push_back(v.value_of(number));
 }
@@ -91,13 +91,15 @@ void read_steps(const ConfigMap& in, Variation& v) {
 /// `uniform: [a, b]`, `log_uniform: [a, b]`.
 void read_range(const ConfigMap& in, const std::string& key, Variation& v) {
   const ConfigNode& range = *in.value(key);
-  if (!range.is_list() || range.items.size() != 2) in.fail(key, "two numbers with units are wanted, such as [200 N, 400 N]");
+  if (!range.is_list() || range.items.size() != 2)
+    in.fail(key, "these must be two numbers with units, such as [200 N, 400 N]");
   const Quantity low = read_number(in, key, *range.items[0]);
   v.unit = low.unit;
   const double high = read_number_in_unit(in, key, *range.items[1], v);
   if (!(low.number < high)) in.fail(key, "the first number must be below the second");
   const bool is_log = key == "log_uniform";
-  if (is_log && (has_offset(v.unit) || !(low.number > 0.0))) in.fail(key, "log_uniform wants numbers above 0, and no degC");
+  if (is_log && (has_offset(v.unit) || !(low.number > 0.0)))
+    in.fail(key, "log_uniform requires numbers above 0, and no degC");
   v.spread = {is_log ? Spread::Kind::kLogUniform : Spread::Kind::kUniform, low.number, high};
 }
 
@@ -114,7 +116,7 @@ void read_normal(const ConfigMap& in, Variation& v) {
   } catch (const RangeError& e) {
     normal.fail("sd", e.what());
   }
-  if (has_offset(sd.unit)) normal.fail("sd", "a temperature difference in K is wanted");
+  if (has_offset(sd.unit)) normal.fail("sd", "this must be a temperature difference in K");
   if (!(sd.number > 0.0)) normal.fail("sd", "the standard deviation must be above 0");
 }
 
@@ -158,7 +160,7 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
   }
   if (v.spread) v.is_number = true;
   if (v.spread && design != Design::kLatinHypercube)
-    in.fail(kind, fmt::format("a distribution wants `design: latin_hypercube`; a list or grid wants `values`, or "
+    in.fail(kind, fmt::format("a distribution requires `design: latin_hypercube`; a list or grid requires `values`, or "
                               "`from`, `to` and `steps`"));
   in.reject_unknown_keys();
   return v;
@@ -237,7 +239,7 @@ std::vector<CollectedScalar> read_collect(const ConfigMap& in, const Scenario& s
     const auto found = std::find(known.begin(), known.end(), channel);
     if (found == known.end()) {
       const std::string near = nearest_word(channel, known);
-      in.fail("collect", fmt::format("no channel '{}'; there are {}.{}", channel, fmt::join(known, ", "),
+      in.fail("collect", fmt::format("there is no channel '{}'; there are {}.{}", channel, fmt::join(known, ", "),
                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
     }
     const std::string& unit = channels[static_cast<std::size_t>(found - known.begin())].second;
@@ -248,7 +250,7 @@ std::vector<CollectedScalar> read_collect(const ConfigMap& in, const Scenario& s
     const auto scalar = std::find_if(scalar_names().begin(), scalar_names().end(),
                                      [&](const auto& s) { return s.first == text.substr(channel.size() + 1); });
     if (scalar == scalar_names().end())
-      in.fail("collect", fmt::format("'{}': after the dot one of {} is wanted", text, fmt::join(scalars, ", ")));
+      in.fail("collect", fmt::format("'{}': one of {} is required after the dot", text, fmt::join(scalars, ", ")));
     of_each.push_back({"", channel, unit, scalar->second});
   }
   std::vector<CollectedScalar> collect;
@@ -270,8 +272,8 @@ std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& sc
   const std::vector<std::string> names = in.texts("cyclograms");
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    in.fail("cyclograms",
-            fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+    in.fail("cyclograms", fmt::format("there is no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
+                                      did_you_mean(name, known)));
   }
   return names;
 }
@@ -295,9 +297,9 @@ schema::Map variation_schema() {
                    schema::optional("log_uniform", row({number, number}), "the same for its logarithm"),
                    schema::optional("normal", schema::map(normal), "or: about a mean")},
           .groups = {{Group::Rule::kExactlyOne, kKinds,
-                      fmt::format("one of {} is wanted beside the key", fmt::join(kKinds, ", "))},
-                     {Group::Rule::kAllOrNone, {"from", "to", "steps"}, "all three are wanted"},
-                     {Group::Rule::kWantFirst, {"from", "spacing"}, "`spacing` goes with `from`, `to` and `steps`"}},
+                      fmt::format("exactly one of {} is required beside the key", fmt::join(kKinds, ", "))},
+                     {Group::Rule::kAllOrNone, {"from", "to", "steps"}, "all three are required"},
+                     {Group::Rule::kWantFirst, {"from", "spacing"}, "`spacing` requires `from`, `to` and `steps`"}},
           .about = "What varies."};
 }
 
@@ -373,7 +375,7 @@ const std::vector<schema::Map>& sweep_schemas() {
                  schema::optional("collect", list(text(), 1), Said{"every displacement, tilt and thermometer"},
                                   "channels (for peak, time_of_peak and end) or `channel.scalar`")},
         .when_key = "design",
-        .about = "Many variants of one scenario (docs/sweep.md)."};
+        .about = "Many variants of one scenario (docs/how-to/sweep.md)."};
     schema::Map list = common, grid = common, hypercube = common;
     list.when_word = "list";
     grid.when_word = "grid";

@@ -49,7 +49,7 @@ std::vector<TableRing> read_rings(const ConfigMap& in, const TableSettings& tabl
   }
   const double length_m = rings.back().at_m[0] - rings.front().at_m[0];
   if (!(std::abs(length_m) >= compensation::kLeastRingDistance_m))
-    in.fail("rings", "the first and the last ring are identical along x; they tell no scale");
+    in.fail("rings", "the first and the last ring are identical along x; they give no scale");
   if (length_m < 0.0) in.fail("rings", "the rings are swapped: list them by rising x");
   return rings;
 }
@@ -72,7 +72,7 @@ compensation::ProbeStudySettings read_probe(const ConfigMap& in) {
   p.encoder_step_m = in.quantity("encoder_step");
   s.feeds_m_s = in.quantities("feeds");
   if (!std::is_sorted(s.feeds_m_s.begin(), s.feeds_m_s.end()) || s.feeds_m_s.front() == s.feeds_m_s.back()) {
-    in.fail("feeds", "two rising feeds at least are wanted");
+    in.fail("feeds", "at least two rising feeds are required");
   }
   s.reference_feed_m_s = in.quantity("reference_feed") * 1e-3 / 60.0;
   s.deceleration_m_s2 = in.quantity("deceleration");
@@ -112,7 +112,7 @@ schema::Map table_schema() {
                                 "where along the axis scale and table coordinates are the same")},
       .groups = {{Group::Rule::kExactlyOne,
                   {"sensor", "sensors"},
-                  "one of `sensor` and `sensors` (a list, for their mean) is wanted"}},
+                  "exactly one of `sensor` and `sensors` (a list, for their mean) is required"}},
       .about = "A linear scale: what the control takes for length."};
   const schema::Map ring = {.name = "table, rings",
                             .keys = {compulsory("name", schema::name(), "of the ring"),
@@ -184,7 +184,7 @@ schema::Map table_schema() {
                    compulsory("control", schema::map(control), "the control's own compensation"),
                    compulsory("probe", schema::map(probe), "the touch probe"),
                    schema::optional("readings", schema::map(readings), "of others to compare with")},
-          .about = "A long table with scale, rings and probe; `run` is that study then (docs/table.md)."};
+          .about = "A long table with scale, rings and probe; `run` is that study then (docs/how-to/table.md)."};
 }
 
 std::vector<Eigen::Vector3d> table_points(const TableSettings& t) {

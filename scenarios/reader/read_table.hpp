@@ -1,5 +1,5 @@
 #pragma once
-// A long table, its scale, its reference rings and its probe: `table:` of a scenario (docs/table.md).
+// A long table, its scale, its reference rings and its probe: `table:` of a scenario (docs/how-to/table.md).
 
 #include <optional>
 #include <vector>

@@ -19,7 +19,7 @@ struct RecordPart {
   [[nodiscard]] bool is_whole() const { return from_s == 0.0 && until_s == std::numeric_limits<double>::infinity(); }
 };
 
-/// "run.csv", "run.csv:0h..20h", "run.csv:90min..", "run.csv:..2h". What names a file as it stands is that file.
+/// "run.csv", "run.csv:0h..20h", "run.csv:90min..", "run.csv:..2h". What is the name of a file means that file.
 /// @throws InputError  for times without a unit, or that do not go on
 [[nodiscard]] RecordPart read_record_part(const std::string& argument);
 

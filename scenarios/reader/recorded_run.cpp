@@ -42,7 +42,7 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
   if (!channel) return nullptr;
   if (channel->unit != kind.unit)
     throw InputError(
-        fmt::format("{}: channel {} is in {}; {} is wanted", record.source, kind.name, channel->unit, kind.unit));
+        fmt::format("{}: channel {} is in {}; it must be in {}", record.source, kind.name, channel->unit, kind.unit));
   for (std::size_t i = 0; i + (is_plan ? 1 : 0) < channel->values.size(); ++i) {
     const double v = channel->values[i];
     const auto refuse = [&](const std::string& why) {
@@ -55,7 +55,7 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
                       "holds the value before",
                       record.source, channel->header(), record.time_s[i]));
     if (v < 0.0 && !kind.may_be_signed)
-      refuse(fmt::format("{} are positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
+      refuse(fmt::format("{} must be positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
     if (std::abs(v) > kind.most) refuse(fmt::format("{:g} {} at most is allowed", kind.most, kind.unit));
   }
   return channel;
@@ -143,7 +143,7 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
 TimeSeries ambient_of(const Record& record, const Channel& channel, const std::vector<double>& time_s, double reference_C,
                       const TimeSeries* expected) {
   if (channel.unit != "degC") {
-    throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", record.source, channel.name, channel.unit));
+    throw InputError(fmt::format("{}: channel {} is in {}; it must be in degC", record.source, channel.name, channel.unit));
   }
   const double first_C =
       *std::find_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });

@@ -10,9 +10,9 @@
 #include "effects/effect_schema.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/former_words.hpp"
+#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
-#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -51,7 +51,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
     m.start = Start::kUniform;
     m.start_K = in.quantity("start");
   } else {
-    in.fail("start", fmt::format("'{}' is no start; reference, ambient, steady or a temperature is wanted", text));
+    in.fail("start", fmt::format("'{}' is no start; write reference, ambient, steady or a temperature instead", text));
   }
 }
 
@@ -76,9 +76,11 @@ MachineModel read_machine(const ConfigMap& in) {
     m.written += fmt::format("{}: {}\n", key, in.written(key));
   }
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
-  if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
+  if (has_mesh && m.supports.empty()) in.fail("supports", "there is no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
-    in.fail("sensors", "neither a sensor nor a displacement; what is wanted?");
+    in.fail("sensors",
+            "the scenario has neither a sensor nor a displacement, so it would compute nothing; write `sensors` or "
+            "`displacements`");
   reject_repeated_names(in, m);
   return m;
 }
@@ -112,7 +114,7 @@ void check_candidates(const ConfigMap& in, const Study& study, const MachineMode
   for (const std::string& name : study.candidates) {
     const bool is_ambient = name == kAmbient && has_ambient_channel(machine);
     if (!is_ambient && std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
-      in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
+      in.fail("candidates", fmt::format("there is no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
     }
   }
   const std::size_t n_candidates = study.candidates.empty() ? sensors.size() : study.candidates.size();
@@ -129,7 +131,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   for (const std::string& name : s.candidates) {
     if (name == s.target) in.fail("candidates", fmt::format("'{}' is the target; it cannot predict itself", name));
     if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
-      in.fail("candidates", fmt::format("'{}' stands there twice", name));
+      in.fail("candidates", fmt::format("'{}' is listed twice", name));
   }
   const std::string image = in.choice("image");
   s.image = image == "initial_value" ? compensation::Image::kInitialValue
@@ -148,14 +150,13 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
     const auto must_know = [&](const char* key, const std::string& name) {
       if (std::find(known.begin(), known.end(), name) == known.end()) {
-        in.fail(key,
-                fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+        in.fail(key, fmt::format("there is no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
+                                 did_you_mean(name, known)));
       }
     };
     for (const std::string& name : s.train) {
       must_know("train", name);
-      if (std::count(s.train.begin(), s.train.end(), name) > 1)
-        in.fail("train", fmt::format("'{}' stands there twice", name));
+      if (std::count(s.train.begin(), s.train.end(), name) > 1) in.fail("train", fmt::format("'{}' is listed twice", name));
     }
     must_know("judge", s.judge);
     for (const std::string& name : s.train) {
@@ -167,7 +168,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     std::vector<std::string> channels;
     for (const DisplacementOutput& d : scenario.machine->displacements) channels.push_back(d.name);
     if (std::find(channels.begin(), channels.end(), s.target) == channels.end()) {
-      in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
+      in.fail("target", fmt::format("there is no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
     }
     s.sensor_resolution_K = in.quantity("sensor_resolution");
     check_candidates(in, s, *scenario.machine);
@@ -189,8 +190,9 @@ void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& s
       in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
                               fmt::join(known, ", ")));
     if (name == study.target && channel->unit != "um")
-      in.fail(channel->name, fmt::format("the target of `study` is in {} here; a length is wanted, which records have in um",
-                                         channel->written_unit));
+      in.fail(channel->name,
+              fmt::format("the target of `study` is in {} here; it must be a length, which records have in um",
+                          channel->written_unit));
   }
 }
 
@@ -212,7 +214,7 @@ schema::Map solver_schema() {
       .name = "solver",
       .keys =
           {schema::optional("model", choice({"full", "reduced"}), "full",
-                            "what cyclograms are run on; `reduced`: docs/reduced_model.md"),
+                            "what cyclograms are run on; `reduced`: docs/theory/reduced_model.md"),
            schema::optional("reduction_tolerance", quantity("K", 1e-5, 1.0), s.reduction_tolerance_K,
                             "of the reduced model against the full one"),
            schema::optional("relative_tolerance", quantity("1", 1e-10, 1e-1), s.transient.relative_tolerance,
@@ -223,14 +225,15 @@ schema::Map solver_schema() {
            schema::optional("fields_every", quantity("s", 1e-3, 1e9), s.fields_every_s,
                             "between two written fields; start and end are written in any case"),
            schema::optional("fields_at", list(quantity("s", 0.0), 1), "or: the times of fields"),
-           schema::optional("stresses", flag(), "false", "true: stresses beside the other fields (docs/outputs.md)"),
+           schema::optional("stresses", flag(), "false",
+                            "true: stresses beside the other fields (docs/reference/outputs.md)"),
            schema::optional(
                "fields_format", choice({"vtu", "xdmf", "none"}), "vtu",
                "`vtu`: open `fields.pvd`; `xdmf`: open `fields.xdmf`, for more than about 100 times; `none`: no fields, and "
                "without `displacements` and `tilts` no elasticity is computed")},
       .groups = {{Group::Rule::kAtMostOne,
                   {"fields_every", "fields_at"},
-                  "either `fields_at` or `fields_every` is wanted, not both"}}};
+                  "`fields_at` and `fields_every` exclude each other; write only one of them"}}};
 }
 
 /// @param of_machine  its cyclograms are simulated; else it is about records alone
@@ -265,8 +268,9 @@ schema::Key name_key() {
   return schema::compulsory("name", schema::name(), "of the scenario; names the folder of results");
 }
 schema::Key columns_key() {
-  return schema::optional("columns", schema::map(columns_schema()),
-                          "how the records that verbs are given are written where a logger wrote them (docs/record.md)");
+  return schema::optional(
+      "columns", schema::map(columns_schema()),
+      "how the records that verbs are given are written where a logger wrote them (docs/reference/record.md)");
 }
 
 schema::Map topics_schema() {
@@ -277,7 +281,7 @@ schema::Map topics_schema() {
 }
 schema::Key topics_key() {
   return schema::optional("topics", schema::map(topics_schema()),
-                          "where `follow` takes each channel's numbers from (docs/follow.md)");
+                          "where `follow` takes each channel's numbers from (docs/how-to/follow.md)");
 }
 
 schema::Map machine_scenario_schema() {
@@ -287,7 +291,7 @@ schema::Map machine_scenario_schema() {
       .keys =
           {name_key(),
            compulsory("machine", mesh_recipe_schema(),
-                      "the mesh: a generator and its dimensions, a file (docs/meshes.md), or none"),
+                      "the mesh: a generator and its dimensions, a file (docs/how-to/meshes.md), or none"),
            compulsory("reference_temperature", temperature(), "the machine is straight and free of stress at it"),
            schema::optional("start", Ways{choice({"reference", "ambient", "steady"}), temperature()}, Said{"reference"},
                             "state at t = 0: at the reference temperature, at the first ambient temperature, at standstill "
@@ -316,7 +320,7 @@ schema::Map machine_scenario_schema() {
            schema::optional("table", schema::map(table_schema()), "a long table with scale, rings and probe")},
       .groups = {{Group::Rule::kAtLeastOne,
                   {"sensors", "displacements"},
-                  "`sensors` or `displacements` is wanted: what is the machine looked at by?"}},
+                  "`sensors` or `displacements` is required: what is the machine looked at by?"}},
       .when_key = "machine"};
 }
 
@@ -332,19 +336,22 @@ schema::Map records_scenario_schema() {
 void reject_what_wants_a_machine(const ConfigMap& top) {
   if (top.has("machine")) return;
   if (top.has("vary"))
-    top.fail("vary", "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
+    top.fail(
+        "vary",
+        "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
   if (!top.has("study")) top.fail("machine", "neither a machine to simulate nor a study of records");
   const schema::Map& with = scenario_schemas()[0];
   const schema::Map& without = scenario_schemas()[1];
   for (const schema::Key& key : with.keys) {
     if (top.has(key.name) && !without.find(key.name))
-      top.fail(key.name, "it wants a `machine` to simulate; without one a scenario is about measured records alone");
+      top.fail(key.name, "`machine` is required to simulate; without one a scenario is about measured records alone");
   }
 }
 
 /// Reads the table and gives the machine a displacement for each of its points.
 TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::vector<Cyclogram>& cyclograms) {
-  if (std::holds_alternative<LumpedMachine>(machine.mesh)) in.fail("region", "a table wants a mesh; this machine has none");
+  if (std::holds_alternative<LumpedMachine>(machine.mesh))
+    in.fail("region", "`table` requires a mesh, but this machine has none");
   std::vector<std::string> sensors, names;
   for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
   for (const Cyclogram& c : cyclograms) names.push_back(c.name);
@@ -352,7 +359,7 @@ TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::v
   const auto run = std::find(names.begin(), names.end(), table.cyclogram) - names.begin();
   const double taught_s = cyclograms[static_cast<std::size_t>(run)].duration_s() - table.train_from_s;
   if (!(taught_s >= 2.0 * table.every_s)) {
-    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are wanted",
+    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are required",
                                       taught_s / 3600.0, table.every_s / 1800.0));
   }
   for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
@@ -369,8 +376,8 @@ const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
     if (c.name == cyclogram_name) return c;
     known.push_back(c.name);
   }
-  throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}.{}", path, cyclogram_name, fmt::join(known, ", "),
-                               did_you_mean(cyclogram_name, known)));
+  throw InputError(fmt::format("{}: there is no cyclogram '{}'; there are {}.{}", path, cyclogram_name,
+                               fmt::join(known, ", "), did_you_mean(cyclogram_name, known)));
 }
 
 void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
@@ -419,7 +426,8 @@ Scenario read_scenario(const ConfigMap& top) {
     scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
-    if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
+    if (scenario.cyclograms.empty())
+      in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
     const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
@@ -448,13 +456,13 @@ Scenario read_scenario(const ConfigMap& top) {
   }
   if (const auto programme = in.optional_map("programme")) {
     if (scenario.machine->displacements.empty())
-      in.fail("programme", "a programme judges predictors of drift and wants `displacements`");
+      in.fail("programme", "a programme judges predictors of drift and requires `displacements`");
     scenario.programme = read_programme(*programme);
     for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
   }
   if (const auto validation = in.optional_map("validation")) {
-    if (!scenario.study) in.fail("validation", "it wants a `study` that names the target");
+    if (!scenario.study) in.fail("validation", "a `study` that names the target is required");
     std::vector<const Cyclogram*> known;
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(&c);
     if (scenario.programme) {
@@ -490,9 +498,8 @@ const MachineModel& require_machine(const Scenario& scenario, const std::string&
 
 const Study& require_study(const Scenario& scenario, const std::string& verb) {
   if (scenario.study) return *scenario.study;
-  throw InputError(
-      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit{}", scenario.path, verb,
-                  scenario.machine ? "; `simulate` and `predict` need none" : ""));
+  throw InputError(fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit{}", scenario.path,
+                               verb, scenario.machine ? "; `simulate` and `predict` need none" : ""));
 }
 
 }  // namespace driftwright::scenarios

@@ -103,7 +103,8 @@ struct Scenario {
   std::string path;
   std::string name;
   std::optional<MachineModel> machine;  ///< absent in a scenario about measured records alone
-  std::optional<ColumnMap> columns;  ///< how the records that verbs are given are written; absent: as docs/record.md has it
+  std::optional<ColumnMap>
+      columns;  ///< how the records that verbs are given are written; absent: as docs/reference/record.md has it
   std::map<std::string, std::string> topics;  ///< of channels, by their headers: where `follow` takes their numbers from
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;

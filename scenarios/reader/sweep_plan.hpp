@@ -1,5 +1,5 @@
 #pragma once
-// A study of many variants of one scenario, as its file describes it (docs/sweep.md): which values vary, which members that
+// A study of many variants of one scenario, as its file describes it (docs/how-to/sweep.md): which values vary, which members that
 // makes, what is collected of each. Nothing is simulated here.
 
 #include <Eigen/Core>

@@ -21,7 +21,7 @@ Cyclogram named(const ConfigMap& in, const std::string& key, const std::string& 
     if (c->name == name) return *c;
     names.push_back(c->name);
   }
-  in.fail(key, fmt::format("no cyclogram '{}'; there are {}", name, fmt::join(names, ", ")));
+  in.fail(key, fmt::format("there is no cyclogram '{}'; there are {}", name, fmt::join(names, ", ")));
 }
 
 Validation::Family read_family(const ConfigMap& in, const std::string& name, const std::vector<const Cyclogram*>& known,
@@ -80,7 +80,7 @@ schema::Map validation_schema() {
            schema::optional("tolerance", quantity("um", 1e-3, 1e6), Said{"that of `study`"},
                             "that the drift is to be kept in"),
            schema::optional("seed", integer(0, 1000000), v.seed, "of noise, scatter and random cyclograms")},
-      .about = "What strategies of correction are judged on by `validate` (docs/validation.md)."};
+      .about = "What strategies of correction are judged on by `validate` (docs/how-to/validation.md)."};
 }
 
 Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known, double tolerance_um) {
@@ -106,7 +106,7 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
       }
     }
   }
-  if (v.families.empty()) in.fail("families", "no family of cyclograms to judge on");
+  if (v.families.empty()) in.fail("families", "there is no family of cyclograms to judge on");
   v.seasons.push_back({.name = "as trained"});
   if (const auto seasons = in.optional_map("seasons")) {
     for (const std::string& name : seasons->keys()) {

@@ -62,7 +62,7 @@ def main():
         assert text.count(FILM.format(9)) == 1, "the scenario's film has changed"
         other = work / "other.yaml"
         other.write_text(text.replace(FILM.format(9), FILM.format(16)))
-        (HERE / "plan.csv").write_text("# a shift to predict: rows of speed (docs/cyclograms.md)\n" + plan_of([(60, 1200), (20, 0), (100, 1800), (60, 600)]))
+        (HERE / "plan.csv").write_text("# a shift to predict: rows of speed (docs/how-to/cyclograms.md)\n" + plan_of([(60, 1200), (20, 0), (100, 1800), (60, 600)]))
         for seed, (name, sections) in enumerate(DAYS.items()):
             rows = simulated(program, other if name in ("monday", "tuesday") else SCENARIO, sections, work)
             if name != "morning":

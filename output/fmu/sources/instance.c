@@ -164,7 +164,7 @@ int instance_set(instance* in, const unsigned* references, size_t n, const doubl
     const int input = index_in(r, kInputReference, model_n_inputs());
     if (r == kStartWarmerReference) {
       if (!(in->mode & (kInstantiated | kInitialization)))
-        return instance_tell(in, kError, "start_warmer may be set before the start alone");
+        return instance_tell(in, kError, "start_warmer may be set only before the start");
       if (!(fabs(values[k]) < 1e3)) return instance_tell(in, kError, "start_warmer is no temperature difference");
       in->saved[kStartWarmer] = values[k];
     } else if (input >= 0) {
@@ -210,7 +210,7 @@ int instance_set_flag(instance* in, unsigned reference, int value) {
   if (reference != kAmbientFromInputReference || model_kind_is_observer)
     return instance_tell(in, kError, "there is no such Boolean variable");
   if (!(in->mode & (kInstantiated | kInitialization)))
-    return instance_tell(in, kError, "ambient_from_input may be set before the start alone");
+    return instance_tell(in, kError, "ambient_from_input may be set only before the start");
   in->saved[kAmbientFromInput] = value ? 1.0 : 0.0;
   touched(in);
   start_anew(in);
@@ -226,7 +226,7 @@ int instance_set_time(instance* in, double time_s) {
 
 static int is_n_states(instance* in, size_t n) {
   if (n == (size_t)model_n_states()) return 1;
-  instance_tell(in, kError, "the number of continuous states is another one");
+  instance_tell(in, kError, "the number of continuous states is wrong");
   return 0;
 }
 
@@ -286,7 +286,7 @@ int instance_sensitivity(instance* in, const unsigned* unknowns, size_t n_unknow
   for (k = 0; k < n_knowns; ++k) {
     const int state = index_in(knowns[k], kStateReference, model_n_states()),
               input = index_in(knowns[k], kInputReference, model_n_inputs());
-    if (state < 0 && input < 0) return instance_tell(in, kError, "derivatives are there along states and inputs alone");
+    if (state < 0 && input < 0) return instance_tell(in, kError, "derivatives exist only along states and inputs");
     if (seeds[k] == 0.0) continue;
     model_add_sensitivity(in->saved, in->scratch, state >= 0, state >= 0 ? state : input, seeds[k], in->output_seeds,
                           in->derivative_seeds);
@@ -295,7 +295,7 @@ int instance_sensitivity(instance* in, const unsigned* unknowns, size_t n_unknow
     const int derivative = index_in(unknowns[k], kDerivativeReference, model_n_states()),
               output = index_in(unknowns[k], kOutputReference, model_n_outputs());
     if (derivative < 0 && output < 0)
-      return instance_tell(in, kError, "derivatives are there of outputs and of states' derivatives alone");
+      return instance_tell(in, kError, "derivatives exist only of outputs and of states' derivatives");
     sensitivities[k] = output >= 0 ? in->output_seeds[output] : in->derivative_seeds[derivative];
   }
   return kOk;

@@ -102,7 +102,7 @@ class LivePage {
       key.className = "key correction";
       const drift = document.createElement("span");
       drift.className = "key told";
-      caption.append(axis, " ", drift, " drift told ", key, " correction in force");
+      caption.append(axis, " ", drift, " drift predicted ", key, " correction in force");
       lines.push({chart: this.figure(caption, `drift and correction of ${axis} over time`, `${axis} [µm]`),
                   curves: [{column: 1 + 3 * a, colour: "--told", width: 6}, {column: 2 + 3 * a, colour: "--left"}]});
     });

@@ -47,7 +47,7 @@ function planOf(text, drive) {
     const numbers = line.split(",").map(part => part.trim() === "" ? NaN : Number(part));
     const fail = why => { throw new Error(`line ${i + 1}, "${line.trim()}": ${why}`); };
     if (numbers.length !== 1 + drive.length) fail(`${1 + drive.length} numbers are required, with commas between them`);
-    if (!numbers.every(Number.isFinite)) fail("what stands there is no number");
+    if (!numbers.every(Number.isFinite)) fail("every entry must be a number");
     if (!(numbers[0] > 0 && numbers[0] <= 60000)) fail("a duration above 0 and up to 60000 min is required");
     drive.forEach((d, k) => {
       if (!(numbers[k + 1] >= 0 && numbers[k + 1] <= d.most)) fail(`${d.label} goes from 0 to ${d.most} ${d.unit}, for which the model was made`);

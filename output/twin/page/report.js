@@ -1,4 +1,4 @@
-// With #report behind its address the page writes what it computes into itself, for whoever wants to compare it (docs/view.md).
+// With #report behind its address the page writes what it computes into itself, for whoever wants to compare it (docs/how-to/view.md).
 
 const FRAMES = 100;  // of each kind that are timed
 const sorted = list => Float64Array.from(list).sort();
