@@ -318,8 +318,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     doubt_all(d, "the readings are too few to tell causes apart");
     if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
   }
-  if (d.verdict == Verdict::kUnexplained) {
-    doubt_all(d, "more is left than it explains");
+  if (d.verdict == Verdict::kUnexplained) doubt_all(d, "more is left than it explains");
+  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) {
     if (runs.size() == 1) {
       const std::optional<CausesAlone> alone =
           listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);

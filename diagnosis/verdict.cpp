@@ -97,16 +97,15 @@ bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
                      [&](const Finding& f) { return f.log_evidence_gain > d.search.findings[claim].log_evidence_gain; });
 }
 
-/// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
-bool rest_rules(const Diagnosis& d) {
+}  // namespace
+
+bool is_more_left(const Diagnosis& d) {
   if (!d.unexplained) return false;
   if (d.causes.empty() || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
 }
-
-}  // namespace
 
 bool is_wrong_all_over(const Diagnosis& d) {
   return n_moved(d) >= kManyMoved || (n_moved(d) > 0 && n_far(d) > kManyMoved);
@@ -210,7 +209,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
 
 Verdict verdict_of(const Diagnosis& d) {
   if (is_wrong_all_over(d)) return Verdict::kSuspected;  // whatever is left beside so many numbers, none of it is one cause
-  if (rest_rules(d)) return Verdict::kUnexplained;
+  if (is_more_left(d)) return Verdict::kUnexplained;
   const auto is_any = [&](Standing s) {
     return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });
   };

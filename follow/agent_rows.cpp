@@ -16,8 +16,8 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kLongestAnswer_s = 2.0;
-constexpr double kClockAhead_s =
-    60.0;  // of an observation before the agent's own time: no more than clocks of its adapters differ
+// Of an observation before the agent's own time: no more than clocks of its adapters differ.
+constexpr double kClockAhead_s = 60.0;
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
 
 void require_items(const HeardValues& values, const MtconnectStreams& told) {

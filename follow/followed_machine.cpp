@@ -85,7 +85,7 @@ class FollowedMachine final : public Followed {
     const Eigen::VectorXd outputs = observed();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       axes_[a].predicted_um = 1e6 * outputs[output_[a]];
-      stages_[a].take(axes_[a].predicted_um, step_s);
+      stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
     }
     return true;
   }
@@ -105,6 +105,7 @@ class FollowedMachine final : public Followed {
     for (std::size_t a = 0; a < axes.size(); ++a) {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
+      if (has_begun()) axes[a].doubted = run_->older_than(stages_[a].most_age_s());
     }
     return axes;
   }

@@ -119,7 +119,7 @@ class FollowedPredictor final : public Followed {
     trust_ = c.trust;
     axis_.interval_um = c.interval_um;
     axis_.predicted_um = c.correction_um;
-    stage_.take(c.correction_um, step_s);
+    stage_.take(c.correction_um, step_s, run_->drive_age_s());
     return true;
   }
   void wait(double step_s) override { stage_.wait(step_s); }
@@ -133,6 +133,9 @@ class FollowedPredictor final : public Followed {
     if (!(axis.trust > 0.0)) axis.interval_um.reset();
     if (axis.interval_um) *axis.interval_um += std::abs(axis.predicted_um - axis.correction_um);
     axis.doubted = follower_.doubted();
+    if (has_begun()) {
+      for (std::string& name : run_->older_than(stage_.most_age_s())) axis.doubted.push_back(std::move(name));
+    }
     if (has_begun()) axis.deviation_um = follower_.follower().deviation_um();
     if (watch_ && has_begun()) {
       axis.watch_level = watch_->level();

@@ -36,10 +36,15 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   const auto value = [&](std::size_t channel) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
-  if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) ambient_K_ = ambient_C - reference_C_;
+  now_s_ = run_s;
+  if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) {
+    ambient_K_ = ambient_C - reference_C_;
+    ambient_at_s_ = run_s;
+  }
   before_ = drive_;
   if (const double rpm = value(speed_); !std::isnan(rpm)) {
     has_drive_ = true;
+    speed_at_s_ = run_s;
     top_rpm_ = std::max(top_rpm_, rpm);
     const bool is_jitter = drive_.speed_rpm > 0.0 && rpm > 0.0 && std::abs(rpm - drive_.speed_rpm) <= kJitter * top_rpm_;
     if (!is_jitter) drive_.speed_rpm = rpm;
@@ -65,6 +70,17 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   return true;
 }
 
+double LiveRun::drive_age_s() const {
+  return std::max(wants_drive_ ? now_s_ - speed_at_s_ : 0.0, ambient_ == kNone ? 0.0 : now_s_ - ambient_at_s_);
+}
+
+std::vector<std::string> LiveRun::older_than(double age_s) const {
+  std::vector<std::string> names;
+  if (wants_drive_ && now_s_ - speed_at_s_ > age_s) names.emplace_back("speed");
+  if (ambient_ != kNone && now_s_ - ambient_at_s_ > age_s) names.push_back(run_.readings.channels[ambient_].name);
+  return names;
+}
+
 void LiveRun::forget() {
   Record& readings = run_.readings;
   if (readings.n_samples() < kMostKept) return;
@@ -85,6 +101,8 @@ LiveRun::State LiveRun::state() const {
           .time_s = run_.readings.time_s.back(),
           .ambient_K = ambient_K_,
           .top_rpm = top_rpm_,
+          .speed_age_s = now_s_ - speed_at_s_,
+          .ambient_age_s = now_s_ - ambient_at_s_,
           .values = {},
           .drive = drive_};
   for (const Channel& c : run_.readings.channels) s.values.push_back(c.values.back());
@@ -93,6 +111,9 @@ LiveRun::State LiveRun::state() const {
 
 void LiveRun::recall(const State& s) {
   start_s_ = s.start_s;
+  now_s_ = s.start_s + s.time_s;
+  speed_at_s_ = now_s_ - s.speed_age_s;
+  ambient_at_s_ = now_s_ - s.ambient_age_s;
   ambient_K_ = s.ambient_K;
   top_rpm_ = s.top_rpm;
   drive_ = s.drive;

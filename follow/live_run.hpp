@@ -22,6 +22,10 @@ class LiveRun {
   [[nodiscard]] const compensation::ObservedRun& run() const { return run_; }
   /// Rows since the start of the run, those no longer kept among them.
   [[nodiscard]] std::size_t n_rows() const { return run_.n_forgotten + run_.readings.n_samples(); }
+  /// How long before the last row what drives the machine was last given: the older of the spindle's speed and the ambient, where they are asked for [s].
+  [[nodiscard]] double drive_age_s() const;
+  /// Which of them were given longer ago than this.
+  [[nodiscard]] std::vector<std::string> older_than(double age_s) const;
   /// From the row before the last until the last.
   [[nodiscard]] const Drive& drive_before() const { return before_; }
   [[nodiscard]] double ambient_K() const { return ambient_K_; }  ///< at the last row, minus the reference temperature
@@ -31,6 +35,7 @@ class LiveRun {
     double start_s = 0.0;  ///< of the run, by the guard's time
     std::size_t n_rows = 0;
     double time_s = 0.0, ambient_K = 0.0, top_rpm = 0.0;
+    double speed_age_s = 0.0, ambient_age_s = 0.0;
     std::vector<double> values;
     Drive drive;  ///< from the last row on
   };
@@ -42,6 +47,7 @@ class LiveRun {
 
   compensation::ObservedRun run_;
   double reference_C_, ambient_K_, top_rpm_ = 0.0, start_s_ = 0.0;
+  double now_s_ = 0.0, speed_at_s_ = 0.0, ambient_at_s_ = 0.0;  ///< by the guard's time
   bool wants_drive_, has_drive_ = false;
   std::size_t speed_, cutting_, ambient_;  ///< channels; none where there is no such one
   std::array<std::size_t, 3> feed_{};

@@ -57,8 +57,8 @@ MqttLink::MqttLink(const MqttAddress& address, std::vector<std::string> topics, 
   mosquitto_message_callback_set(client_.get(), &MqttLink::heard);
   mosquitto_reconnect_delay_set(client_.get(), kFirstDelay_s, kLongestDelay_s, true);
   const int begun = mosquitto_connect_async(client_.get(), address.host.c_str(), address.port, kKeepAlive_s);
-  if (begun != MOSQ_ERR_SUCCESS &&
-      begun != MOSQ_ERR_ERRNO)  // while the broker is unreachable, the link waits and tries again
+  // While the broker is unreachable, the link waits and tries again.
+  if (begun != MOSQ_ERR_SUCCESS && begun != MOSQ_ERR_ERRNO)
     must(begun, fmt::format("--mqtt {}:{}", address.host, address.port));
   must(mosquitto_loop_start(client_.get()), "MQTT");
 }

@@ -12,10 +12,15 @@ double OutputStage::move(double step_s) {
   return state_.correction_um;
 }
 
-double OutputStage::take(double wanted_um, double step_s) {
+double OutputStage::take(double wanted_um, double step_s, double drive_age_s) {
   state_.wanted_um = wanted_um;
   state_.silent_s = 0.0;
-  state_.authority += (1.0 - std::exp(-step_s / settings_.fade_s)) * (1.0 - state_.authority);
+  state_.step_s = step_s;
+  const double faded_s = std::clamp(drive_age_s - most_age_s(), 0.0, step_s);
+  if (faded_s > 0.0)
+    state_.authority *= std::exp(-faded_s / settings_.fade_s);
+  else
+    state_.authority += (1.0 - std::exp(-step_s / settings_.fade_s)) * (1.0 - state_.authority);
   return move(step_s);
 }
 

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kShortGap_s = 30.0, kShortGapSteps = 10.0;
 constexpr double kLongestFirstStep_s = 3600.0;
-constexpr double kMissingSteps = 2.5;
 constexpr double kLongestAbsence_s = 7.0 * 86400.0;
 constexpr double kMemory = 1.0 / 30.0;  // of the usual step, a row
 

@@ -7,6 +7,15 @@ namespace driftwright::follow {
 using output::finite;
 using output::value;
 
+namespace {
+
+/// A number that states of earlier versions lack; 0 there.
+double added(const Json& j, const char* key) {
+  return j.contains(key) ? finite(j, key) : 0.0;
+}
+
+}  // namespace
+
 Json numbers_json(const std::vector<double>& numbers) {
   Json list = Json::array();
   for (double x : numbers) list.push_back(output::number(x));
@@ -25,6 +34,8 @@ Json state_json(const LiveRun::State& s) {
           {"time_s", s.time_s},
           {"hall_K", s.ambient_K},
           {"top_rpm", s.top_rpm},
+          {"speed_age_s", s.speed_age_s},
+          {"ambient_age_s", s.ambient_age_s},
           {"values", numbers_json(s.values)},
           {"speed_rpm", s.drive.speed_rpm},
           {"feed_m_s", s.drive.feed_m_s},
@@ -37,6 +48,8 @@ LiveRun::State live_run_of(const Json& j) {
           .time_s = finite(j, "time_s"),
           .ambient_K = finite(j, "hall_K"),
           .top_rpm = finite(j, "top_rpm"),
+          .speed_age_s = added(j, "speed_age_s"),
+          .ambient_age_s = added(j, "ambient_age_s"),
           .values = numbers_of(j, "values"),
           .drive = {.speed_rpm = finite(j, "speed_rpm"),
                     .feed_m_s = value<std::array<double, 3>>(j, "feed_m_s"),
@@ -44,12 +57,19 @@ LiveRun::State live_run_of(const Json& j) {
 }
 
 Json state_json(const OutputStage::State& s) {
-  return {
-      {"correction_um", s.correction_um}, {"wanted_um", s.wanted_um}, {"authority", s.authority}, {"silent_s", s.silent_s}};
+  return {{"correction_um", s.correction_um},
+          {"wanted_um", s.wanted_um},
+          {"authority", s.authority},
+          {"silent_s", s.silent_s},
+          {"step_s", s.step_s}};
 }
 
 OutputStage::State output_stage_of(const Json& j) {
-  return {finite(j, "correction_um"), finite(j, "wanted_um"), finite(j, "authority"), finite(j, "silent_s")};
+  return {.correction_um = finite(j, "correction_um"),
+          .wanted_um = finite(j, "wanted_um"),
+          .authority = finite(j, "authority"),
+          .silent_s = finite(j, "silent_s"),
+          .step_s = added(j, "step_s")};
 }
 
 Json state_json(const RowGuard::State& s) {

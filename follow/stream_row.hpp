@@ -15,6 +15,9 @@ struct StreamRow {
   int n_unreadable = 0;                                      ///< cells that are no number, missing now
 };
 
+/// Of usual steps: rows that come later than this miss some between them, and so long a value may be missing from rows that come.
+inline constexpr double kMissingSteps = 2.5;
+
 /// A channel that a stream must have.
 struct WantedChannel {
   std::string name, unit;

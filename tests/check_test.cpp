@@ -24,7 +24,7 @@ TEST(Check, TellsDurationSpeedSectionsAndMachiningTime) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, ContainsRegex("\n +part +9.0 +9 +1500 +33\n"));
   EXPECT_THAT(outcome.output, HasSubstr("part.ngc: machining time 180.0 s, 3 moves\n"));
-  EXPECT_THAT(outcome.output, HasSubstr("line 2: G55: another coordinate system"));
+  EXPECT_THAT(outcome.output, HasSubstr("line 2: G55: this is another coordinate system"));
   EXPECT_THAT(outcome.output, ContainsRegex(" 300.0 +1 +2000 +100\n"));
 }
 

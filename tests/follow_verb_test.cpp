@@ -94,6 +94,52 @@ TEST(FollowVerb, TellsTheDriftThatPredictTells) {
   EXPECT_EQ(f.lines.back()["state"], "on");
 }
 
+// A control that no longer gives its speed, or a thermometer of the air that came off: nobody knows what the machine does now.
+TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
+  write_file("head.yaml", kHead);
+  for (const char* missing : {"speed", "ambient"}) {
+    std::string rows = "time_s,speed_rpm,ambient_degC\n";
+    for (int minute = 0; minute <= 180; ++minute) {
+      const bool is_blind = minute > 100;
+      const bool no_speed = is_blind && missing == std::string("speed");
+      rows += std::to_string(60 * minute) + (no_speed ? "," : ",2000") + (is_blind && !no_speed ? ",\n" : ",21\n");
+    }
+    write_file("rows.csv", rows);
+    const std::string arguments = "head.yaml --slew '100 um/s' --hold '10 min' --fade '20 min'";
+    const Followed f = follow(arguments, "cat rows.csv |");
+    ASSERT_EQ(f.exit_code, 0) << f.words;
+    // a restart in between changes nothing, be it that its first row is doubled
+    const std::string state = std::string(" --state ") + missing + ".state";
+    std::filesystem::remove(temporary_folder() / (std::string(missing) + ".state"));
+    const Followed first = follow(arguments + state, "head -n 132 rows.csv |");
+    const Followed second = follow(arguments + state, "sed '2,132d' rows.csv |");
+    EXPECT_EQ(first.text + second.text, f.text) << missing;
+    const Followed doubled = follow(arguments + state, "sed '2,181d' rows.csv |");
+    EXPECT_THAT(doubled.text, HasSubstr("\"doubted\":[\"" + std::string(missing) + "\"]")) << missing;
+    const auto correction_um = [&](std::size_t minute) {
+      return f.lines[minute]["axes"]["nose_z"]["correction_um"].get<double>();
+    };
+    EXPECT_EQ(f.lines[110]["state"], "on") << missing;
+    EXPECT_GT(correction_um(110), correction_um(100)) << missing;  // it warms on
+    // 50 min old, of which a hold and two and a half rows are allowed
+    const double predicted_um = f.lines[150]["axes"]["nose_z"]["predicted_um"].get<double>();
+    EXPECT_NEAR(correction_um(150), std::exp(-37.5 / 20.0) * predicted_um, 1e-3) << missing;
+    EXPECT_EQ(f.lines[150]["state"], "reduced") << missing;
+    EXPECT_THAT(f.lines[150]["why"].get<std::string>(), HasSubstr(missing));
+  }
+}
+
+TEST(FollowVerb, TakesSpeedAndAmbientThatComeInRowsOfTheirOwn) {
+  write_file("head.yaml", kHead);
+  std::string rows = "time_s,speed_rpm,ambient_degC\n0,2000,21\n";
+  for (int i = 1; i <= 720; ++i) rows += std::to_string(10 * i) + (i % 2 == 0 ? ",2000,\n" : ",,21\n");
+  write_file("rows.csv", rows);
+  const Followed f = follow("head.yaml", "cat rows.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  EXPECT_EQ(f.lines.back()["state"], "on");
+  EXPECT_EQ(f.lines.back()["axes"]["nose_z"]["trust"], 1.0);
+}
+
 // What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one simulation does.
 TEST(FollowVerb, LeavesARecordThatJobsStartFrom) {
   (void)predicted_day();

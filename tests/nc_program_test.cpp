@@ -181,7 +181,7 @@ TEST(NcProgram, DwellsInMillisecondsWhereTheSettingsSaySo) {
 
 TEST(NcProgram, NotesWhatItPassesOver) {
   const NcProgram program = read("G54 G0 X1\nG55 X2\nG41 D1 X3\nG40\nG42 X5\nG41 D1\nM2\n");
-  EXPECT_THAT(program.notes, ElementsAre(HasSubstr("line 2: G55: another coordinate system"),
+  EXPECT_THAT(program.notes, ElementsAre(HasSubstr("line 2: G55: this is another coordinate system"),
                                          HasSubstr("line 3: G41: cutter compensation"), HasSubstr("line 5: G42")));
   NcSettings lenient = kSettings;
   lenient.ignored = {"M88", "G187"};

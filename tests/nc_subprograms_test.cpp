@@ -154,7 +154,7 @@ TEST(NcSubprograms, CountPositionsFromTheParameterFile) {
   EXPECT_DOUBLE_EQ(read_nc_program(write_file("fixtures.ngc", text), with).duration_s(), 1.0);  // 250 mm at 250 mm/s
   const NcProgram without = read_nc_program(write_file("fixtures.ngc", text), settings());
   EXPECT_DOUBLE_EQ(without.duration_s(), 0.0);
-  EXPECT_THAT(without.notes, ElementsAre(HasSubstr("line 3: G55: another coordinate system")));
+  EXPECT_THAT(without.notes, ElementsAre(HasSubstr("line 3: G55: this is another coordinate system")));
 }
 
 struct Mistaken {

@@ -37,6 +37,17 @@ TEST(OutputStage, HoldsThenFadesAsAnExponential) {
   EXPECT_NEAR(stage.take(50.0, 100.0), 50.0 * (1.0 - (1.0 - left) * std::exp(-1.0)), 1e-12);  // and comes back the same way
 }
 
+TEST(OutputStage, FadesByTheAgeOfWhatDrivesTheMachine) {
+  OutputStage stage({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0});
+  (void)stage.take(50.0, 60.0);
+  for (double age_s = 10.0; age_s < 55.0; age_s += 10.0) EXPECT_EQ(stage.take(60.0, 10.0, age_s), 60.0);
+  ASSERT_EQ(stage.most_age_s(), 55.0);  // a hold and two and a half rows
+  EXPECT_NEAR(stage.take(60.0, 10.0, 60.0), 60.0 * std::exp(-0.05), 1e-12);
+  EXPECT_NEAR(stage.take(60.0, 10.0, 70.0), 60.0 * std::exp(-0.15), 1e-12);
+  const double left = std::exp(-0.15);
+  EXPECT_NEAR(stage.take(60.0, 10.0, 0.0), 60.0 * (1.0 - (1.0 - left) * std::exp(-0.1)), 1e-12);
+}
+
 TEST(OutputStage, OneLongWaitIsManyShortOnes) {
   OutputStage once({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0}), often = once;
   (void)once.take(50.0, 60.0);

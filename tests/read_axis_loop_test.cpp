@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
     Keys, BadAxisLoop,
     ::testing::Values(Bad{"  feedbck: motor\n", "Did you mean 'feedback'"}, Bad{"  displacement: nose_x\n", "nose_y"},
                       Bad{"  feedback: both\n", "motor"}, Bad{"  signal_period: 0 um\n", "signal_period"},
-                      Bad{"  signal_period: 1 um\n  lines: 5\n  pitch: 1 mm\n", "either `signal_period`"},
+                      Bad{"  signal_period: 1 um\n  lines: 5\n  pitch: 1 mm\n", "`signal_period` and `pitch` with `lines` exclude each other"},
                       Bad{"  insert: quarter\n  counts: x1\n", "less than one count at x1"},
                       Bad{"  largest_count_rate: 1 um\n", "largest_count_rate"},
                       Bad{"  largest_slew: 0 um/s\n", "largest_slew"}, Bad{"  jitter: 0.5\n", "jitter"},

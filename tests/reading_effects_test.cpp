@@ -326,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Bad{"{type: sensor_bias, bias: 1 K}", "key 'sensor' is missing"},
         Bad{"{type: sensor_bias, sensor: a}", "key 'bias' is missing"},
-        Bad{"{type: sensor_bias, sensor: a, bias: 20 degC}", "this must be a temperature difference in K"},
+        Bad{"{type: sensor_bias, sensor: a, bias: 20 degC}", "it must be a temperature difference in K"},
         Bad{"{type: sensor_swap, sensor: a}", "key 'with' is missing"},
         Bad{"{type: sensor_swap, sensor: a, with: a}", "this must be another sensor"},
         Bad{"{type: sensor_detached, sensor: a, share: 1.5, time: 1 min}", "outside what is allowed"},
