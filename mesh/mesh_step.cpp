@@ -5,12 +5,14 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
 
 #include "base/delimited_text.hpp"
 #include "mesh/gmsh_parts.hpp"
+#include "mesh/quality.hpp"
 #include "mesh/read_apart.hpp"
 #include "mesh/step_unit.hpp"
 
@@ -23,6 +25,24 @@ struct Solid {
   int tag;
   std::string region;
 };
+
+/// The name of a product in Gmsh's label of a solid, "Shapes/mill/BED" for one; "" where the drawing names none.
+///
+/// A product of several shapes has a label such as "Shapes/mill/1/BED/=>[0:1:1:3]/SOLID": the last words say which of its shapes it is. OpenCASCADE calls
+/// what has no name by its kind.
+std::string name_in_label(std::string label) {
+  constexpr std::array kKinds = {"SOLID", "COMPOUND", "COMPSOLID", "SHELL", "Shapes"};
+  for (;;) {
+    const auto slash = label.rfind('/');
+    const std::string last = label.substr(slash == std::string::npos ? 0 : slash + 1);
+    const bool is_kind = std::find(kKinds.begin(), kKinds.end(), last) != kKinds.end();
+    if (!is_kind && !last.starts_with("=>[")) return last;
+    if (slash == std::string::npos) return "";
+    label.erase(slash);
+    if (is_kind && !label.substr(label.rfind('/') + 1).starts_with("=>["))
+      return "";  // what is above is no product of its own
+  }
+}
 
 /// @param unit_m  of the numbers in the file; 0: as the file says
 std::vector<Solid> import_solids(const std::string& path, double unit_m) {
@@ -51,9 +71,10 @@ std::vector<Solid> import_solids(const std::string& path, double unit_m) {
     if (dim != 3) continue;
     std::string label;
     gmsh::model::getEntityName(3, tag, label);
-    solids.push_back({tag, clean_name(label.substr(label.rfind('/') + 1))});  // the whole label if it has no '/'
+    solids.push_back({tag, clean_name(name_in_label(label))});
   }
   if (solids.empty()) throw InputError(path + ": there is no solid in it");
+  if (solids.size() == 1 && solids[0].region.empty()) solids[0].region = "SOLID";  // there is no other to mix it up with
   return solids;
 }
 
@@ -96,7 +117,7 @@ std::string describe(int solid) {
                      1e3 * z);
 }
 
-/// For what nobody has given a name: OpenCASCADE calls such solids "Open CASCADE STEP translator 7.6 1.3" when it writes them.
+/// For what nobody has given a name: OpenCASCADE calls such products "Open CASCADE STEP translator 7.6 1.3" when it writes them.
 void make_up_names(std::vector<Solid>& solids) {
   for (std::size_t i = 0; i < solids.size(); ++i) {
     if (solids[i].region.empty() || solids[i].region.starts_with("Open CASCADE STEP translator"))
@@ -104,14 +125,21 @@ void make_up_names(std::vector<Solid>& solids) {
   }
 }
 
+double volume_in_drawing_m3(const Part& part) {
+  double sum_m3 = 0.0;
+  for (int volume : part.volumes) {
+    double volume_m3 = 0.0;
+    occ::getMass(3, volume, volume_m3);
+    sum_m3 += std::abs(volume_m3);
+  }
+  return sum_m3;
+}
+
 void make_up_sizes(std::vector<Part>& parts) {
   std::vector<PartExtent> extents;
   for (const Part& part : parts) {
-    PartExtent& extent = extents.emplace_back(PartExtent{0.0, 0.0});
+    PartExtent& extent = extents.emplace_back(PartExtent{volume_in_drawing_m3(part), 0.0});
     for (int volume : part.volumes) {
-      double volume_m3 = 0.0;
-      occ::getMass(3, volume, volume_m3);
-      extent.volume_m3 += std::abs(volume_m3);
       gmsh::vectorpair faces;
       gmsh::model::getBoundary({{3, volume}}, faces, false, false);
       for (const auto& [dim, face] : faces) {
@@ -123,6 +151,19 @@ void make_up_sizes(std::vector<Part>& parts) {
   }
   const std::vector<double> sizes_m = suggested_mesh_sizes_m(extents);
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i].mesh_size_m = sizes_m[i];
+}
+
+/// Of parts whose cells are too coarse for their round faces: their mass and heat capacity are off as much.
+void note_lost_volume(const std::vector<Part>& parts, Mesh& mesh) {
+  constexpr double kWorthSaying = 0.02;  // of the volume; capacities of machines are known no better
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double drawn_m3 = volume_in_drawing_m3(parts[p]), meshed_m3 = volume_m3(mesh, static_cast<int>(p));
+    if (std::abs(meshed_m3 - drawn_m3) <= kWorthSaying * drawn_m3) continue;
+    mesh.notes.push_back(
+        fmt::format("region '{}' has {:.3g} l in the mesh and {:.3g} l in the drawing; a smaller mesh_size "
+                    "follows its round faces better",
+                    parts[p].region, 1e3 * meshed_m3, 1e3 * drawn_m3));
+  }
 }
 
 }  // namespace
@@ -193,6 +234,7 @@ Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
     bounded.reset();  // meshing has a time of its own
     const std::string outer = "outer";
     Mesh mesh = mesh_parts(parts, recipe.element_order, [&](const OuterFace&) { return outer; });
+    note_lost_volume(parts, mesh);
     // Outer faces get their names by picking; until then they are on no surface.
     Cells sides;
     const int unnamed = mesh.surface(outer);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
+#include "mesh/locate.hpp"
 #include "mesh/outer_faces.hpp"
 
 namespace driftwright::mesh {
@@ -25,11 +27,9 @@ class Parts {
     std::iota(parent_.begin(), parent_.end(), 0);
     for (int c = 0; c < mesh.cells.size(); ++c) join_all(mesh.cells.nodes(c));
     for (const Joint& joint : mesh.joints) {
-      for (const std::string* side : {&joint.side_a, &joint.side_b}) {
-        for (int f : mesh.facets_on(mesh.surface(*side))) join_all(mesh.facets.nodes(f));
-      }
       const std::vector<int> a = mesh.facets_on(mesh.surface(joint.side_a)), b = mesh.facets_on(mesh.surface(joint.side_b));
-      if (!a.empty() && !b.empty()) join(mesh.facets.nodes(a.front())[0], mesh.facets.nodes(b.front())[0]);
+      join_to_nearest(mesh, a, b);
+      join_to_nearest(mesh, b, a);
     }
   }
   int of(int node) {
@@ -39,6 +39,20 @@ class Parts {
 
  private:
   void join(int a, int b) { parent_[of(a)] = of(b); }
+  /// Joins every part that has facets on one side of a joint to the part that it touches on the other: equal bolts are one side together.
+  void join_to_nearest(const Mesh& mesh, const std::vector<int>& side, const std::vector<int>& other) {
+    if (other.empty()) return;
+    std::set<int> joined;
+    for (int f : side) {
+      const auto nodes = mesh.facets.nodes(f);
+      if (!joined.insert(of(nodes[0])).second) continue;
+      const Eigen::Vector3d centre =
+          cell_coords(mesh, nodes.first(static_cast<std::size_t>(n_corners_of(mesh.facets.shape[f])))).rowwise().mean();
+      const int nearest = nearest_point(mesh, mesh.facets, other, centre).cell;
+      join(nodes[0], mesh.facets.nodes(nearest)[0]);
+      joined.insert(of(nodes[0]));
+    }
+  }
   void join_all(std::span<const int> nodes) {
     for (int node : nodes) join(nodes[0], node);
   }

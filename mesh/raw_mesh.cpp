@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "mesh/outer_faces.hpp"
+#include "mesh/overlapping_cells.hpp"
 #include "mesh/quality.hpp"
 
 namespace driftwright::mesh {
@@ -120,6 +121,17 @@ void check_conformity(const RawMesh& raw, const Mesh& mesh, const FaceTable& fac
   });
 }
 
+void check_overlap(const RawMesh& raw, const Mesh& mesh) {
+  const auto overlap = find_overlap(mesh);
+  if (!overlap) return;
+  const auto region = [&](int cell) { return mesh.regions[static_cast<std::size_t>(mesh.cells.group[cell])]; };
+  const Eigen::Vector3d at_mm = 1e3 * overlap->point_m;
+  fail(raw, fmt::format("elements {} (region '{}') and {} ('{}') overlap at [{:.4g} mm, {:.4g} mm, {:.4g} mm]; bodies may "
+                        "touch, and what they fill must be theirs alone",
+                        raw.cell_number[overlap->cell], region(overlap->cell), raw.cell_number[overlap->other],
+                        region(overlap->other), at_mm[0], at_mm[1], at_mm[2]));
+}
+
 /// Collects facets by surface, each face once.
 class SurfaceTable {
  public:
@@ -209,6 +221,7 @@ Mesh check_and_build(const RawMesh& raw, double unit_m) {
   check_cells(raw, mesh);
   const FaceTable faces(mesh.cells);
   check_conformity(raw, mesh, faces);
+  check_overlap(raw, mesh);
   add_surfaces(raw, new_number, mesh, faces);
   return mesh;
 }

@@ -32,6 +32,7 @@
 #include "base/errors.hpp"
 #include "mesh/read_apart.hpp"
 #include "mesh/shape.hpp"
+#include "mesh/weld_points.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -263,6 +264,7 @@ RawMesh read_vtu(const std::string& path) {
   }
   if (n_turned > 0) raw.notes.push_back(fmt::format("{} wedges were upside down and were turned", n_turned));
   if (n_unnamed > 0) raw.notes.push_back(fmt::format("{} 2-D cells without a surface were left out", n_unnamed));
+  weld_points(raw);
   return raw;
 }
 

@@ -418,21 +418,6 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_such_face", "12, S2", "12, S6", {"face 's6' of element 12; S1 to S5"}},
         Mistake{
             "set_of_nothing", "*ELSET, ELSET=both\nhex, wedge", "*ELSET, ELSET=both\n11, 55", {"there is no element 55"}},
-        Mistake{
-            "set_of_itself_again_and_again",
-            "*ELSET, ELSET=both\nhex, wedge",
-            "*ELSET, ELSET=both\nhex, wedge\nboth,both,both,both,both,both,both,both,both,both,both,both,both,both,both\n"
-            "both,both,both,both,both,both,both,both,both,both\nboth,both,both,both,both,both,both,both,both,both\n"
-            "both,both,both,both,both,both,both,both,both,both\nboth,both,both,both,both,both,both,both,both,both",
-            {"with the set 'both' the set has", "20000000 are the most"}},
-        Mistake{"up_to_the_last_number",
-                "*ELSET, ELSET=both\nhex, wedge",
-                "*ELSET, ELSET=both, GENERATE\n9223372036854775800, 9223372036854775807, 5",
-                {"there is no element 9223372036854775800"}},
-        Mistake{"more_than_there_are",
-                "*ELSET, ELSET=both\nhex, wedge",
-                "*ELSET, ELSET=both, GENERATE\n11, 1000000000",
-                {"there is no element"}},
         Mistake{"from_below_zero",
                 "*ELSET, ELSET=both\nhex, wedge",
                 "*ELSET, ELSET=both, GENERATE\n-9223372036854775807, 9223372036854775807",
