@@ -63,14 +63,13 @@ bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
 /// Searches, and once more beside numbers that turn out to be faults.
 void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
                          const std::vector<Knob>& known, const Listener& listener) {
-  of.search = search(*of.fitter, names, how, listener);
+  of.search = search(*of.fitter, names, how, &of.search, listener);
   if (!widen_moved(of) || listener.wants_end()) return;
-  of.search = search(*of.fitter, names, how, listener);
+  of.search = search(*of.fitter, names, how, &of.search, listener);
   if (!narrow_returned(of, known)) return;
   Twin::Workspace workspace(of.fitter->twin());
   of.fitter->settle(of.search.hypothesis, of.search.fit);
-  of.search.fit =
-      of.fitter->fit(of.search.hypothesis, of.search.fit.claim_x(of.fitter->n_nuisance()), workspace);
+  of.search.fit = of.fitter->fit(of.search.hypothesis, of.search.fit.claim_x(of.fitter->n_nuisance()), workspace);
   (void)has_solution([&] { of.search.without = of.fitter->fit({}, Eigen::VectorXd(0), workspace); });
 }
 

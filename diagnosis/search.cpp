@@ -231,7 +231,8 @@ struct Trials {
       }
     }
     std::vector<Fit> fits = fit_all(ground.fitter, jobs, start, base_fit.misfit, Fitter::Slopes::kKept);
-    for (std::size_t i = 0; i < jobs.size(); ++i) fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+      fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();
   }
   /// Those that may come near the best are fitted on with scatter's slopes taken where they ended.
@@ -241,7 +242,8 @@ struct Trials {
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const FittedClaim& f = fitted[i];
-      if (f.is_rough && !f.fit.prediction.empty() && std::max(gain(f), f.hoped) > kHopeless * best - kHope) near.push_back(i);
+      if (f.is_rough && !f.fit.prediction.empty() && std::max(gain(f), f.hoped) > kHopeless * best - kHope)
+        near.push_back(i);
     }
     for_each_index(
         near.size(), [&] { return Twin::Workspace(ground.fitter.twin()); },
@@ -521,7 +523,7 @@ StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_clai
 }  // namespace
 
 SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, const SearchOptions& options,
-                    const Listener& listener) {
+                    const SearchResult* former, const Listener& listener) {
   SearchResult result;
   result.n_catalogue = std::max<std::size_t>(1, catalogue.size());
   Hypothesis best;
@@ -533,6 +535,15 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   result.without = best_fit;
   const Worth worth{.options = options, .without = result.without, .n_catalogue = result.n_catalogue};
   Ground ground{.fitter = fitter, .candidates = {}, .names = {}, .said = {}, .columns = {}};
+  Fit former_fit;
+  if (former && !former->hypothesis.empty()) {
+    ground.candidates = former->candidates;
+    ground.names = former->names;
+    ground.said = former->said;
+    former_fit = fit_all(fitter, {{former->hypothesis, former->fit.claim_x(fitter.n_nuisance())}},
+                         former->fit.x.head(fitter.n_nuisance()))
+                     .front();
+  }
   KnownFits known;
   double best_value = best_fit.log_evidence;
   const auto settle = [&] {  // what comes next starts from here
@@ -581,12 +592,16 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
     for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, listener))
       ground.columns.push_back(std::move(s));
     std::vector<FittedClaim> additions = fit_names(ground, best, best_fit, options.refits, &known, listener);
-    if (additions.empty()) break;
-    Hypothesis tried = with(best, additions.front().claim);
-    const double value = worth.evidence(ground.candidates, additions.front().fit, tried);
-    if (!worth.is_worth_it(value - best_value, additions.front().fit, best.size())) break;
-    best = std::move(tried);
-    best_fit = std::move(additions.front().fit);
+    std::vector<std::pair<Hypothesis, Fit>> tried;
+    if (!additions.empty()) tried.emplace_back(with(best, additions.front().claim), std::move(additions.front().fit));
+    if (best.empty() && !former_fit.prediction.empty()) tried.emplace_back(former->hypothesis, std::move(former_fit));
+    if (tried.empty()) break;
+    const auto value = [&](const auto& t) { return worth.evidence(ground.candidates, t.second, t.first); };
+    const auto likeliest =
+        std::max_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return value(a) < value(b); });
+    if (!worth.is_worth_it(value(*likeliest) - best_value, likeliest->second, best.size())) break;
+    best = std::move(likeliest->first);
+    best_fit = std::move(likeliest->second);
     settle();
     if (exchange()) settle();
   }
