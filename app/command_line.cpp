@@ -137,6 +137,8 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("model", options.models,
                    "a file models/NAME.json that `validate` has written, or a scenario; several for several axes")
       ->required();
+  verb->add_flag("--despite-verdict", options.despite_verdict,
+                 "follow a model that `validate` calls unsafe, too; never on a machine that cuts");
   verb->add_option(
       "--columns", options.columns,
       "scenario whose key `columns` says how the rows are written [as records], or `topics` where they come from");

@@ -62,7 +62,8 @@ std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, 
                             .hold_s = quantity("--hold", options.hold, "s"),
                             .fade_s = quantity("--fade", options.fade, "s"),
                             .for_picture = options.serve.has_value(),
-                            .watch = options.watch};
+                            .watch = options.watch,
+                            .despite_verdict = options.despite_verdict};
   std::vector<follow::Session::Model> models;
   for (const std::string& path : options.models) {
     const bool is_scenario = path.ends_with(".yaml") || path.ends_with(".yml");

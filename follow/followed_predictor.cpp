@@ -80,6 +80,7 @@ class FollowedPredictor final : public Followed {
                       path, d().name));
     if (file_.judged.is_object() && file_.judged.contains("verdict") && file_.judged["verdict"].is_string())
       axis_.verdict = file_.judged["verdict"].get<std::string>();
+    if (!options.despite_verdict) refuse_unsafe();
     if (!options.watch.empty()) {
       if (!observer_) throw InputError(fmt::format("--watch: {} holds no observer, whose residuals could be watched", path));
       watch_.emplace(*observer_, read_watch(options.watch, content_hash(read_bytes(path))));
@@ -169,6 +170,17 @@ class FollowedPredictor final : public Followed {
   }
 
  private:
+  /// A correction by what left more than none where it was judged is no protection.
+  void refuse_unsafe() const {
+    if (axis_.verdict != "unsafe") return;
+    const bool has_why = file_.judged.contains("why") && file_.judged["why"].is_string();
+    const std::string why = has_why ? file_.judged["why"].get<std::string>() : std::string();
+    throw InputError(
+        fmt::format("{}: `validate` judged '{}' unsafe{}. Follow a strategy that its report calls safe, or add "
+                    "--despite-verdict where nothing is cut",
+                    path_, d().name, why.empty() ? "" : " (" + why + ")"));
+  }
+
   [[nodiscard]] const DeployedPredictor& d() const { return file_.predictor; }
 
   std::string path_;

@@ -13,11 +13,13 @@ struct FollowOptions {
   std::optional<double> fade_s = {};          ///< none: the model's own, or 600 s
   bool for_picture = false;                   ///< the machine's displacements everywhere are asked for
   std::string watch = {};                     ///< file of a watch's limits; empty: nothing is watched
+  bool despite_verdict = false;               ///< false: what `validate` calls unsafe is refused
 };
 
 /// @param path  of its file
 /// @throws InputError  for a file that holds no predictor, and for one that no stream can tell enough of: laws of recorded columns, laws that hold for
-///                     a part of a run, an ambient that no thermometer reads; for a watch over what is no observer, or with another model's limits
+///                     a part of a run, an ambient that no thermometer reads; for a watch over what is no observer, or with another model's limits; for one
+///                     that `validate` calls unsafe
 [[nodiscard]] std::unique_ptr<Followed> followed_predictor(const std::string& path, const FollowOptions& options);
 
 }  // namespace driftwright::follow

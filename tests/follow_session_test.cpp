@@ -76,6 +76,17 @@ TEST(FollowSession, GivesTheCorrectionThatWasJudged) {
   }
 }
 
+TEST(FollowSession, DoesNotFollowWhatValidateCallsUnsafe) {
+  output::PredictorFile file = formula(true);
+  file.judged = {{"verdict", "unsafe"}, {"why", "a sensor that drifts leaves 40 um"}};
+  const std::string path = path_of(file, "unsafe.json");
+  EXPECT_THAT([&] { (void)followed_predictor(path, {}); },
+              ::testing::ThrowsMessage<InputError>(
+                  ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr("a sensor that drifts leaves 40 um"),
+                                   ::testing::HasSubstr("--despite-verdict"))));
+  EXPECT_NO_THROW((void)followed_predictor(path, {.despite_verdict = true}));
+}
+
 TEST(FollowSession, ARestartChangesNothing) {
   const Record r = fixtures::machine(7, 60.0);
   const std::string path = path_of(formula(true));
