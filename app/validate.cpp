@@ -20,8 +20,37 @@ void write_strategies(const compensation::StrategyMatrix& matrix, const scenario
   write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder);
 }
 
+/// What strategies are judged on where the scenario does not say it, in words for the user.
+std::string judge_by_default(scenarios::Scenario& scenario) {
+  try {
+    scenario.validation = scenarios::default_validation(scenario.cyclograms, scenario.study->tolerance_um);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", scenario.path, e.what()));
+  }
+  std::vector<std::string> fitted, judged;
+  for (const Cyclogram& c : scenario.validation->train) fitted.push_back(c.name);
+  for (const auto& family : scenario.validation->families)
+    judged.push_back(family.name == "random" ? "two random cyclograms at their speeds" : family.name);
+  return fmt::format(
+      "the scenario has no key `validation`: strategies are fitted on {} and judged on {}, in its own ambient and 5 K "
+      "cooler and warmer, "
+      "with readings of 0.1 K and 1 um; `validation` says it otherwise (docs/how-to/validation.md)",
+      fmt::join(fitted, ", "), fmt::join(judged, ", "));
+}
+
+/// The displacement that is corrected where no `study` names it.
+std::string only_target(const scenarios::Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const auto& d : scenario.machine->displacements) names.push_back(d.name);
+  if (names.size() == 1) return names.front();
+  throw InputError(fmt::format("{}: `validate` must know the target: add --target CHANNEL or the key `study`; {}",
+                               scenario.path,
+                               names.empty() ? std::string("the scenario has no `displacements`")
+                                             : fmt::format("there are {}", fmt::join(names, ", "))));
+}
+
 /// The strategies of `validation`, the predictors of `programme`, or both.
-void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& options) {
+void validate_machine(const scenarios::Scenario& scenario, const std::string& note, const CommonOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   std::vector<Cyclogram> asked;
@@ -45,6 +74,8 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
     const compensation::StrategyMatrix matrix = studies::validate_strategies(scenario, model, progress.listener());
     write_strategies(matrix, scenario, folder);
     document.body.sections.push_back(findings::strategy_section(matrix));
+    if (!note.empty())
+      document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
   }
   if (scenario.programme) {
     const studies::ProgrammeStudy study = studies::study_programme(scenario, model, progress.listener());
@@ -66,8 +97,8 @@ void validate(const RecordOptions& options) {
   }
   scenarios::Scenario scenario = read_scenario(options);
   if (!options.target.empty()) {
-    if (!on_records || scenario.study)
-      throw InputError("--target: it is for records of a scenario without `study`, which would name the target itself");
+    if (scenario.study)
+      throw InputError("--target: it is for a scenario without `study`, which would name the target itself");
     scenario.study.emplace().target = options.target;
     scenario.study->count_from_start = scenario.machine.has_value();  // a model knows drift since the start
   }
@@ -77,13 +108,14 @@ void validate(const RecordOptions& options) {
         scenario.path));
   if (!on_records) {
     if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "validate");
+    if (!scenario.machine)
+      throw InputError(fmt::format("{}: without a `machine` `validate` requires records (--train, --test)", scenario.path));
+    std::string note;
     if (!scenario.programme && !scenario.validation) {
-      throw InputError(fmt::format(
-          "{}: `validate` requires records (--train, --test), or the key `validation` or `programme` in the scenario "
-          "(docs/how-to/validation.md, docs/how-to/prediction.md)",
-          scenario.path));
+      if (!scenario.study) scenario.study.emplace().target = only_target(scenario);
+      note = judge_by_default(scenario);
     }
-    return validate_machine(scenario, options);
+    return validate_machine(scenario, note, options);
   }
   const scenarios::Study& settings = *scenario.study;
   studies::StudyRecords records = studies::read_records(scenario, options);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "scenarios/reader/programme.hpp"
 
@@ -124,6 +125,42 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   v.fails_at = in.quantity("sensor_fails_at");
   v.tolerance_um = in.quantity("tolerance", tolerance_um);
   in.reject_unknown_keys();
+  return v;
+}
+
+Validation default_validation(const std::vector<Cyclogram>& cyclograms, double tolerance_um) {
+  std::vector<Cyclogram> different;
+  std::set<double> speeds_rpm;
+  double longest_s = 0.0;
+  for (const Cyclogram& c : cyclograms) {
+    const auto is_same = [&](const Cyclogram& d) { return d.sections == c.sections; };
+    const auto turns = [](const Cyclogram::Section& s) { return s.drive.speed_rpm > 0.0; };
+    if (std::any_of(different.begin(), different.end(), is_same)) continue;
+    if (std::none_of(c.sections.begin(), c.sections.end(), turns)) continue;
+    different.push_back(c);
+    longest_s = std::max(longest_s, c.duration_s());
+    for (const Cyclogram::Section& s : c.sections) {
+      if (s.drive.speed_rpm > 0.0) speeds_rpm.insert(s.drive.speed_rpm);
+    }
+  }
+  if (different.size() < 2)
+    throw InputError(
+        "two different `cyclograms` that turn the spindle are required at least: what a fit leaves open is decided on runs "
+        "left out. Add some, or say by the key `validation` what strategies are judged on");
+  Validation v;
+  v.seasons = {{.name = "as trained"}, {.name = "5 K cooler", .offset_K = -5.0}, {.name = "5 K warmer", .offset_K = 5.0}};
+  v.noise_K = 0.1;
+  v.resolution_K = 0.1;
+  v.drift_noise_um = 1.0;
+  v.tolerance_um = tolerance_um;
+  if (different.size() > 2) {
+    v.families.push_back({.name = different.back().name, .cyclograms = {different.back()}});
+    different.pop_back();
+  }
+  v.train = std::move(different);
+  v.families.push_back({.name = "random",
+                        .cyclograms = random_cyclograms({.count = 2, .duration_s = longest_s},
+                                                        {speeds_rpm.begin(), speeds_rpm.end()}, v.seed)});
   return v;
 }
 
