@@ -12,7 +12,8 @@
 namespace driftwright::app {
 namespace {
 
-/// Runs the cyclograms of a machine of lumped nodes, which takes a moment, and says what no machine does.
+/// Runs the cyclograms of a machine of lumped nodes, which takes a moment, and returns sentences about what no machine
+/// does.
 std::vector<std::string> unusual_in_runs(scenarios::Scenario scenario, const Listener& listener) {
   scenario.solver.model = scenarios::ModelKind::kFull;
   std::vector<std::string> found;
@@ -23,7 +24,7 @@ std::vector<std::string> unusual_in_runs(scenarios::Scenario scenario, const Lis
       for (std::string& sentence : scenarios::unusual_results(runs, *scenario.machine)) found.push_back(std::move(sentence));
     } catch (const SolveError& e) {
       found.push_back(fmt::format("cannot be run: {}", e.what()));
-    } catch (const InputError&) {  // it wants a column that this cyclogram does not have: whoever runs it is told
+    } catch (const InputError&) {  // it requires a column that this cyclogram lacks; the error appears when the user runs it
     }
   }
   return found;

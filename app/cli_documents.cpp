@@ -10,7 +10,7 @@ std::vector<const CLI::App*> verbs_of(const CLI::App& cli) {
   return cli.get_subcommands([](const CLI::App* verb) { return !verb->get_name().empty(); });
 }
 
-/// Those with a name that begins with a dash.
+/// The options whose name begins with a dash.
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return option->nonpositional(); });
 }
@@ -29,7 +29,7 @@ bool takes_value(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }
 
-/// Text for roff: what would be a request or an escape is none.
+/// Text for roff, with characters escaped that would start a request or an escape.
 std::string roff(const std::string& text) {
   std::string safe;
   for (char c : text) {
@@ -47,7 +47,7 @@ std::string roff(const std::string& text) {
   return safe;
 }
 
-/// Text in single quotes of a shell; `escaped` are preceded by a backslash within them.
+/// Text in single quotes for a shell; a backslash is put before each character of `escaped`.
 std::string quoted(const std::string& text, const std::string& escaped = {}) {
   std::string q = "'";
   for (char c : text) {

@@ -1,5 +1,6 @@
 #pragma once
-// What the command line says of itself: a manual page and completions for shells, from the same tree that parses it.
+// Documents about the command line: a manual page and completions for shells, made from the CLI11 tree that parses the
+// options.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -8,7 +9,7 @@ namespace driftwright::app {
 
 /// A page for man(1), in roff.
 [[nodiscard]] std::string man_page(const CLI::App& cli, const std::string& version);
-/// To be sourced by bash, or put where it looks for completions.
+/// A script for bash, to be sourced or put into bash's folder of completions.
 [[nodiscard]] std::string bash_completion(const CLI::App& cli);
 /// A file _driftwright for zsh's fpath.
 [[nodiscard]] std::string zsh_completion(const CLI::App& cli);

@@ -26,7 +26,7 @@ using namespace driftwright;
 
 using app::kDone, app::kWrongInput;
 
-/// What all verbs with a folder of results can be told of it; `example` ends the help.
+/// Adds the options that all verbs with a folder of results have; `example` ends the help.
 void add_results(CLI::App* verb, app::CommonOptions& options, const std::string& folder, const std::string& example) {
   verb->add_option("-o,--out", options.out, "folder of results [results/" + folder + "]");
   verb->add_flag("--force", options.force, "replace the folder of results even if it holds other files");
@@ -41,7 +41,7 @@ void add_results(CLI::App* verb, app::CommonOptions& options, const std::string&
   verb->footer("Example:\n  driftwright " + example);
 }
 
-/// Adds a verb with the options that all have; `input` is what its file describes.
+/// Adds a verb with the common options; `input` says what its file describes.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
                    app::CommonOptions& options, const std::string& input = "scenario") {
   CLI::App* verb = app.add_subcommand(name, what);
@@ -52,14 +52,14 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   return verb;
 }
 
-/// What verbs take whose work several processes may share. @param parts  that the work has, in words
+/// Adds the options of verbs whose work several processes may share. @param parts  what the work consists of, in words
 void add_shards(CLI::App* verb, app::ShardOptions& options, const std::string& parts) {
   verb->add_option("--shard", options.shard,
                    "i/n: do the i-th of n parts of " + parts + " alone, as a task of a job array does");
   verb->add_flag("--merge", options.merge, "put together what all shards have done");
 }
 
-/// @param judges  it also tests, and does without records where the scenario has a programme
+/// @param judges  true for a verb that also tests, and that needs no records where the scenario has a programme
 void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   verb->add_option("--train", options.train, "record to fit on, or a part of it: run.csv:0h..20h; may be repeated")
       ->required(!judges)
@@ -70,7 +70,7 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   verb->add_option("--target", options.target, "displacement of the records to predict, for a scenario without `study`");
 }
 
-/// What a prediction begins with.
+/// Adds the options for the state in which a prediction begins.
 void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause, std::string& model) {
   CLI::Option* record = verb->add_option("--start", start,
                                          "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
@@ -80,7 +80,7 @@ void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause
       ->check(CLI::IsMember({"reduced", "full"}));
 }
 
-/// The filter: no scenario, no folder of results.
+/// The verb `inject`, a filter: it has no scenario and no folder of results.
 void add_inject(CLI::App& cli, app::InjectOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "inject", "encoder rows \"A B\" from standard input, with a correction inserted, to standard output");
@@ -129,7 +129,7 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
   verb->callback([&] { app::inject(options); });
 }
 
-/// Beside a running machine: no folder of results.
+/// The verb `follow`, beside a running machine: it has no folder of results.
 void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "follow",
@@ -206,7 +206,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->callback([&] { app::follow_stream(options); });
 }
 
-/// A model for other programs: one file.
+/// The verb `export`, a model for other programs: it writes one file.
 void add_export(CLI::App& cli, app::ExportOptions& options) {
   CLI::App* verb =
       cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/how-to/fmu.md)");
@@ -283,7 +283,7 @@ void add_import(CLI::App& cli, app::ImportOptions& options) {
   verb->callback([&] { app::import_file(options); });
 }
 
-/// The machine in a browser: one file.
+/// The verb `view`, the machine in a browser: it writes one file.
 void add_view(CLI::App& cli, app::ViewOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/how-to/view.md)");
@@ -303,7 +303,7 @@ void add_compare(CLI::App& cli, app::CompareOptions& options) {
   verb->callback([&] { app::compare(options); });
 }
 
-/// A first scenario: a folder of its own.
+/// The verb `init`, a first scenario: it makes a folder of its own.
 void add_init(CLI::App& cli, app::InitOptions& options) {
   CLI::App* verb =
       cli.add_subcommand("init", "a first scenario, commented, that runs: of a mesh or drawing, or of lumped nodes");
@@ -332,7 +332,7 @@ void add_list(CLI::App& cli, app::ListOptions& options) {
   verb->callback([&] { app::list(options); });
 }
 
-/// Names of files are written into results and messages, where a line break would begin a line of somebody else's.
+/// Names of files are written into results and messages, where a line break could start a forged line.
 void refuse_control_characters(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     if (has_control_character(argv[i]))
@@ -341,7 +341,7 @@ void refuse_control_characters(int argc, const char* const* argv) {
   }
 }
 
-/// CLI11 would only say that a subcommand is required.
+/// A better message than CLI11's, which would only say that a subcommand is required.
 void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   std::vector<std::string> verbs;
   for (const CLI::App* verb : cli.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
@@ -351,7 +351,7 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
                                near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
-/// What is wrong with the words behind a verb, with the option that was meant where one is near.
+/// The message for wrong words after a verb; it names a similar option if there is one.
 std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
   const std::vector<CLI::App*> verbs = cli.get_subcommands();
   const CLI::App& verb = verbs.empty() ? cli : *verbs.front();
@@ -371,7 +371,7 @@ std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
   return fmt::format("{}: {}\n{}", command, e.what(), help);
 }
 
-/// driftwright help VERB, for those who type that.
+/// Adds `driftwright help VERB`.
 void add_help(CLI::App& cli, std::string& of) {
   CLI::App* verb = cli.add_subcommand("help", "the help of a verb");
   verb->add_option("verb", of, "its name");

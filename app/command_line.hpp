@@ -3,7 +3,7 @@
 
 namespace driftwright::app {
 
-/// @param argv  as main() has it, argv[0] is the program
+/// @param argv  as in main(); argv[0] is the program
 /// @return the exit code
 [[nodiscard]] int command_line(int argc, const char* const* argv);
 

@@ -13,7 +13,7 @@ bool is_scenario(const std::string& path) {
   return ending == ".yaml" || ending == ".yml";
 }
 
-/// Scenarios have no results yet: says the commands that make them.
+/// The user gave scenarios, which have no results yet: names the commands that make them.
 [[noreturn]] void say_what_to_run(const CompareOptions& options) {
   std::string commands, names;
   for (const std::string& path : {options.first, options.second}) {

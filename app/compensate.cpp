@@ -38,7 +38,7 @@ output::PredictorFile from_file(const Scenario& scenario, const std::string& pat
   return file;
 }
 
-/// What a predictor and its fail-safe read, a simulated machine must tell.
+/// Requires that the simulated machine has all inputs of a predictor and its fail-safe.
 void require_inputs(const Scenario& scenario, const DeployedPredictor& d, const std::string& path) {
   const scenarios::MachineModel& machine = *scenario.machine;
   std::vector<Input> wanted = d.predictor->inputs();
@@ -61,14 +61,15 @@ void require_inputs(const Scenario& scenario, const DeployedPredictor& d, const 
   }
 }
 
-/// What it was judged to be, as its file says; "" where nobody has judged it.
+/// The verdict in the predictor's file; "" if nothing has judged it.
 std::string verdict_of(const Json& judged) {
   return judged.is_object() && judged.contains("verdict") && judged["verdict"].is_string()
              ? judged["verdict"].get<std::string>()
              : "";
 }
 
-/// A run that a predictor was fitted on says nothing of how good it is. @param is_fitted_on  of an entry of `trained_on`
+/// A predictor must not be judged by a run that it was fitted on. @param is_fitted_on  says whether an entry of
+/// `trained_on` is that run
 void refuse_trained_on(const Json& judged, const std::string& path, const std::string& run,
                        const std::function<bool(const Json&)>& is_fitted_on) {
   if (!judged.is_object() || !judged.contains("trained_on") || !judged["trained_on"].is_array()) return;
@@ -93,7 +94,7 @@ void refuse_trained_on_record(const Json& judged, const std::string& path, const
   });
 }
 
-/// --after FILE gives a whole record what came before it.
+/// With --after FILE, `measured` must continue that record.
 void require_continues(const Scenario& scenario, const CompensateOptions& options) {
   if (scenario.study->count_from_start)
     throw InputError(scenario.study->where,
@@ -105,7 +106,7 @@ void require_continues(const Scenario& scenario, const CompensateOptions& option
   }
 }
 
-/// What the injector wants, before any work.
+/// Requires what the injector needs, before any work.
 void require_axis(const Scenario& scenario, const std::string& target) {
   if (!scenario.axis_loop) {
     throw InputError(scenario.study->where,
@@ -130,7 +131,7 @@ std::string corrected_csv(const studies::CorrectionStudy& o, const std::vector<s
   return csv;
 }
 
-/// corrected.csv: the largest error on the table over time, by each correction.
+/// corrected.csv: the largest error on the table over time, for each correction.
 std::string frame_csv(const studies::FrameStudy& study) {
   std::string csv = "time_s";
   for (const studies::TableStrategy& row : study.corrections) csv += fmt::format(",\"{}_um\"", row.name);
@@ -153,7 +154,7 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   finish(findings::document_of(study, scenario, options.model, folder.made_by()), folder, progress, options);
 }
 
-/// Before anything is read.
+/// Checks the options before anything is read.
 void require_options_that_go_together(const CompensateOptions& options) {
   const bool is_measured = !options.measured.empty(), through_frame = options.through == "frame";
   if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))

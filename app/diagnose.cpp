@@ -64,7 +64,7 @@ void diagnose(const DiagnoseOptions& options) {
   progress.begin("writing");
   if (options.causes_only) diagnosis::leave_numbers(d);
   std::string difference;
-  std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
+  std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit applies them
   if (d.written.keeps_numbers) changes = stated_scatter(d, options.causes_only);
   for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =

@@ -1,11 +1,12 @@
 #pragma once
-// Ctrl-C in work whose results so far are worth having.
+// Ctrl-C during long work: the results so far are kept and written.
 
 #include <csignal>
 
 namespace driftwright::app {
 
-/// While it lives, the first SIGINT (Ctrl-C) or SIGTERM asks for an end; the next one ends the program as ever. One at a time.
+/// While this object exists, the first SIGINT (Ctrl-C) or SIGTERM only sets a flag; the next one ends the program as
+/// usual. Only one object may exist at a time.
 class EndRequest {
  public:
   EndRequest();

@@ -15,8 +15,8 @@
 namespace driftwright::app {
 namespace {
 
-/// Without memory of its own, and also where standard error is full. What a file says of itself commands no terminal: of control characters,
-/// line breaks and tabs alone are said.
+/// Prints without allocating memory, also when standard error is full. A message may quote a file; of its control
+/// characters only line breaks and tabs are printed, so that no file can command the terminal.
 void say(const char* words, const char* what = "") noexcept {
   std::fputs(words, stderr);
   for (; *what != '\0'; ++what) {
@@ -64,7 +64,7 @@ ExitCode exit_code_of(const std::exception_ptr& failure) {
 }
 
 void end_with_words() {
-  std::signal(SIGXFSZ, SIG_IGN);  // what is longer than files may be then fails to be written, which is told
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file size then fails and is reported
   std::set_terminate([] {
     const std::exception_ptr failure = std::current_exception();
     const ExitCode code = failure ? exit_code_of(failure) : kOurBug;

@@ -1,5 +1,5 @@
 #pragma once
-// How a command ended, as the number that the shell sees.
+// Exit codes of the program, and the exceptions that lead to them.
 
 #include <exception>
 
@@ -7,10 +7,12 @@ namespace driftwright::app {
 
 enum ExitCode { kDone = 0, kOurBug = 1, kWrongInput = 2, kNumericsGaveUp = 3, kEndedEarly = 130 };
 
-/// Says on standard error what happened. What the machine lacks that the program runs on (memory, disk, a folder, threads) is no bug of ours: 2, with words.
+/// Prints the failure on standard error. A lack of resources (memory, disk, a folder, threads) is no bug of ours: its
+/// code is kWrongInput.
 [[nodiscard]] ExitCode exit_code_of(const std::exception_ptr& failure);
 
-/// The same for what is thrown where no handler is, as in a loop on all cores: the program ends with that number and words.
+/// Installs the same for exceptions that no handler catches, as in a parallel loop: the program prints the failure and
+/// ends with its exit code, or aborts after a bug of ours.
 void end_with_words();
 
 }  // namespace driftwright::app

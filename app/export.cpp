@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A record in the names of an importer, one column a variable.
+/// A table for an importer: one column per variable, under the variable's name.
 struct Columns {
   std::vector<std::string> names;
   std::vector<std::vector<double>> values;
@@ -37,12 +37,12 @@ struct Columns {
   }
 };
 
-/// Time and drive, by the names that variables_of() gives them.
+/// Time and drive, under the names of variables_of().
 Columns drive_columns(const output::FmuModel& model, const Cyclogram& cyclogram, const std::vector<double>& time_s) {
   Columns columns;
   columns.add("time", time_s);
   const std::vector<output::FmuVariable> variables = output::variables_of(model);
-  for (std::size_t d = 0; d < model.drive.size(); ++d) {  // behind the time
+  for (std::size_t d = 0; d < model.drive.size(); ++d) {  // after the time
     std::vector<double> values;
     for (double t_s : time_s) values.push_back(output::value_of(model.drive[d].variable, cyclogram.drive(t_s)));
     columns.add(variables[d + 1].name, std::move(values));
@@ -64,7 +64,7 @@ void add_machine_reference(output::FmuOrder& order, const Record& record, const 
   order.reference_words = fmt::format("what `driftwright predict` says of the cyclogram '{}'", cyclogram.name);
 }
 
-/// What the observer says of a machine that is as its model.
+/// The reference output: the observer run on a machine that equals its model.
 void add_observer_reference(output::FmuOrder& order, const compensation::Observer& observer,
                             const scenarios::Scenario& scenario, const Record& record, const Cyclogram& cyclogram) {
   compensation::ObservedRun run{.cyclogram = cyclogram, .ambient = {}, .readings = record};

@@ -42,9 +42,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSaveEvery_s = 1.0;
-constexpr double kLongestPoll_s = 0.25;  // so soon an end that is asked for is noticed
-constexpr double kStale_s = 60.0;        // after so long without a message a channel is missing, at least
-constexpr double kFirstSilence_s = 5.0;  // without a line, at least, before one is written without
+constexpr double kLongestPoll_s = 0.25;  // longest wait for a row: a request to end is noticed within this time
+constexpr double kStale_s = 60.0;        // least time without a message after which a channel is missing
+constexpr double kFirstSilence_s = 5.0;  // least time without a row after which a line is written without one
 
 std::optional<double> quantity(const char* option, const std::string& text, const std::string& unit) {
   if (text.empty()) return std::nullopt;
@@ -91,7 +91,8 @@ std::optional<ColumnMap> columns_of(const std::string& path) {
   return scenario.columns;
 }
 
-/// Of the options; else of the scenario that says how rows are written, or the first that is followed and has them.
+/// The topics of the options; else of the scenario that describes the rows, or of the first followed scenario that has
+/// some.
 std::vector<follow::ChannelOrigin> origins_of(const FollowVerbOptions& options) {
   if (!options.topics.empty() || !options.from.empty()) return follow::read_origins(options.topics);
   std::vector<std::string> paths = options.models;
@@ -121,7 +122,7 @@ class Following {
   }
 
   void run() {
-    std::signal(SIGPIPE, SIG_IGN);  // a write tells
+    std::signal(SIGPIPE, SIG_IGN);  // a failed write reports it
     const EndRequest end_request;
     if (options_.replay.empty())
       follow_source();
@@ -135,7 +136,7 @@ class Following {
   void follow_source() {
     const std::unique_ptr<follow::RowSource> source = open_source();
     std::string line;
-    Clock::time_point last = Clock::now();  // a row that was taken, or a line written without
+    Clock::time_point last = Clock::now();  // of the last row taken, or line written without one
     while (is_read_ && !EndRequest::is_made()) {
       const auto got = source->next(line, kLongestPoll_s);
       if (got == follow::RowSource::Got::kEnd) break;
@@ -157,6 +158,10 @@ class Following {
         throw InputError(
             "--mtconnect requires --topic CHANNEL=ITEM for each channel, with a data item's id or name, or `topics` in the "
             "scenario");
+      std::vector<std::string> headers = {"time_s"};
+      for (const follow::ChannelOrigin& o : origins) headers.push_back(o.header);
+      const std::vector<follow::ColumnUnit> units = follow::column_units(headers, columns_of(options_.columns));
+      for (std::size_t k = 0; k < origins.size(); ++k) origins[k].numbers = units[k + 1];
       const auto say = [where = options_.mtconnect](const std::string& words) {
         (void)std::fputs(fmt::format("{}: {}\n", where, words).c_str(), stderr);
       };
@@ -191,7 +196,7 @@ class Following {
     return std::make_unique<follow::MessageRows>(*link_);
   }
 
-  /// Writes a line without a row where none was taken for long. @param last  row taken, or line written so
+  /// Writes a line without a row after a long silence. @param last  time of the last row taken or such line written
   void tell_silence(Clock::time_point& last) {
     if (page_) page_->feed().hand_on();
     if (!session_.has_channels()) return;
@@ -245,7 +250,7 @@ class Following {
     if (!session_.has_channels()) {
       if (!why.empty() && !link_)
         throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
-      if (!why.empty()) {  // whoever may write to the topic has written it, and the source of the rows may write yet
+      if (!why.empty()) {  // anybody may write to the topic, and the real source may still come
         (void)std::fputs(fmt::format("{}: {}; `follow` waits for a header or a JSON row\n", options_.from, why).c_str(),
                          stderr);
         ++n_before_header_;
@@ -319,7 +324,7 @@ class Following {
   Clock::time_point saved_ = Clock::now(), began_;
   std::optional<double> first_s_;
   std::int64_t n_rows_ = 0, n_taken_ = 0;
-  bool is_read_ = true;  // somebody reads what is written
+  bool is_read_ = true;  // false once nothing reads standard output
   bool is_silent_ = false;
   std::int64_t n_unheard_ = 0, n_before_header_ = 0;
   std::unique_ptr<follow::MqttLink> link_;
@@ -330,7 +335,7 @@ class Following {
 
 namespace {
 
-/// Writes the limits of an observer's watch.
+/// Writes the limits for the watch of an observer.
 void calibrate_watch(const FollowVerbOptions& options) {
   const std::optional<double> top_rpm = quantity("--top-speed", options.top_speed, "rpm");
   if (!top_rpm)
@@ -363,7 +368,7 @@ void follow_stream(const FollowVerbOptions& options) {
   if (!options.calibrate_watch.empty()) return calibrate_watch(options);
   if (options.pace < 0.0) throw InputError("--pace must be 0 (as fast as it goes) or more");
   if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace requires --replay FILE");
-  if (options.serve) (void)page_address(options);  // before a machine is meshed
+  if (options.serve) (void)page_address(options);  // checks the address before the slow meshing
   Following(options).run();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The verb `follow`, whose options no other verb has.
+// Options of the verb `follow`, which no other verb shares, and the verb itself.
 
 #include <optional>
 #include <string>
@@ -9,17 +9,17 @@ namespace driftwright::app {
 
 struct FollowVerbOptions {
   std::vector<std::string> models;  ///< files of `validate`, or a scenario
-  std::string columns;              ///< a scenario whose `columns` say how rows are written, or `topics` where from; empty: as records
+  std::string columns;              ///< scenario with `columns` or `topics` of the rows; empty: rows as in records
   std::string replay;               ///< a file in place of standard input
-  double pace = 0.0;                ///< of the replay: times its own; 0: as fast as it goes
+  double pace = 0.0;                ///< speed of the replay, as a multiple of real time; 0: as fast as possible
   std::string mqtt;                 ///< broker HOST:PORT in place of standard input; empty: none
   std::string mtconnect;            ///< address of an agent in place of standard input; empty: none
-  bool sample = false;              ///< of the agent all observations, not what it tells now
+  bool sample = false;              ///< read all observations of the agent, not only its current values
   std::string sparkplug;            ///< node of Sparkplug B at the broker, GROUP/NODE or GROUP/NODE/DEVICE; empty: none
   std::string from;                 ///< topic whose messages are rows
-  std::vector<std::string> topics;  ///< or one a channel: "t01_degC=shop/mill/t01"; of an agent its data item; empty: the scenario's key `topics`
-  std::string every = "1 s";        ///< of the rows that are made of those
-  std::string to;                   ///< topic that lines go to, too; empty: none
+  std::vector<std::string> topics;  ///< or a topic or data item per channel: "t01_degC=shop/mill/t01"; empty: the scenario's
+  std::string every = "1 s";        ///< interval of rows made from topics or items
+  std::string to;                   ///< topic to which lines are also published; empty: none
   std::string state, record;        ///< files; empty: none
   std::optional<int> serve;         ///< port of a page; none: no page
   std::string bind = "127.0.0.1";   ///< address that it listens at

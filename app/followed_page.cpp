@@ -18,7 +18,8 @@
 namespace driftwright::app {
 namespace {
 
-/// The picture of a model: its surface in the small system's states; of lumped nodes, whose state is their temperatures, the network.
+/// Adds the picture of a model: its surface with the fields of the small system's states, or, for lumped nodes, whose
+/// temperatures are the state, the network.
 void add_picture(output::LivePage& page, const std::string& path, const scenarios::Model& model) {
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
   page.reference_degC = scenario.machine->reference_K - kZeroCelsius_K;

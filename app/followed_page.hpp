@@ -1,5 +1,5 @@
 #pragma once
-// The page of a followed stream: what stands on it before the first row.
+// The page of a followed stream: what it shows before the first row, and with each row.
 
 #include <string>
 
@@ -9,13 +9,14 @@
 
 namespace driftwright::app {
 
-/// Where `--serve`, `--bind` and `--token` say. @pre options.serve @throws InputError  where nobody may listen so
+/// The address from `--serve`, `--bind` and `--token`. @pre options.serve
+/// @throws InputError  for a token file without a token, and for an address that may not be used without one
 [[nodiscard]] follow::PageAddress page_address(const FollowVerbOptions& options);
 
-/// The page: the machine of a scenario among the models, where there is one that can be drawn.
+/// The HTML page. It draws the machine of the first model that can be drawn, if there is one.
 [[nodiscard]] std::string followed_page(const FollowVerbOptions& options, const follow::Session& session);
 
-/// What it shows of a line that was said just now.
+/// The row that the page shows for the line just written.
 [[nodiscard]] follow::PageRow page_row(const follow::Session& session, const follow::FollowLine& line);
 
 }  // namespace driftwright::app

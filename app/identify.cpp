@@ -19,7 +19,7 @@
 namespace driftwright::app {
 namespace {
 
-/// A record CSV, or any logger's file by a guess.
+/// Reads a record CSV, or any logger's file with guessed columns.
 Record read(const std::string& path, std::vector<std::string>& notes) {
   try {
     return read_record_csv(path);
@@ -49,7 +49,7 @@ std::string plain_stem(const std::string& path) {
 void identify(const IdentifyOptions& asked) {
   if (!asked.prior.empty()) return identify_beside(asked);
   IdentifyOptions options = asked;
-  options.scenario = asked.records.front();  // what the results are of
+  options.scenario = asked.records.front();  // the results are named after the first record
   std::vector<Record> records;
   std::vector<std::string> notes, files;
   std::set<std::string> stems;

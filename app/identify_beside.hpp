@@ -1,5 +1,5 @@
 #pragma once
-// `identify --prior`: what a scenario misses of records, learned beside its physics.
+// `identify --prior`: fits what a scenario does not explain in records, beside its physics.
 
 #include "app/verbs.hpp"
 

@@ -15,7 +15,7 @@ void import_file(const ImportOptions& options) {
   const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
   output::ResultsFolder folder = open_results(options, file_name(stem, ""));
   Progress progress(options.quiet);
-  // Named after the logger's file, so that several imports can be distinguished where each record goes by its name.
+  // Named after the logger's file, so that several imports can be distinguished by their file names.
   folder.write_text(file_name(stem, ".csv"), record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
   folder.write_text(
       "columns.yaml",

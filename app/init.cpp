@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder under way, beside its target: gone unless it is kept.
+/// The folder in preparation, beside its target; it is removed unless keep() is called.
 class NewFolder {
  public:
   explicit NewFolder(const fs::path& target)
@@ -49,14 +49,14 @@ class NewFolder {
 
 constexpr const char* kPicture = "regions.svg";
 
-/// Each region in a colour of its own, named at its thermometer.
+/// A picture with each region in its own colour, named at its thermometer.
 std::string regions_picture(const studies::MachineDraft& draft, const mesh::Mesh& mesh) {
   std::vector<output::PictureMark> marks;
   for (const auto& point : draft.thermometers) marks.push_back({.name = point.region, .at_m = point.at_m});
   return output::draw_machine({.mesh = &mesh, .by_region = true, .marks = marks});
 }
 
-/// Where the scenario would not run, in the file's final place; "" where it would.
+/// The error that the scenario gives when it is read, with the file's final path; "" if there is none.
 std::string complaint(const fs::path& file) {
   try {
     const scenarios::Scenario scenario = scenarios::read_scenario(file.string());

@@ -42,10 +42,10 @@ double positive_quantity(const std::string& option, const std::string& text, con
   throw InputError(fmt::format("{} '{}' must be above 0", option, text));
 }
 
-constexpr double kMostRowsBehind = 1e7;   // the end of the input
-constexpr std::int64_t kFaultsSaid = 10;  // of each sort, to standard error; the log has all
+constexpr double kMostRowsBehind = 1e7;   // most rows that are added after the end of the input
+constexpr std::int64_t kFaultsSaid = 10;  // of each sort that are printed to standard error; the log has all
 
-/// The injector with rows for its unit of time, in either way to use it.
+/// The injector with rows as its unit of time, free or clocked.
 class RowInjector {
  public:
   RowInjector(const InsertionRules& rules, bool clocked, std::int64_t separation, std::int64_t interval)
@@ -74,7 +74,7 @@ class RowInjector {
       out.push_back(last_);
     }
   }
-  /// Appends the rows that complete what has begun when the input ends. @throws InputError  where that would be rows without end
+  /// Appends the rows that complete what has begun when the input ends. @throws InputError  if that needs too many rows
   void finish(std::vector<Lines>& out) {
     if (!timed_) return;
     timed_->freeze();
@@ -95,7 +95,7 @@ class RowInjector {
   [[nodiscard]] const EncoderReader& encoder() const { return timed_ ? timed_->encoder() : rows_.encoder(); }
   [[nodiscard]] std::int64_t inserted() const { return timed_ ? timed_->inserted() - timed_->waiting() : rows_.inserted(); }
   [[nodiscard]] std::int64_t n_too_fast() const { return timed_ ? timed_->n_too_fast() : 0; }
-  /// Rows between two edges of the encoder that an insertion takes; 0: it needs no time of its own.
+  /// Rows between two edges of the encoder that an insertion needs; 0: it needs no time of its own.
   [[nodiscard]] std::int64_t room() const { return timed_ ? (rows_per_insertion_ + 1) * separation_ : 0; }
 
  private:
@@ -122,7 +122,7 @@ void require_together(const InjectOptions& options) {
         fmt::format("--halstream '{}': a HAL file can name no file with a blank, a quote, #, $ or [", options.halstream));
 }
 
-/// Two names of one file? A device such as /dev/null may have several.
+/// Whether two names are one file. A device such as /dev/null may be named several times.
 bool same_file(const std::string& a, const std::string& b) {
   struct stat of_a, of_b;
   const bool has_a = stat(a.c_str(), &of_a) == 0, has_b = stat(b.c_str(), &of_b) == 0;
@@ -148,7 +148,7 @@ void require_own_files(const InjectOptions& options) {
   }
 }
 
-/// A file that is opened next would otherwise get the number of a standard stream that is closed, and its bytes.
+/// If a standard stream is closed, the next opened file would get its number and its bytes.
 void require_standard_streams() {
   if (fcntl(STDIN_FILENO, F_GETFD) < 0) throw InputError("standard input is closed; rows are read from it");
   if (fcntl(STDOUT_FILENO, F_GETFD) < 0) throw InputError("standard output is closed; rows are written to it");
@@ -156,12 +156,12 @@ void require_standard_streams() {
     throw InputError("standard error is closed");
 }
 
-/// To standard error. That it cannot be written is no reason to fail: the rows are what counts.
+/// Prints to standard error. A failed print is ignored: the rows matter more.
 void tell(const std::string& words) {
   (void)std::fputs(words.c_str(), stderr);
 }
 
-/// What goes to files beside standard output.
+/// The files that are written beside standard output.
 struct SideFiles {
   std::optional<output::VcdFile> vcd;
   std::optional<output::HalStreamFile> hal;
@@ -188,7 +188,7 @@ class Filter {
         injector_(rules_, options.clocked, options.separation, options.interval) {}
 
   void run() {
-    std::signal(SIGPIPE, SIG_IGN);  // write() tells
+    std::signal(SIGPIPE, SIG_IGN);  // write() reports a closed pipe
     compensation::RowReader reader(STDIN_FILENO, options_.strict);
     bool wanted = true;
     while (wanted) {
@@ -231,7 +231,7 @@ class Filter {
   }
 
   void pass_on(std::span<const Lines> rows) {
-    const std::size_t block = files_.any() ? 1 : rows.size();  // files tell of each row
+    const std::size_t block = files_.any() ? 1 : rows.size();  // the files need each row
     out_.clear();
     for (std::size_t i = 0; i < rows.size();) {
       const double told = correction_.quarters_at(n_rows_ + 1), wish = is_withdrawn_ ? 0.0 : told;
@@ -250,7 +250,7 @@ class Filter {
     }
   }
 
-  /// The longest stretch of rows in which an insertion may stand.
+  /// Finds the longest stretch of rows in which an insertion fits.
   void look_for_room(std::span<const Lines> rows) {
     for (const Lines row : rows) {
       const bool same = (row & kLinesAB) == stretch_lines_;
@@ -260,7 +260,7 @@ class Filter {
     }
   }
 
-  /// What was wished and is not in.
+  /// Reports corrections that were requested and not inserted.
   void tell_what_is_missing() {
     const std::int64_t missing = std::abs(target_ - injector_.inserted());
     if (rules_.bypass || missing < rules_.quarters) return;
@@ -278,7 +278,8 @@ class Filter {
     }
   }
 
-  /// Counts, logs and says what was wrong; where faults bypass, the correction is withdrawn until the pipe tells the next one.
+  /// Counts, logs and prints faults. With --on-fault bypass the correction is withdrawn until the pipe gives the next
+  /// one.
   void take_faults(const std::vector<std::string>& faults, std::int64_t& n) {
     for (const std::string& what : faults) {
       if (n++ < kFaultsSaid) tell(fmt::format("inject: {}\n", what));
@@ -309,7 +310,7 @@ class Filter {
   void end() {
     const EncoderReader& encoder = injector_.encoder();
     const bool wire =
-        rules_.bypass && encoder.n_jumps() > 0;  // faults pass a wire, and the control miscounts them by itself
+        rules_.bypass && encoder.n_jumps() > 0;  // with --bypass faults pass unchanged, and the control miscounts them
     if (!wire && control_.count() != encoder.count() + injector_.inserted())
       throw std::logic_error("counts in + inserted are not counts out");
     if (files_.vcd) files_.vcd->finish();
@@ -358,7 +359,7 @@ class Filter {
   std::array<std::int64_t, 3> logged_ = {-1, -1, -1};
   Lines stretch_lines_ = 0;
   std::int64_t stretch_ = 0,
-               longest_ = 0;  // rows alike at the end of the input so far, and the most in which an insertion may stand
+               longest_ = 0;  // rows: stretch of equal lines at the input's end, longest for an insertion
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// Pieces of a verb's work beside its folder of results, in `<folder>.parts`: a run that was killed goes on where it was, shards each keep their own, and
-// the last run puts all together.
+// Keeps finished pieces of a verb's work in `<folder>.parts`, beside its folder of results: a run that was killed
+// continues where it stopped, each shard keeps its own pieces, and the last run merges them.
 
 #include <filesystem>
 #include <mutex>
@@ -14,20 +14,24 @@ namespace driftwright::app {
 
 class KeptPieces {
  public:
-  /// Looks at what is kept. The file of this shard is made and locked with the first piece that it keeps: work that is refused leaves nothing.
+  /// Reads the pieces that are kept. The file of this shard is created and locked with the first piece that it keeps:
+  /// work that is refused leaves no file.
   /// @param target  folder of results
-  /// @param scenario, words  what decides the pieces: its path, and every option that is said of the work
-  /// @throws InputError  for shards that are none, for --merge beside --shard. Keeping throws one when another process works at the same shard
-  KeptPieces(const std::filesystem::path& target, const ShardOptions& options, const std::string& scenario, std::vector<std::string> words);
+  /// @param scenario, words  what determines the pieces: the scenario's path, and every option that changes the work
+  /// @throws InputError  for an invalid shard, and for --merge together with --shard. Keeping a piece throws one when
+  /// another process works at the same shard
+  KeptPieces(const std::filesystem::path& target, const ShardOptions& options, const std::string& scenario,
+             std::vector<std::string> words);
   KeptPieces(const KeptPieces&) = delete;
   KeptPieces& operator=(const KeptPieces&) = delete;
 
-  /// As the work wants them; this outlives it. With --merge, what is missing is an InputError.
+  /// The hooks for the work; this object must outlive them. With --merge, a missing piece is an InputError.
   [[nodiscard]] Pieces pieces();
   [[nodiscard]] const Shard& shard() const { return shard_; }
-  /// A shard is done: its file is put in its place. @returns what the terminal says. @param command  that merges, in words
+  /// Ends a shard: gives its file the final name. @param command  the command that merges, in words
+  /// @returns the line for the terminal
   [[nodiscard]] std::string finish_shard(const std::string& command);
-  /// Results stand: what was kept goes.
+  /// Removes the kept pieces; call it once the results are written.
   void remove();
 
  private:

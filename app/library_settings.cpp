@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::string_view kComputing[] = {"run",      "mesh",     "simulate",  "predict", "validate", "compensate",
                                            "schedule", "diagnose", "calibrate", "sweep",   "follow"};
-constexpr const char* kSpins = "10000";  // some microseconds
+constexpr const char* kSpins = "10000";  // turns, some microseconds
 
-/// @return whether it was missing
+/// @return whether it was missing and is now set
 bool set_missing(const char* name, const char* value) {
   const char* present = std::getenv(name);
   return !(present && *present) && setenv(name, value, 1) == 0;
@@ -35,12 +35,11 @@ void restart_with_library_settings(char** argv) {
   if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
     is_new = set_missing("OPENBLAS_CORETYPE", "SKYLAKEX") || is_new;
 #endif
-  if (is_new) execv("/proc/self/exe", argv);  // comes back where it cannot
+  if (is_new) execv("/proc/self/exe", argv);  // returns only if it fails
 }
 
 void take_threads_that_fit() {
-  constexpr rlim_t kOfAThread = rlim_t(256)
-                                << 20;  // its stack, what the allocator sets aside for it, and something to compute with
+  constexpr rlim_t kOfAThread = rlim_t(256) << 20;  // a thread's stack, its memory arena, and some memory to compute with
   rlimit space = {};
   if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return;
   const auto n_fitting = std::max<rlim_t>(1, space.rlim_cur / kOfAThread);

@@ -46,7 +46,7 @@ void list_ranges(bool markdown) {
   }
 }
 
-/// What a scenario opens with: its first comment, up to where the sentence or the line ends.
+/// The opening of a scenario: its first comment, up to the end of the sentence or the line.
 std::string opening(const std::string& text) {
   if (!text.starts_with("# ")) return "";
   const std::string line = text.substr(2, text.find('\n') - 2);
@@ -54,7 +54,7 @@ std::string opening(const std::string& text) {
   return stop == std::string::npos ? line : line.substr(0, stop + 1);
 }
 
-/// YAML files that describe a machine or a study of records: those that have a name.
+/// Lists all .yaml files below a folder, each with the opening of its first comment.
 void list_scenarios(const std::string& folder) {
   if (!fs::is_directory(folder))
     throw InputError(fmt::format("there is no folder '{}'; name one: driftwright list scenarios FOLDER", folder));

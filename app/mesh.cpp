@@ -14,7 +14,7 @@
 namespace driftwright::app {
 namespace {
 
-/// The file itself: nothing is known of it but what it says.
+/// Reads a mesh or a drawing alone, without a scenario.
 mesh::Mesh read_file(const MeshOptions& options) {
   mesh::UnnamedGeometry read = mesh::read_unnamed_geometry(options.scenario, options.units);
   if (read.unit_is_a_guess) {

@@ -7,7 +7,8 @@
 
 namespace driftwright::app {
 
-/// models/<strategy>.json of each strategy, with its verdict and the conditions it was judged under; .txt and .c of those that are formulas.
+/// Writes models/<strategy>.json of each strategy, with its verdict and the conditions it was judged under, and also .txt
+/// and .c of strategies that are formulas.
 /// @param effects  of the scenario's machine
 void write_models(const compensation::StrategyMatrix& matrix, const std::vector<effects::Effect>& effects,
                   output::ResultsFolder& folder);

@@ -32,17 +32,21 @@ studies::PlacementOptions options_of(const PlaceOptions& options, const scenario
   how.any_may_fail = !options.none_fails;
   if (!options.noise.empty()) {
     how.noise_K = option_quantity("--noise", options.noise, "K");
-    if (!(how.noise_K >= 1e-3 && how.noise_K <= 10.0)) throw InputError(fmt::format("--noise '{}': 0.001 K to 10 K is allowed", options.noise));
+    if (!(how.noise_K >= 1e-3 && how.noise_K <= 10.0))
+      throw InputError(fmt::format("--noise '{}': 0.001 K to 10 K is allowed", options.noise));
   } else if (scenario.validation) {
     how.noise_K = std::max(0.01, scenario.validation->noise_K);
   }
   return how;
 }
 
-/// Every option that decides what comes out.
+/// Every option that changes the result.
 std::vector<std::string> words_of(const PlaceOptions& options) {
-  std::vector<std::string> words = {"place", options.placed_for, options.noise, fmt::format("{} {} {}", options.count.value_or(0), options.points.value_or(0), options.none_fails)};
-  for (const auto* list : {&options.regions, &options.excluded, &options.mounted, &options.channels, &options.train, &options.test}) {
+  std::vector<std::string> words = {
+      "place", options.placed_for, options.noise,
+      fmt::format("{} {} {}", options.count.value_or(0), options.points.value_or(0), options.none_fails)};
+  for (const auto* list :
+       {&options.regions, &options.excluded, &options.mounted, &options.channels, &options.train, &options.test}) {
     words.emplace_back("-");
     words.insert(words.end(), list->begin(), list->end());
   }
@@ -56,10 +60,11 @@ void place(const PlaceOptions& options) {
   scenarios::require_nothing_before(scenarios::require_machine(scenario, "place"), "place");
   const studies::PlacementOptions how = options_of(options, scenario);
   (void)studies::with_sensors(scenario.path, {"{name: tried}"},
-                              {});  // what cannot be edited is told before all the computing
+                              {});  // refuses a scenario that cannot be edited before the long computation
   KeptPieces kept(checked_results(options, scenario.name), options, options.scenario, words_of(options));
   Progress progress(options.quiet);
-  const std::optional<studies::Placement> placed = studies::place_thermometers(scenario, how, progress.listener(), kept.pieces());
+  const std::optional<studies::Placement> placed =
+      studies::place_thermometers(scenario, how, progress.listener(), kept.pieces());
   progress.end();
   if (!placed) {
     const std::string said = kept.finish_shard("the same command with");
@@ -71,8 +76,10 @@ void place(const PlaceOptions& options) {
   const std::vector<int>& set = placement.chosen.sets[static_cast<std::size_t>(placement.options.n) - 1];
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < placement.names.size(); ++i)
-    entries.push_back(studies::sensor_entry(placement.names[i], placement.spots[static_cast<std::size_t>(set[placement.mounted.size() + i])]));
-  const std::vector<std::string> head = provenance_lines(folder.made_by(), fmt::format("thermometers placed on {}", scenario.name));
+    entries.push_back(studies::sensor_entry(placement.names[i],
+                                            placement.spots[static_cast<std::size_t>(set[placement.mounted.size() + i])]));
+  const std::vector<std::string> head =
+      provenance_lines(folder.made_by(), fmt::format("thermometers placed on {}", scenario.name));
   std::string sensors;
   for (const std::string& line : head) sensors += fmt::format("# {}\n", line);
   folder.write_text("sensors.yaml", sensors + fmt::format("sensors:\n  - {}\n", fmt::join(entries, "\n  - ")));

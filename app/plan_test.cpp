@@ -34,10 +34,11 @@ void plan_test(const PlanTestOptions& options) {
   studies::TestPlanOptions how{
       .interval_s = scenario.solver.output_interval_s, .n_programmes = options.n_programmes, .seed = options.seed};
   if (!options.time.empty()) how.duration_s = 3600.0 * quantity("--time", options.time, "h", 0.5, 168.0);
-  constexpr double kMostRows = 20000.0;  // each with a column for each law that is doubted
+  constexpr double kMostRows = 20000.0;  // each row has a column for each law in doubt
   const double finest_s = std::max(0.1, how.duration_s / kMostRows);
   how.interval_s = std::clamp(how.interval_s, finest_s, how.duration_s / 96.0);
-  if (!options.interval.empty()) how.interval_s = quantity("--interval", options.interval, "s", finest_s, how.duration_s / 96.0);
+  if (!options.interval.empty())
+    how.interval_s = quantity("--interval", options.interval, "s", finest_s, how.duration_s / 96.0);
   if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
   if (!options.noise_K.empty()) how.noise.temperature_K = quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
   if (!options.noise_um.empty())

@@ -1,5 +1,5 @@
-// Ends the program with words on a processor older than the one that it was built for (cmake/processor.cmake), before anything else runs:
-// constructors of other files already use its vectors. This file itself is built for every x86-64.
+// Ends the program with a message on a processor older than the one it was built for (cmake/processor.cmake), before
+// anything else runs: constructors of other files already use its vectors. This file itself is built for every x86-64.
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What goes on, on a terminal; silent in a pipe.
+// Shows progress on a terminal; silent in a pipe.
 
 #include <string>
 
@@ -7,20 +7,20 @@
 
 namespace driftwright::app {
 
-/// One line on standard error that is rewritten as work goes on and erased at the end.
+/// One line on standard error that is rewritten as work proceeds and erased at the end.
 class Progress {
  public:
-  /// @param quiet  shows nothing on a terminal either
+  /// @param quiet  show nothing on a terminal either
   explicit Progress(bool quiet = false);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Names the work now begun.
+  /// Starts a new piece of work with this name.
   void begin(const std::string& work);
-  /// Share of it that is done, 0 to 1.
+  /// Sets the share of it that is done, 0 to 1.
   void update(double share);
-  /// Hears of all that is done. Must not outlive this.
+  /// A listener that feeds this line. It must not outlive this object.
   [[nodiscard]] Listener listener();
   /// Erases the line; call before anything else is printed.
   void end();

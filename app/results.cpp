@@ -90,7 +90,7 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
   if (options.strict) refuse_implausible(options.scenario, document);
   progress.begin("writing");
   const std::string json = output::json_text(output::document_json(document));
-  folder.write_text("summary.json", json);  // of every verb
+  folder.write_text("summary.json", json);  // the same name for every verb
   if (json_file != "summary.json") folder.write_text(json_file, json);
   for (const output::CsvFile& csv : output::document_csv(document)) folder.write_text(csv.path, csv.text);
   const output::html::Rendered rendered = output::document_html(document);

@@ -32,7 +32,8 @@ const scenarios::ScheduleSettings& require_schedule(const scenarios::Scenario& s
                   scenario.path));
 }
 
-/// Times of one part from its start. Durations added up in another order end elsewhere by rounding: the last sample is the end.
+/// Times of one part from its start. Durations that are summed in another order end slightly elsewhere by rounding; the
+/// last sample is set to the end.
 std::vector<double> part_times_s(const studies::Prediction& prediction, const scenarios::PartRows& rows, double end_s) {
   const std::vector<double>& all_s = prediction.record.time_s;
   std::vector<double> time_s;
@@ -43,7 +44,7 @@ std::vector<double> part_times_s(const studies::Prediction& prediction, const sc
   return time_s;
 }
 
-/// The drift of one part along the axes to correct, from where the machine was set.
+/// The drift of one part along the axes to correct, relative to where the machine was set.
 std::vector<compensation::ProgramAxis> axes_of(const CorrectedSeries& series, const scenarios::PartRows& rows) {
   std::vector<compensation::ProgramAxis> axes;
   for (const scenarios::ScheduleAxis& axis : series.settings.axes) {
@@ -91,7 +92,8 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
   }
 }
 
-/// The highest speed that the scenario says anything of: of its cyclograms, or that a law states its heat or growth at [rpm]; 0: none.
+/// The highest speed [rpm] that the scenario knows: of its cyclograms, or at which a law states its heat or growth; 0:
+/// none.
 double known_speed_rpm(const scenarios::Scenario& scenario) {
   double top_rpm = 0.0;
   for (const Cyclogram& c : scenario.cyclograms) {
@@ -106,11 +108,11 @@ double known_speed_rpm(const scenarios::Scenario& scenario) {
   return top_rpm;
 }
 
-/// @throws InputError  with the line, for a speed that the scenario says nothing of
+/// @throws InputError  with the line, for a speed above those that the scenario knows
 void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& program) {
   constexpr double kRounding = 1.0 + 1e-9;  // of units: 2000 rpm through 1/s and back
   const double top_rpm = known_speed_rpm(scenario);
-  if (top_rpm == 0.0) return;  // nothing of the machine is stated at a speed
+  if (top_rpm == 0.0) return;  // no law or cyclogram has a speed
   double t_s = 0.0;
   for (const NcMove& move : program.moves) {
     t_s += move.duration_s;

@@ -12,7 +12,7 @@
 namespace driftwright::app {
 namespace {
 
-/// All of the scenario's where none is named.
+/// The named cyclograms; all of the scenario if none is named.
 /// @throws InputError  for two of one name, whose records would be one file, and as named_cyclogram()
 std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, const std::vector<std::string>& names) {
   if (names.empty()) return scenario.cyclograms;
@@ -39,7 +39,7 @@ void simulate(const SimulateOptions& options) {
   for (const Cyclogram& c : asked) cyclograms.push_back(&c);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
-  // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
+  // Whole fields of one cyclogram only: those of several would fill the disk, and one list of times would mix them.
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const bool writes_fields = wants_fields && cyclograms.size() == 1;
   const scenarios::Model machine = scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields);

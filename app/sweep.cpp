@@ -20,7 +20,7 @@ std::string file_of(const Shard& shard) {
   return shard.is_all() ? "sweep.csv" : fmt::format("sweep.{}of{}.csv", shard.number, shard.of);
 }
 
-/// Simulates what is missing of `members` and adds it to `rows`.
+/// Simulates the missing members of `members` and adds them to `rows`.
 void simulate_missing(const SweepPlan& plan, const std::vector<std::size_t>& members, output::RowsUnderWay& file,
                       NumberedRows& rows, Progress& progress) {
   constexpr std::size_t kMostTold = 10;
@@ -75,7 +75,7 @@ NumberedRows found_rows(const fs::path& parts, const output::RowsIdentity& ident
   return rows;
 }
 
-/// @throws SolveError  so that a script sees it
+/// Ends with an error if members failed, so that a script notices. @throws SolveError
 void fail_where_members_failed(const NumberedRows& rows, const fs::path& table) {
   const auto n_failed =
       std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !studies::is_done(row.second); });
@@ -101,8 +101,7 @@ void sweep(const SweepOptions& options) {
   if (options.merge && !options.shard.empty())
     throw InputError("--merge joins what all shards have written; leave out --shard");
   const SweepPlan plan = scenarios::read_sweep_plan(options.scenario);
-  const fs::path target =
-      checked_results(options, plan.name);
+  const fs::path target = checked_results(options, plan.name);
   const fs::path parts = target.string() + ".parts";
   const output::RowsIdentity identity{scenarios::content_key(plan, kVersion), plan.table_header()};
   Progress progress(options.quiet);

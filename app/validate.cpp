@@ -34,7 +34,7 @@ std::string judge_by_default(scenarios::Scenario& scenario) {
   return fmt::format(
       "the scenario has no key `validation`: strategies are fitted on {} and judged on {}, in its own ambient and 5 K "
       "cooler and warmer, "
-      "with readings of 0.1 K and 1 um; `validation` says it otherwise (docs/how-to/validation.md)",
+      "with readings of 0.1 K and 1 um. The key `validation` chooses others (docs/how-to/validation.md)",
       fmt::join(fitted, ", "), fmt::join(judged, ", "));
 }
 
@@ -100,7 +100,7 @@ void validate(const RecordOptions& options) {
     if (scenario.study)
       throw InputError("--target: it is for a scenario without `study`, which would name the target itself");
     scenario.study.emplace().target = options.target;
-    scenario.study->count_from_start = scenario.machine.has_value();  // a model knows drift since the start
+    scenario.study->count_from_start = scenario.machine.has_value();  // a model predicts drift since the start
   }
   if (on_records && !scenario.study)
     throw InputError(fmt::format(

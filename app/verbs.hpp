@@ -10,7 +10,7 @@
 
 namespace driftwright::app {
 
-/// What all verbs take.
+/// Options of all verbs.
 struct CommonOptions {
   std::string scenario;
   std::string out;       ///< folder of results; empty: results/<name of the scenario>
@@ -18,29 +18,29 @@ struct CommonOptions {
   bool json = false;     ///< print the JSON document in place of text
   bool quiet = false;    ///< print no results, show no progress
   bool details = false;  ///< print all tables
-  bool strict = false;   ///< refuse what no machine has (base/usual_ranges.hpp)
+  bool strict = false;   ///< refuse numbers that no machine has (base/usual_ranges.hpp)
 };
 
-/// What verbs take whose work several processes may share.
+/// Options of verbs whose work several processes may share.
 struct ShardOptions {
   std::string shard;   ///< "i/n", or empty for all
-  bool merge = false;  ///< only put together what shards have done
+  bool merge = false;  ///< only merge what shards have computed
 };
 
 void run(const CommonOptions& options);
 void check(const CommonOptions& options);
 
 struct MeshOptions : CommonOptions {  ///< `scenario` may be a mesh or a drawing, too
-  std::string units;                  ///< of a mesh file: mm, cm, m, inch; empty: by its size
+  std::string units;                  ///< length unit of a mesh file: mm, cm, m, inch; empty: guessed from its size
 };
 void mesh(const MeshOptions& options);
 
 struct InitOptions {
-  std::string folder;           ///< that is made; its last part names the scenario
+  std::string folder;           ///< to create; its last part names the scenario
   std::string from = "lumped";  ///< or a mesh or drawing
   std::string units;            ///< as in MeshOptions
 };
-/// A first scenario, commented, that runs.
+/// Writes a first scenario, with comments, that runs as it is.
 void init(const InitOptions& options);
 
 struct SimulateOptions : CommonOptions {
@@ -51,7 +51,7 @@ void simulate(const SimulateOptions& options);
 struct PredictOptions : CommonOptions {
   std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/reader/read_cyclogram.hpp)
   std::string start;        ///< what the machine did before, a record CSV or a cyclogram of the scenario; empty: its start
-  std::string after_pause;  ///< at rest between that and the cyclogram, such as "30 min"; empty: none
+  std::string after_pause;  ///< pause between `start` and the cyclogram, such as "30 min"; empty: none
   std::string model;        ///< reduced, full; empty: predicting_model() of studies/prediction.hpp
 };
 void predict(const PredictOptions& options);
@@ -59,44 +59,44 @@ void predict(const PredictOptions& options);
 struct WarmUpVerbOptions : CommonOptions {
   std::string then;                   ///< the job: a cyclogram of the scenario, a record CSV or an NC program
   std::string tolerance;              ///< such as "10 um"; empty: the study's, else 10 um
-  std::string margin;                 ///< share of it that is kept free, such as "20 %"; empty: none
-  std::string model_error;            ///< such as "20 %", of which the margin then follows; empty: none
-  std::string power_limit;            ///< of the heat that a speed brings, such as "150 W"; empty: none
+  std::string margin;                 ///< share of the tolerance that is kept free, such as "20 %"; empty: none
+  std::string model_error;            ///< such as "20 %"; the margin then follows from it; empty: none
+  std::string power_limit;            ///< limit of the heat that a speed causes, such as "150 W"; empty: none
   std::string speed_limit;            ///< such as "3000 rpm"; empty: the fastest of the scenario and the job
   std::string time_limit;             ///< such as "2 h"; empty: 4 h
   std::vector<std::string> channels;  ///< displacements; empty: all
-  std::string start;                  ///< these as in PredictOptions
+  std::string start;                  ///< `start` to `model`: as in PredictOptions
   std::string after_pause;
   std::string model;
 };
-/// The shortest warm-up behind which a job stays within a tolerance.
+/// Finds the shortest warm-up after which a job stays within a tolerance.
 void warmup(const WarmUpVerbOptions& options);
 
 struct PlaceOptions : CommonOptions, ShardOptions {
   std::optional<int> count;              ///< thermometers to place; none: the study's, else 4
-  std::optional<int> points;             ///< of a mesh that are tried; none: 400
+  std::optional<int> points;             ///< candidate points on a mesh; none: 400
   std::vector<std::string> regions;      ///< that may carry them; empty: all
   std::vector<std::string> excluded;     ///< regions that may not
   std::vector<std::string> mounted;      ///< sensors of the scenario that are there already
   std::vector<std::string> channels;     ///< displacements; empty: the study's target, else all
   std::vector<std::string> train, test;  ///< cyclograms to choose on and to judge by
   std::string placed_for = "both";       ///< or observer, regression
-  bool none_fails = false;               ///< count only the case in which all of them work
+  bool none_fails = false;               ///< judge only the case in which all thermometers work
   std::string noise;                     ///< of a reading, such as "0.1 K"; empty: the scenario's, else 0.1 K
 };
-/// Where thermometers tell most of the drift.
+/// Finds the places where thermometers predict the drift best.
 void place(const PlaceOptions& options);
 
 struct PlanTestOptions : CommonOptions, ShardOptions {
-  std::string time;         ///< such as "8 h"; empty: that
+  std::string time;         ///< such as "8 h", which is also the default for empty
   std::string speed_limit;  ///< such as "3000 rpm"; empty: the fastest of the scenario
   std::string interval;     ///< of rows, such as "30 s"; empty: the scenario's
-  std::string noise_K;      ///< of a thermometer's reading, such as "0.05 K"; empty: that
-  std::string noise_um;     ///< of a displacement's, such as "0.5 um"; empty: that
+  std::string noise_K;      ///< of a thermometer's reading; empty: "0.05 K"
+  std::string noise_um;     ///< of a displacement's reading; empty: "0.5 um"
   int n_programmes = 0;     ///< 0: 10000, fewer for large machines
   unsigned seed = 1;
 };
-/// The test programme behind which most effects would be named, before anything is measured.
+/// Plans the test programme after which a diagnosis would name most effects, before anything is measured.
 void plan_test(const PlanTestOptions& options);
 
 struct ScheduleVerbOptions : CommonOptions {
@@ -104,12 +104,12 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string policy;   ///< empty: the scenario's
   std::string dialect;  ///< empty: the scenario's
   bool split = false;   ///< divide blocks that cannot keep the tolerance
-  bool beyond = false;  ///< plan at speeds that the scenario says nothing of, too
-  std::string start;    ///< these as in PredictOptions
+  bool beyond = false;  ///< also plan at speeds above those that the scenario mentions
+  std::string start;    ///< `start` to `model`: as in PredictOptions
   std::string after_pause;
   std::string model;
-  int parts = 0;        ///< made one after another by the program; 0: as many as the scenario says
-  std::string between;  ///< at rest between two of them, such as "2 min"; empty: the scenario's
+  int parts = 0;        ///< parts that the program makes one after another; 0: as many as the scenario says
+  std::string between;  ///< pause between two parts, such as "2 min"; empty: the scenario's
 };
 void schedule(const ScheduleVerbOptions& options);
 
@@ -118,16 +118,16 @@ struct InjectOptions {
   std::string unit = "um";       ///< of numbers from a pipe: um or count
   std::string period;            ///< travel of one signal period, "4 um"; empty: corrections are in counts
   std::string row_time;          ///< time of a row, "1 ms"; empty: corrections are by row
-  std::string counts = "x4";     ///< of the control: x4, x2, x1
+  std::string counts = "x4";     ///< how the control counts: x4, x2, x1
   std::string insert = "cycle";  ///< cycle, half, quarter
-  bool anywhere = false;         ///< not only while both lines are low
+  bool anywhere = false;         ///< insert also while a line is high
   bool bypass = false;
-  std::string column;                    ///< of the correction: of a table of several, or axis of lines of `follow`
-  std::string on_fault = "hold";         ///< or bypass: what a row or correction that is none does
-  bool strict = false;                   ///< it ends the run
+  std::string column;                    ///< of a table with several columns, or axis of lines from `follow`
+  std::string on_fault = "hold";         ///< for an invalid row or correction: hold, or bypass
+  bool strict = false;                   ///< an invalid row or correction ends the run
   bool clocked = false;                  ///< one row out for each row in
-  int separation = 1;                    ///< rows between two edges, where clocked
-  int interval = 1;                      ///< rows between two insertions, where clocked
+  int separation = 1;                    ///< least rows between two edges, with `clocked`
+  int interval = 1;                      ///< least rows between two insertions, with `clocked`
   std::string vcd, halstream, hal, log;  ///< files beside standard output
 };
 void inject(const InjectOptions& options);
@@ -152,7 +152,7 @@ void compensate(const CompensateOptions& options);
 
 struct DiagnoseOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
-  std::vector<std::string> without;   ///< catalogue keys that are not looked for
+  std::vector<std::string> without;   ///< catalogue keys that are not searched for
   bool causes_only = false;           ///< leave the scenario's own numbers in extended.yaml as they are
 };
 void diagnose(const DiagnoseOptions& options);
@@ -162,7 +162,7 @@ struct ListOptions {
   std::string of;                ///< scenario, of joints and cyclograms; folder, of scenarios; empty: scenarios/
   bool markdown = false;         ///< effects with places, keys and laws, as docs/reference/effects.md has them
 };
-/// Prints what there is to choose from.
+/// Prints the available choices.
 void list(const ListOptions& options);
 
 struct SchemaOptions {
@@ -180,24 +180,24 @@ void calibrate(const CalibrateOptions& options);
 
 struct ImportOptions : CommonOptions {  ///< `scenario` is the logger's file
   std::string by;                       ///< YAML with the key `columns`; empty: guessed
-  std::string zone, interval, every;    ///< what a guess is helped by (base/guess_columns.hpp)
+  std::string zone, interval, every;    ///< hints for the guess (base/guess_columns.hpp)
 };
-/// A logger's file as a record.
+/// Writes a logger's file as a record.
 void import_file(const ImportOptions& options);
 
 struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::vector<std::string> records;
   std::string ambient;              ///< channel; empty: guessed
-  std::vector<std::string> drives;  ///< channels that drive beside those whose unit says so
+  std::vector<std::string> drives;  ///< channels that drive the machine, in addition to those recognised by their unit
   std::string prior;                ///< scenario to extend; empty: none
 };
-/// A network from records alone, or what a scenario misses, learned beside it.
+/// Identifies a network from records alone, or fits what a scenario does not explain, beside it.
 void identify(const IdentifyOptions& options);
 
 struct CompareOptions : CommonOptions {
   std::string first, second;  ///< record CSVs, or folders of results that hold a record.csv
 };
-/// Two records beside each other.
+/// Compares two records.
 void compare(const CompareOptions& options);
 
 struct ExportOptions {
@@ -206,17 +206,17 @@ struct ExportOptions {
   bool fmu = false;
   int fmi = 2;                 ///< version of the standard, 2 or 3
   std::string of = "machine";  ///< or observer
-  std::string type = "both";   ///< me, cs
-  std::string model;           ///< with observer: its file
+  std::string type = "both";   ///< interfaces: both, me (model exchange), cs (co-simulation)
+  std::string model;           ///< with `of` = observer: its file
 };
 void export_model(const ExportOptions& options);
 
 struct ViewOptions {
   std::string scenario;
   std::string out;        ///< file; empty: results/<name of the scenario>.html
-  std::string cyclogram;  ///< that the page begins with; empty: the one that the study judges by, else the first
+  std::string cyclogram;  ///< with which the page begins; empty: the one that the study judges by, else the first
 };
-/// A machine in one page.
+/// Writes a page in which a machine runs.
 void view(const ViewOptions& options);
 
 struct SweepOptions : CommonOptions, ShardOptions {};  ///< `scenario` is the study

@@ -38,7 +38,8 @@ const Cyclogram& first_cyclogram(const ViewOptions& options, const Scenario& sce
   return scenario.study ? scenario.cyclogram(scenario.study->judge) : scenario.cyclograms.front();
 }
 
-/// Regressions on the study's thermometers, fitted on its training cyclograms as `run` fits them; without a study the model itself, one row late.
+/// The correction of the page: regressions on the study's thermometers, fitted on its training cyclograms as `run` fits
+/// them; without a study the model itself, one row late.
 output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::Model& model, const Listener& listener) {
   if (!scenario.study) {
     return {.name = "this model, one row late",

@@ -1,15 +1,17 @@
 #pragma once
-// JSON that comes from outside: the one door for it. nlohmann's copies and texts call themselves once a level, so that some 10^5 levels end the program.
+// Parses JSON that comes from outside, with a limit on its depth. Without the limit, some 10^5 nested levels crash the
+// program, because nlohmann's copy and dump functions are recursive.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 
 namespace driftwright {
 
-/// Lists and objects within one another; what the program writes nests 6 deep.
+/// Largest depth of nested lists and objects that is accepted. The program's own files have a depth of 6.
 constexpr int kDeepestJson = 100;
 
-/// @throws InputError  for text that is no JSON, saying where, or that nests deeper; the caller says of what file or row
+/// @throws InputError  for text that is no JSON, with the position, or that is nested deeper than kDeepestJson; the caller
+///                     names the file or row
 [[nodiscard]] nlohmann::ordered_json parse_json(std::string_view text);
 
 }  // namespace driftwright

@@ -17,14 +17,6 @@ struct UnitOfRecords {
 constexpr UnitOfRecords kUnits[] = {{"K", "K"}, {"um", "um"},      {"mm_min", "mm/min"}, {"rpm", "rpm"}, {"urad", "urad"},
                                     {"W", "W"}, {"W_m2", "W/m^2"}, {"V", "V"},           {"s", "s"},     {"1", "1"}};
 
-const char* in_udunits(const std::string& unit) {
-  if (unit == "percent") return "%";
-  for (const UnitOfRecords& u : kUnits) {
-    if (unit == u.name) return u.unit;
-  }
-  return unit == "degC" ? "degC" : "1";
-}
-
 /// UDUNITS also turns a quantity into its reciprocal, Hz into s; here that is another quantity.
 bool are_convertible(const std::string& from, const std::string& to) {
   try {
@@ -52,8 +44,17 @@ double MappedChannel::value(double number) const {
   return magnitude ? std::abs(in_unit) : in_unit;
 }
 
+std::string in_udunits(const std::string& record_unit) {
+  if (record_unit == "percent") return "%";
+  if (record_unit == "count") return "1";
+  for (const UnitOfRecords& u : kUnits) {
+    if (record_unit == u.name) return u.unit;
+  }
+  return record_unit;  // degC, mm, min, h
+}
+
 std::string record_unit(const std::string& written_unit) {
-  (void)unit_factor(written_unit, written_unit);  // is it a unit at all?
+  (void)unit_factor(written_unit, written_unit);  // throws if it is not a unit
   if (has_offset(written_unit)) return "degC";
   if (written_unit == "%" || written_unit == "percent") return "percent";
   if (written_unit == "count" || written_unit == "counts") return "count";

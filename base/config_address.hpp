@@ -5,8 +5,8 @@
 //     machine.column.wall                            keys of maps
 //     effects[bearing_friction@spindle].load         entries of lists by the words that name them
 //
-// The words that name an entry are its values of type, name, region, surface, joint, node, tank and to; `@` joins several where
-// one does not single it out. A key may hold dots: the longest key that fits is taken.
+// The words that name an entry are its values of type, name, region, surface, joint, node, tank and to; `@` joins several
+// words where one is not unique. A key may contain dots: the longest matching key is used.
 
 #include <string>
 #include <vector>
@@ -18,9 +18,9 @@ namespace driftwright {
 /// Indices into ConfigNode::items, from the root on.
 using ConfigSteps = std::vector<std::size_t>;
 
-/// @param asked  where the address stands, for messages
-/// @throws InputError  at `asked`, with what there is instead and the nearest of it, when a key or entry does not exist or
-///                     several entries carry the words
+/// @param asked  position where the address is written, for messages
+/// @throws InputError  at `asked`, when a key or entry does not exist or several entries match; the message lists what
+///                     exists and the nearest name
 [[nodiscard]] ConfigSteps find_address(const ConfigNode& root, const std::string& address, const Where& asked);
 
 }  // namespace driftwright

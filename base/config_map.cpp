@@ -35,7 +35,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 }
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kShort = 3;  // of words as short as an axis every other is near
+  constexpr std::size_t kShort = 3;  // for words as short as an axis name every other word is near
   const std::string near = word.size() < kShort ? "" : nearest_word(word, candidates);
   return near.empty() ? "" : fmt::format(" Did you mean '{}'?", near);
 }
@@ -87,7 +87,7 @@ ConfigMap ConfigMap::described_by(const std::vector<schema::Map>& descriptions) 
   for (const schema::Map& d : descriptions) {
     const bool is_there = d.when_key.empty() || holds(d.when_key);
     if (is_there && (d.when_word.empty() || text(d.when_key) == d.when_word)) {
-      for (const schema::Map& other : descriptions) {  // behind it: two forms at once
+      for (const schema::Map& other : descriptions) {  // a description after it that also matches: two forms at once
         if (&other > &d && other.when_word.empty() && holds(other.when_key) && !d.find(other.when_key))
           fail(other.when_key,
                fmt::format("`{}` and `{}` exclude each other; write only one of them", d.when_key, other.when_key));
@@ -113,7 +113,7 @@ void ConfigMap::check_group(const schema::Group& group) const {
     if (holds(key)) {
       given.push_back(key);
     } else {
-      asked_.insert(key);  // that it is missing has been looked at
+      asked_.insert(key);  // the key is missing, which counts as read
     }
   }
   using Rule = schema::Group::Rule;
@@ -182,7 +182,7 @@ Where ConfigMap::where(const std::string& key) const {
   if (!index) return node_->where(path_of(key));
   const ConfigNode& node = *node_->items[*index];
   if (node.kind != ConfigNode::Kind::kNull) return node.where(path_of(key));
-  ConfigNode at_key = node;  // an empty value has the mark of whatever follows: take the key's
+  ConfigNode at_key = node;  // an empty value has the mark of what follows: use the key's
   at_key.line = node_->keys[*index].line;
   at_key.column = node_->keys[*index].column;
   return at_key.where(path_of(key));
@@ -250,7 +250,7 @@ bool is_name(const std::string& text) {
 std::string ConfigMap::name(const std::string& key) const {
   std::string value = text(key);
   if (!is_name(value)) {
-    std::string near = value;  // "my machine" was meant to be my_machine
+    std::string near = value;  // suggest my_machine for "my machine"
     std::replace(near.begin(), near.end(), ' ', '_');
     fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most{}", value,
                           is_name(near) ? fmt::format(". Did you mean '{}'?", near) : ""));
@@ -301,7 +301,7 @@ std::vector<std::string> ConfigMap::texts(const std::string& key) const {
 int ConfigMap::integer(const std::string& key) const {
   const schema::Value& as = way(key, schema::Value::Kind::kInteger);
   if (const auto fallback = ask(key)->number; fallback && !holds(key)) return static_cast<int>(*fallback);
-  const std::string value = text(key);  // by hand: yaml-cpp takes 010 for eight
+  const std::string value = text(key);  // not by yaml-cpp, which reads 010 as eight
   std::size_t used = 0;
   int number = 0;
   try {

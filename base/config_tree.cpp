@@ -28,13 +28,13 @@ std::string too_deep() {
   return fmt::format("lists and maps are nested more than {} deep, which is the most", kDeepest);
 }
 
-/// Of a node, with what its aliases stand for.
+/// Size of a node with its aliases expanded.
 struct Extent {
   std::size_t size = 1, depth = 1;
 };
 
-/// Builds the tree from the parser's events. yaml-cpp's own nodes would let duplicate keys pass, take lists and maps for keys,
-/// and lose their lines when copied.
+/// Builds the tree from the parser's events. yaml-cpp's own nodes would accept duplicate keys and keys that are lists or
+/// maps, and lose their lines when copied.
 class TreeBuilder : public YAML::EventHandler {
  public:
   explicit TreeBuilder(std::shared_ptr<const ConfigSource> source) : source_(std::move(source)) {}
@@ -94,7 +94,7 @@ class TreeBuilder : public YAML::EventHandler {
     add(std::make_shared<ConfigNode>(std::move(done.node)), done.anchor, done.extent);
   }
 
-  /// A few lines of aliases of aliases stand for billions of values.
+  /// A few lines of aliases of aliases can expand to billions of values.
   void require_bearable(const Extent& extent, const ConfigNode& node) const {
     if (extent.size > kMostNodes)
       throw InputError(
@@ -180,7 +180,7 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
   try {
     std::istringstream in(text);
     YAML::Parser(in).HandleNextDocument(builder);
-  } catch (const YAML::DeepRecursion& e) {  // of yaml-cpp's own bound, which it meets before the tree is closed
+  } catch (const YAML::DeepRecursion& e) {  // yaml-cpp's own limit, which it reaches before the tree is complete
     throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), too_deep());
   } catch (const YAML::ParserException& e) {
     for (int n = std::min(e.mark.line, static_cast<int>(source->lines.size()) - 1); n >= 0; --n) {

@@ -1,6 +1,6 @@
 #pragma once
-// The tree that a YAML file holds, as plain data that never changes once read: an edited tree shares with the old one all that
-// does not lie on the way to the edit, costs next to nothing, and each value still knows the file and line it came from.
+// The tree of a YAML file as immutable plain data. An edited tree shares every node with the old one except those on the
+// path to the edit. So an edit costs little, and each value still knows the file and line that it came from.
 
 #include <memory>
 #include <optional>
@@ -19,9 +19,10 @@ struct ConfigSource {
 };
 
 struct ConfigNode;
-/// Shared: trees edited from one another have most of their nodes in common, and threads read them side by side.
+/// Shared, because trees edited from one another have most of their nodes in common, and threads read them in parallel.
 using ConfigNodePtr = std::shared_ptr<const ConfigNode>;
 
+/// A scalar, list or map with its position in the file.
 struct ConfigNode {
   enum class Kind { kNull, kScalar, kList, kMap };
   struct Key {
@@ -34,7 +35,7 @@ struct ConfigNode {
   std::vector<Key> keys;             ///< of a map, in the file's order
   std::vector<ConfigNodePtr> items;  ///< of a list; of a map the values, as long as keys
   std::shared_ptr<const ConfigSource> source;
-  int line = 0;  ///< from one, as column
+  int line = 0;  ///< from one, like column
   int column = 0;
 
   [[nodiscard]] bool is_scalar() const { return kind == Kind::kScalar; }
@@ -44,21 +45,21 @@ struct ConfigNode {
   [[nodiscard]] std::optional<std::size_t> index_of(const std::string& key) const;
   /// The value of a key of a map, or nullptr.
   [[nodiscard]] const ConfigNode* find(const std::string& key) const;
-  /// Where it stands; `key` is the key path to name.
+  /// The position of this node; `key` is the key path that the message names.
   [[nodiscard]] Where where(const std::string& key) const;
 };
 
-/// Reads a file; an alias stands for the very node of its anchor.
-/// @throws InputError  when it is missing or no YAML, when a key is no word or appears twice in its map
+/// Reads a file. An alias is the same node as its anchor.
+/// @throws InputError  when the file is missing or not YAML, when a key is not a word or appears twice in its map
 [[nodiscard]] ConfigNodePtr read_config_tree(const std::string& path);
 
-/// The tree with `value` in place of what stands at `steps`, an index into `items` for each level.
+/// The tree with `value` in place of the node at `steps`, an index into `items` for each level.
 [[nodiscard]] ConfigNodePtr replaced(const ConfigNodePtr& root, std::span<const std::size_t> steps, ConfigNodePtr value);
 
-/// The tree on one line, each key and scalar in quotes; two trees that say the same in the same order are written alike.
+/// The tree on one line, each key and scalar in quotes. Trees with equal content in the same order give equal text.
 [[nodiscard]] std::string written(const ConfigNode& node);
 
-/// A scalar that stands where `place` stands but reads `text`.
+/// A scalar with the position of `place` and the text `text`.
 [[nodiscard]] ConfigNodePtr scalar_at(const ConfigNode& place, std::string text);
 
 }  // namespace driftwright

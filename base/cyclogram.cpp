@@ -8,9 +8,11 @@ namespace driftwright {
 namespace {
 
 constexpr double kMostRounding_s = 1e-4;  // an ambient jumps within a millisecond
-constexpr double kRounding = 1e-9;  // of the time: sums of many durations miss a knot that is meant to be one of them
+// Relative to the time: sums of many durations differ slightly from a knot that should equal one of them.
+constexpr double kRounding = 1e-9;
 
-/// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit.
+/// Rounds a cut to a grid of four times the rounding of the section's end, so that the pieces' durations add up to that end
+/// to the last bit.
 double on_grid_s(double cut_s, double end_s) {
   const double grid_s = 4.0 * (std::nextafter(end_s, 2.0 * end_s) - end_s);
   return grid_s * std::round(cut_s / grid_s);

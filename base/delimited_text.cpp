@@ -15,7 +15,7 @@
 namespace driftwright {
 namespace {
 
-/// Text in another encoding as UTF-8. @throws InputError  for bytes that it does not have
+/// Converts text in another encoding to UTF-8. @throws InputError  for bytes that the encoding lacks
 std::string as_utf8(const std::string& path, std::string bytes, const char* encoding) {
   const iconv_t converter = iconv_open("UTF-8", encoding);
   if (converter == reinterpret_cast<iconv_t>(-1))
@@ -33,7 +33,8 @@ std::string as_utf8(const std::string& path, std::string bytes, const char* enco
   return text;
 }
 
-/// By the table of well-formed byte sequences (Unicode 15, table 3-7): no overlong forms, no surrogates, nothing above U+10FFFF.
+/// Checks by the table of well-formed byte sequences (Unicode 15, table 3-7): no overlong forms, no surrogates, nothing
+/// above U+10FFFF.
 bool is_utf8(const std::string& bytes) {
   std::size_t more = 0;
   std::uint8_t low = 0x80U, high = 0xBFU;  // of the next byte
@@ -88,7 +89,8 @@ std::string read_text_file(const std::string& path) {
 
 namespace {
 
-/// Bytes of the control character that stands at a place of a text in UTF-8; 0 where none does. U+0080 to U+009F command terminals, too.
+/// Number of bytes of the control character at a place of a text in UTF-8; 0 without one. U+0080 to U+009F command
+/// terminals, too.
 std::size_t control_at(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0x20U; };
   if (byte(at) < 0x20U || byte(at) == 0x7FU) return 1;
@@ -112,7 +114,7 @@ std::string utf8_text(std::string text) {
     while (n > 0 && (at + n > text.size() || !is_utf8(text.substr(at, n)))) --n;
     if (n > 0) {
       letters.append(text, at, n);
-    } else {  // Latin-1 has every byte, from 0x80 on as letters of two
+    } else {  // Latin-1 has every byte; those from 0x80 on become two bytes
       const auto c = static_cast<unsigned char>(text[at]);
       letters += {static_cast<char>(0xC0U | c >> 6U), static_cast<char>(0x80U | (c & 0x3FU))};
     }

@@ -1,7 +1,7 @@
 #pragma once
-// Decompositions of dense matrices of numbers known at run time alone. Eigen's templates for them are compiled once, in dense.cpp, instead of
-// in each file that decomposes something. A matrix that is not what a function asks for (not definite, not finite) gives numbers that are not finite, or
-// that mean nothing, as Eigen's do.
+// Decompositions of dense matrices whose size is known only at run time. Eigen's templates for them are compiled once, in
+// dense.cpp, instead of in each file that uses one. A matrix that does not meet the requirement of a function (not definite,
+// not finite) gives results that are not finite or have no meaning, as in Eigen.
 
 #include <Eigen/Core>
 #include <memory>
@@ -30,42 +30,44 @@ class GeneralizedSymmetricEigen : public SymmetricEigen {
 /// A = U diag(σ) V', σ descending.
 struct SingularValues {
   Eigen::VectorXd sigma;
-  Eigen::MatrixXd u, v;  ///< square where full is asked for; else as many columns as σ has values
+  Eigen::MatrixXd u, v;  ///< square where the full matrix is requested; else as many columns as σ has values
 
-  [[nodiscard]] static SingularValues alone(const Eigen::MatrixXd& a);  ///< u and v stay empty
+  [[nodiscard]] static SingularValues alone(const Eigen::MatrixXd& a);  ///< only σ; u and v stay empty
   [[nodiscard]] static SingularValues with_u(const Eigen::MatrixXd& a);
   [[nodiscard]] static SingularValues with_full_u(const Eigen::MatrixXd& a);
   [[nodiscard]] static SingularValues with_u_and_full_v(const Eigen::MatrixXd& a);
 };
 
-/// A P = Q R with columns by falling length; a pivot below `threshold` times the largest counts as zero.
+/// A P = Q R with columns ordered by decreasing length; a pivot below `threshold` times the largest counts as zero.
 class PivotedQr {
  public:
   PivotedQr(const Eigen::MatrixXd& a, double threshold);
   [[nodiscard]] Eigen::Index rank() const;
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;  ///< least squares
-  [[nodiscard]] Eigen::MatrixXd basis() const;                          ///< orthonormal, of as many columns as the rank
-  [[nodiscard]] Eigen::MatrixXd r() const;  ///< square, of as many columns as A. @pre A has as many rows as columns or more
-  /// Length of what no combination of A's columns gives of v.
+  [[nodiscard]] Eigen::MatrixXd basis() const;  ///< orthonormal basis of A's column space; `rank` columns
+  [[nodiscard]] Eigen::MatrixXd r() const;  ///< square, as many columns as A. @pre A has at least as many rows as columns
+  /// Length of the part of v that is orthogonal to all columns of A.
   [[nodiscard]] double length_beside(const Eigen::VectorXd& v) const;
 
  private:
   std::shared_ptr<const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>> qr_;
 };
 
-/// x that makes |A x - b| least, column by column, by a QR decomposition with pivots; parts that A does not tell (pivots below rounding) stay zero.
+/// x that minimises |A x - b|, column by column, by a QR decomposition with pivots. Parts that A does not determine (pivots
+/// below rounding) stay zero.
 [[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// The shortest of these x where some combination of the columns is below `threshold` of the largest: A need not have full rank.
+/// The shortest x that minimises |A x - b|; pivots below `threshold` times the largest count as zero. A need not have full
+/// rank.
 [[nodiscard]] Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double threshold);
 
 /// A⁻¹ b for a symmetric positive definite A, by Cholesky's decomposition.
 [[nodiscard]] Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-/// A⁻¹ b for a symmetric A that may have lost its definiteness to rounding, by LDL'.
+/// A⁻¹ b for a symmetric A that may no longer be definite because of rounding, by LDL'.
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 /// A⁻¹ b for a square A, by LU with partial pivots.
 [[nodiscard]] Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-/// A square orthonormal matrix whose first columns span those of A in their order (Householder).
+/// A square orthonormal matrix whose leading columns span the columns of A, in their order (Householder).
 [[nodiscard]] Eigen::MatrixXd orthonormal_from(const Eigen::MatrixXd& a);
 
 }  // namespace driftwright::dense

@@ -12,7 +12,7 @@
 namespace driftwright {
 namespace {
 
-/// Uniform among 0 ... n - 1; numbers of the last, incomplete round are thrown away.
+/// Uniform among 0 ... n - 1; random numbers of the last, incomplete range are rejected.
 std::uint64_t below(std::uint64_t n, std::mt19937_64& random) {
   const std::uint64_t most = std::mt19937_64::max();
   const std::uint64_t last = most - (most % n + 1) % n;
@@ -61,7 +61,7 @@ Eigen::MatrixXd latin_hypercube(int n_samples, int n_variables, std::uint64_t se
     std::iota(stratum.begin(), stratum.end(), 0);
     for (std::size_t i = stratum.size(); i > 1; --i) std::swap(stratum[i - 1], stratum[below(i, random)]);
     for (int i = 0; i < n_samples; ++i) {
-      // 33 bits within a stratum and 20 for its number are exact in a double: no number slips into the next one.
+      // 33 bits within a stratum and 20 for its number are exact in a double, so no number gets into the next stratum.
       const double within = std::ldexp(static_cast<double>(random() >> 32) + 0.5, -32);
       samples(i, j) = (stratum[static_cast<std::size_t>(i)] + within) / n_samples;
     }

@@ -9,9 +9,9 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kShown = 160, kShownBefore = 100;  // bytes of a source line, and of them in front of the column
+constexpr std::size_t kShown = 160, kShownBefore = 100;  // bytes shown of a source line, and of them before the column
 
-/// A source line with a caret below the column; of a long one what stands around it.
+/// A source line with a caret below the column; of a long line the part around it.
 std::string excerpt_of(const Where& where) {
   const std::string& line = where.excerpt;
   const auto is_inside = [&](std::size_t at) {

@@ -1,4 +1,4 @@
 #pragma once
-// A public header of the library, by the name that it has inside.
+// Includes a public header of the library under the name used inside the program.
 
 #include "driftwright/errors.hpp"  // IWYU pragma: export

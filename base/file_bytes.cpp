@@ -11,9 +11,9 @@
 namespace driftwright {
 namespace {
 
-constexpr std::streamsize kMostOfDevice = 1 << 20;  // more than anybody types at a terminal
+constexpr std::streamsize kMostOfDevice = 1 << 20;  // more than anyone types at a terminal
 
-/// Of a device, which may have no end, such as /dev/zero.
+/// Reads from a device, which may be endless, such as /dev/zero.
 std::string read_device(std::istream& device, const std::filesystem::path& path) {
   std::string bytes(static_cast<std::size_t>(kMostOfDevice), '\0');
   device.read(bytes.data(), kMostOfDevice);
@@ -34,7 +34,7 @@ std::string read_bytes(const std::filesystem::path& path) {
     return read_device(file, path);
   std::ostringstream bytes;
   if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
-  file.clear(file.rdstate() & ~(std::ios::eofbit));  // an empty file is one
+  file.clear(file.rdstate() & ~(std::ios::eofbit));  // an empty file is valid
   if (!file) throw InputError(fmt::format("{}: the file cannot be opened or read; is the path right?", path.string()));
   return bytes.str();
 }

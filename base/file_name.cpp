@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kHash = 16, kLongestEnding = 64;
 
-/// The first bytes of a text, at most so many, that are whole letters.
+/// The first bytes of a text, at most `most`, cut between two letters.
 std::string whole_letters(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
   while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;

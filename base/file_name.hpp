@@ -1,17 +1,19 @@
 #pragma once
-// Names of files that are made from names of elsewhere: of records, programs, cyclograms.
+// File names made from names that the program did not choose: of records, programs, cyclograms.
 
 #include <cstddef>
 #include <string>
 
 namespace driftwright {
 
-/// Bytes of the longest name of a file of results. File systems take 255; a folder of results under way has up to 20 more behind its name.
+/// Largest length of a result file's name [bytes]. File systems allow 255; while results are being written, up to 20 bytes
+/// are appended.
 inline constexpr std::size_t kLongestFileName = 235;
 
-/// stem + ending as the name of one file: UTF-8, without slashes and control characters, no longer than kLongestFileName. A stem that is too long is
-/// cut between two letters, and the first half of its hash stands behind it, so that two long names stay two.
-/// @param ending  of our own, such as ".csv", or that of a file of elsewhere
+/// stem + ending as a valid file name: UTF-8, without slashes and control characters, at most kLongestFileName bytes. A stem
+/// that is too long is cut between two letters and followed by the first half of its hash, so that two long names stay
+/// different.
+/// @param ending  one of the program, such as ".csv", or that of an input file
 [[nodiscard]] std::string file_name(const std::string& stem, const std::string& ending);
 
 }  // namespace driftwright

@@ -20,12 +20,12 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kRowsInOrder = 4;  // for each row out of order, of a column that still is one of times
+constexpr std::size_t kRowsInOrder = 4;  // required per row out of order, for a column of times
 constexpr double kSpeedFrom_rpm =
-    100.0;  // what a column without unit reaches that may be a speed: a thermometer's numbers stay below
-constexpr double kOverload = 1e30;  // a reading that an instrument writes for none
+    100.0;  // reached by a column without unit that may be a speed; numbers of a thermometer stay below
+constexpr double kOverload = 1e30;  // number that an instrument writes for an overload
 
-/// How often stamps go back by a format; none where one does not fit it.
+/// How often stamps go back when read by a format; none if one does not match it.
 std::optional<std::size_t> steps_back(const std::string& format, const std::string& zone,
                                       const std::vector<std::string>& stamps) {
   if (stamps.empty()) return std::nullopt;
@@ -44,8 +44,8 @@ std::optional<std::size_t> steps_back(const std::string& format, const std::stri
   }
 }
 
-/// The formats that fit, of those that loggers write. Of several those by which the stamps go back least often: a row out of order is told
-/// when the rows are read, with its line.
+/// The formats of loggers that match. Of several, those by which the stamps go back least often. A row out of order is
+/// reported when the rows are read, with its line.
 std::vector<std::string> formats_of(const std::vector<std::string>& stamps, const std::string& zone, bool may_go_back) {
   const bool with_offset =
       !stamps.empty() && stamps.front().find(':') != std::string::npos && offset_at_end(stamps.front()).has_value();
@@ -75,7 +75,7 @@ std::vector<std::string> joined(const LoggerSheet& sheet, const std::vector<std:
   return stamps;
 }
 
-/// By name, or by position where the name does not exist or is there twice.
+/// A column by its name, or by position if the name is missing or not unique.
 ColumnPlace place(const LoggerSheet& sheet, std::size_t c) {
   const std::string& name = sheet.names[c];
   const bool by_name = !name.empty() && std::count(sheet.names.begin(), sheet.names.end(), name) == 1;
@@ -83,7 +83,7 @@ ColumnPlace place(const LoggerSheet& sheet, std::size_t c) {
                  : ColumnPlace{.name = "", .position = static_cast<int>(c) + 1, .where = {}};
 }
 
-/// The columns of the time; nothing where none tells it.
+/// Finds the time columns; false if there are none.
 bool guess_stamps(const LoggerSheet& sheet, const GuessHints& hints, bool is_tag_log, GuessedColumns& guessed,
                   std::set<std::size_t>& used) {
   std::vector<std::size_t> texts;
@@ -113,7 +113,7 @@ bool guess_stamps(const LoggerSheet& sheet, const GuessHints& hints, bool is_tag
   return false;
 }
 
-/// A cell that may be meant as a time, in words; "" where there is none.
+/// A cell that looks like a time, in words; "" without one.
 std::string stamp_like_cell(const LoggerSheet& sheet) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     for (const std::string& cell : sheet.column(c)) {
@@ -124,12 +124,12 @@ std::string stamp_like_cell(const LoggerSheet& sheet) {
   return "";
 }
 
-/// @param may_go_back  some rows may be out of order, which is told when they are read
+/// @param may_go_back  some rows may be out of order; this is reported when they are read
 bool guess_numbers(const LoggerSheet& sheet, bool may_go_back, GuessedColumns& guessed, std::set<std::size_t>& used) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const HeaderWords words = words_of_header(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "");
     const bool is_of_time = words.unit == "s" || words.unit == "ms" || words.unit == "min" || words.unit == "h";
-    if (!is_time_name(words.name) || (!words.unit.empty() && !is_of_time)) continue;  // T (°C) is no time
+    if (!is_time_name(words.name) || (!words.unit.empty() && !is_of_time)) continue;  // T (°C) is not a time
     std::optional<double> before;
     bool are_numbers = true;
     std::size_t n_on = 0, n_back = 0;
@@ -151,7 +151,7 @@ bool guess_numbers(const LoggerSheet& sheet, bool may_go_back, GuessedColumns& g
   return false;
 }
 
-/// Columns of a tag's name and its value.
+/// The columns of a tag's name and its value.
 std::optional<std::pair<std::size_t, std::size_t>> tag_columns(const LoggerSheet& sheet) {
   std::optional<std::size_t> tag, value;
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
@@ -165,7 +165,7 @@ std::optional<std::pair<std::size_t, std::size_t>> tag_columns(const LoggerSheet
   return std::pair{*tag, *value};
 }
 
-/// Words in a column of numbers that are none.
+/// Collects texts in a column of numbers that are not numbers.
 void guess_missing(const std::vector<std::string>& cells, char decimal, std::set<std::string>& missing) {
   for (const std::string& cell : cells) {
     const auto number = number_of(cell, decimal);
@@ -173,7 +173,7 @@ void guess_missing(const std::vector<std::string>& cells, char decimal, std::set
   }
 }
 
-/// Whether readings in kelvin are absolute temperatures: no machine has differences of 150 K.
+/// True if readings in kelvin are absolute temperatures: no machine has differences of 150 K.
 bool are_absolute_K(const std::vector<std::string>& cells, char decimal) {
   constexpr double kLargestDifference_K = 150.0;
   bool any = false;
@@ -186,15 +186,15 @@ bool are_absolute_K(const std::vector<std::string>& cells, char decimal) {
   return any;
 }
 
-/// A column of numbers as its header says it.
+/// A column of numbers as described by its header.
 struct NumberColumn {
   std::string header, unit_line;
   ColumnPlace place;
   std::vector<std::string> cells;
 };
 
-/// The column that tells the spindle speed, of the header's words: in rpm first, then by a name of speeds, then the bare name of the spindle over numbers that no thermometer
-/// has. Of columns that say as much, the first.
+/// The column of the spindle speed, by its header: first one in rpm, then one with the name of a speed, then the bare name
+/// of the spindle if its numbers cannot be temperatures. Of equally good columns the first.
 std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns, char decimal) {
   std::optional<std::size_t> best;
   int most = 0;
@@ -219,7 +219,7 @@ std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns
   return best;
 }
 
-/// A channel by what its header says. @return false where records have no room for its unit
+/// Adds a channel according to its header. @return false  if records cannot store its unit
 bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& guessed) {
   const std::string& header = column.header;
   const std::vector<std::string>& cells = column.cells;
@@ -279,7 +279,8 @@ void add_channels(const std::vector<NumberColumn>& columns, char decimal, Guesse
         "(docs/reference/record.md)");
 }
 
-/// @throws InputError  for a second column of times in numbers that tells others than the first: which channels go by which?
+/// @throws InputError  for a second column of numeric times that differs from the first: it is unclear which channels belong
+///                     to which
 void refuse_second_time(const LoggerSheet& sheet, std::size_t first, const std::string& path) {
   const auto unit_of = [&](std::size_t c) {
     return words_of_header(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "");
@@ -363,7 +364,8 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     throw InputError(fmt::format(
         "{}: no column of numbers was recognised beside the time; describe the file by `columns` (docs/reference/record.md)",
         path));
-  // Names find the header in the next file of the logger, too, however long its head is; numbers of columns need the line.
+  // Names find the header in the next file of the logger, too, whatever the length of its head; column numbers need the
+  // line.
   const bool by_name = std::all_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                                    [](const auto& c) { return c.column.position == 0; }) &&
                        std::all_of(guessed.map.time.columns.begin(), guessed.map.time.columns.end(),

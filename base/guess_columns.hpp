@@ -1,5 +1,5 @@
 #pragma once
-// A map of a logger's file that nobody has described yet, guessed from the file.
+// Guesses the column map of a logger's file that has no description yet.
 
 #include <string>
 #include <vector>
@@ -8,22 +8,23 @@
 
 namespace driftwright {
 
+/// A guessed map, and what the guess assumed.
 struct GuessedColumns {
   ColumnMap map;
-  std::vector<std::string> guesses;  ///< sentences: what the file does not say and was taken so
+  std::vector<std::string> guesses;  ///< sentences: what the file does not say and the guess assumed
 };
 
-/// What the user says of the file, each "" where he says nothing.
+/// What the user says about the file; "" for what the user does not say.
 struct GuessHints {
   std::string zone;      ///< of stamps
-  std::string interval;  ///< from row to row, such as "10 s", where no column tells the time
+  std::string interval;  ///< from row to row, such as "10 s", where no column contains the time
   std::string every;     ///< from row to row of the record, of a log of tags
 };
 
-/// Finds separator, header, decimal sign, the columns of the time and their format, units in headers such as "T3 (°C)" or in a line below the header, words for
-/// missing readings, and logs with a tag in each row. Columns of numbers become channels; a spindle speed is called `speed`, the temperature of the
-/// ambient `ambient`.
-/// @throws InputError  where no rows, no time or no channel can be made out, saying what to write into `columns`
+/// Finds the separator, header, decimal sign, the time columns and their format, units in headers such as "T3 (°C)" or in a
+/// line below the header, texts for missing readings, and logs with a tag in each row. Columns of numbers become channels; a
+/// spindle speed is called `speed`, the ambient temperature `ambient`.
+/// @throws InputError  where no rows, no time or no channel are found; the message says what to write into `columns`
 [[nodiscard]] GuessedColumns guess_columns(const std::string& path, const GuessHints& hints);
 
 /// The map as YAML, as the key `columns` of a scenario holds it.

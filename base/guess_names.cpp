@@ -68,7 +68,7 @@ HeaderWords words_of_header(const std::string& header, const std::string& unit_l
   static const std::regex in_brackets("^(.*?)[ _]*[\\[(]([^\\])]*)[\\])](.*)$");
   std::smatch parts;
   std::string rest = text;
-  constexpr std::size_t kLongest = 1000;  // a regular expression of the library goes as deep as its text is long
+  constexpr std::size_t kLongest = 1000;  // std::regex recurses once per character
   if (text.size() <= kLongest && std::regex_match(text, parts, in_brackets)) {
     const std::string unit = unit_of_words(parts[2].str()), name = trimmed(parts[1].str() + parts[3].str());
     if (!unit.empty()) return {name, unit};
@@ -144,7 +144,7 @@ std::string channel_name(const std::string& name, std::size_t number) {
       plain += '_';
   }
   while (!plain.empty() && plain.back() == '_') plain.pop_back();
-  const bool is_taken = plain == "time" || plain == "speed";  // they mean something in every record
+  const bool is_taken = plain == "time" || plain == "speed";  // they have a meaning in every record
   return plain.empty() || is_taken ? fmt::format("channel_{}", number) : plain;
 }
 

@@ -15,7 +15,7 @@ std::string compact_text(const Json& json) {
 
 Json with_hash(Json object) {
   object = parse_json(
-      compact_text(object));  // texts that are none, and numbers that JSON has no word for, become what is read again
+      compact_text(object));  // so that invalid texts, and numbers that JSON cannot write, become what is read again
   object["hash"] = content_hash(compact_text(object));
   return object;
 }

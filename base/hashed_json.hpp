@@ -1,16 +1,17 @@
 #pragma once
-// JSON that the program writes for itself and reads again, with a hash of all the rest under the key `hash`: the layout is nobody's business.
+// JSON files for the program's own use, with a hash of the content under the key `hash`. Their layout is private.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace driftwright {
 
-/// On one line; bytes that are no UTF-8 are replaced.
+/// The JSON on one line; bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string compact_text(const nlohmann::ordered_json& json);
 
+/// The object with the key `hash` added.
 [[nodiscard]] nlohmann::ordered_json with_hash(nlohmann::ordered_json object);
-/// Whether an object holds what was there when its hash was taken.
+/// True if the object's content still matches its hash.
 [[nodiscard]] bool is_whole(nlohmann::ordered_json object);
 
 }  // namespace driftwright

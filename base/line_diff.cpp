@@ -20,7 +20,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 struct Step {
   char kind;                  ///< ' ', '-' or '+'
-  std::size_t before, after;  ///< lines of each text that come before it
+  std::size_t before, after;  ///< number of lines of each text before it
 };
 
 /// The longest common subsequence, removed lines before added ones.

@@ -11,7 +11,7 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kMostBeforeHeader = 1000;  // lines in which a header is looked for
+constexpr std::size_t kMostBeforeHeader = 1000;  // lines in which the header is searched
 
 const std::vector<char> kSeparators = {';', '\t', ',', '|'};
 
@@ -21,7 +21,7 @@ std::vector<std::string> names_of(const std::vector<Cell>& cells) {
   return names;
 }
 
-/// Cells of a line that may be no row at all.
+/// Cells of a line that may not be a row.
 std::vector<Cell> typed_cells_of(const std::string& line, char separator) {
   try {
     return split_cells(line, separator);
@@ -44,7 +44,7 @@ int n_found(const std::vector<std::string>& names, const std::vector<ColumnPlace
   }));
 }
 
-/// The line that has most of the named columns, the first of several.
+/// The line with most of the named columns; the first of several.
 LoggerHeader header_of(const std::string& path, const std::vector<std::string>& lines, const ColumnMap& map) {
   const std::vector<ColumnPlace> places = places_of(map);
   const bool is_given = map.header == ColumnMap::Header::kAtLine;
@@ -76,7 +76,7 @@ LoggerHeader header_of(const std::string& path, const std::vector<std::string>& 
   return best;
 }
 
-/// Without a header: columns by position, in the first line that is none of comments.
+/// Without a header: columns by position, in the first line that is not a comment.
 LoggerHeader no_header(const std::string& path, const std::vector<std::string>& lines, const ColumnMap& map) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].empty() || lines[i].starts_with('#')) continue;

@@ -16,9 +16,9 @@ namespace {
 
 using Row = LoggerSheet::Row;
 
-constexpr std::size_t kLongestNumber = 64;          // a number or a stamp has fewer letters
-constexpr std::size_t kMostLooked = 5000;           // rows that are looked at
-constexpr double kMostRows = 0.8, kSomeRows = 0.4;  // share of lines that a form must fit
+constexpr std::size_t kLongestNumber = 64;          // numbers and stamps are shorter
+constexpr std::size_t kMostLooked = 5000;           // rows that are examined
+constexpr double kMostRows = 0.8, kSomeRows = 0.4;  // share of lines that must match a form
 
 Row cells_of(const std::string& line, char separator) {
   Row row;
@@ -30,7 +30,7 @@ Row cells_of(const std::string& line, char separator) {
   return row;
 }
 
-/// The number of cells that most lines have, and how many lines those are.
+/// The most frequent number of cells in a line, and how many lines have it.
 std::pair<std::size_t, std::size_t> usual_width(const std::vector<std::string>& lines, char separator) {
   std::map<std::size_t, std::size_t> n_of_width;
   for (const std::string& line : lines) {
@@ -44,12 +44,12 @@ std::pair<std::size_t, std::size_t> usual_width(const std::vector<std::string>& 
 }
 
 char find_separator(const std::string& path, const std::vector<std::string>& lines) {
-  const std::size_t skip = lines.size() / 4, n = std::min(kMostLooked, lines.size() - skip);  // heads are of another form
+  const std::size_t skip = lines.size() / 4, n = std::min(kMostLooked, lines.size() - skip);  // heads have another form
   const std::vector<std::string> body(lines.begin() + static_cast<std::ptrdiff_t>(skip),
                                       lines.begin() + static_cast<std::ptrdiff_t>(skip + n));
   const auto n_filled = static_cast<double>(std::count_if(
       body.begin(), body.end(), [](const std::string& l) { return l.find_first_not_of(" \t") != std::string::npos; }));
-  for (const double share : {kMostRows, kSomeRows}) {  // files of a few rows have more head than rows
+  for (const double share : {kMostRows, kSomeRows}) {  // short files have more lines of head than rows
     for (const char separator : {';', '\t', '|', ',', ' '}) {
       if (static_cast<double>(usual_width(body, separator).second) >= share * n_filled) return separator;
     }
@@ -88,7 +88,7 @@ bool are_units(const Row& row) {
   return n >= 1 && 2 * n >= filled;
 }
 
-/// A line of one word several times, which names nothing.
+/// A line that repeats one word, which names nothing.
 bool repeats(const Row& row) {
   Row filled;
   std::copy_if(row.begin(), row.end(), std::back_inserter(filled), [](const std::string& cell) { return !cell.empty(); });
@@ -117,8 +117,7 @@ double share_of_numbers(const std::vector<std::string>& cells, char decimal) {
 
 bool is_stamp_like(const std::string& cell) {
   static const std::regex stamp(".*[0-9]{1,2}:[0-9]{2}.*|[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}.*");
-  return cell.size() <= kLongestNumber &&
-         std::regex_match(cell, stamp);  // a regular expression of the library goes as deep as its text is long
+  return cell.size() <= kLongestNumber && std::regex_match(cell, stamp);  // std::regex recurses once per character
 }
 
 std::vector<std::string> LoggerSheet::column(std::size_t index) const {
@@ -147,7 +146,7 @@ LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>
     throw InputError(fmt::format(
         "{}: no rows of numbers were recognised; describe the file by `columns` in a scenario (docs/reference/record.md)",
         path));
-  std::vector<std::size_t> above;  // lines of cells over the rows, the nearest first
+  std::vector<std::size_t> above;  // lines of cells above the rows, the nearest first
   for (std::size_t i = first; i-- > 0 && above.size() < 4;) {
     const Row row = cells_of(lines[i], sheet.separator);
     if (row.size() >= 2 && 2 * row.size() >= width && !lines[i].starts_with('#')) above.push_back(i);

@@ -1,5 +1,5 @@
 #pragma once
-// A logger's file of which nothing is known yet, as cells: rows that look alike, and what stands over them.
+// The cells of a logger's file without a description: rows that look alike, and the lines above them.
 
 #include <cstddef>
 #include <optional>
@@ -8,6 +8,7 @@
 
 namespace driftwright {
 
+/// Header and rows of such a file.
 struct LoggerSheet {
   using Row = std::vector<std::string>;
   char separator = '\0';
@@ -15,21 +16,21 @@ struct LoggerSheet {
   std::size_t header_line = 0;  ///< index
   Row names;                    ///< of columns
   Row units;                    ///< of a line of units between names and rows; empty where there is none
-  std::string end;              ///< the line that ends the rows; "": the file's end does
-  std::vector<Row> rows;        ///< as wide as `names` at least; the first 5000
+  std::string end;              ///< the line that ends the rows; "": they go on to the file's end
+  std::vector<Row> rows;        ///< at least as wide as `names`; the first 5000
 
-  /// The cells of a column, of the rows that have it.
+  /// The cells of one column; rows that are too short are left out.
   [[nodiscard]] std::vector<std::string> column(std::size_t index) const;
 };
 
-/// @throws InputError  where no rows, or no names above them, can be made out
+/// @throws InputError  where no rows, or no names above them, are found
 [[nodiscard]] LoggerSheet logger_sheet(const std::string& path, const std::vector<std::string>& lines);
 
-/// A cell as a number; nothing where it is none.
+/// The number in a cell; none if it is not a number.
 [[nodiscard]] std::optional<double> number_of(const std::string& cell, char decimal);
-/// Of the cells that hold anything, 0 to 1.
+/// Share of numbers among the non-empty cells, 0 to 1.
 [[nodiscard]] double share_of_numbers(const std::vector<std::string>& cells, char decimal);
-/// Digits as dates and times of day have them.
+/// True if the digits look like a date or a time of day.
 [[nodiscard]] bool is_stamp_like(const std::string& cell);
 
 }  // namespace driftwright

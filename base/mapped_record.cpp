@@ -18,7 +18,7 @@ namespace driftwright {
 namespace {
 
 constexpr std::size_t kMostUnderHeader = 5;         // lines of units and the like between header and rows
-constexpr double kHour_s = 3600.0, kAnHour = 0.01;  // a step of an hour and a row, as clocks are set; so far off at most
+constexpr double kHour_s = 3600.0, kAnHour = 0.01;  // a jump of one hour plus a row means a clock change; tolerance
 
 /// The rows of a file, read one after another.
 class Rows {
@@ -31,7 +31,7 @@ class Rows {
     }
     read_.record.source = path;
     for (const MappedChannel& c :
-         map.channels) {  // all units are linear; converting each number for itself takes longer than reading it
+         map.channels) {  // all units are linear; converting each number separately takes longer than reading it
       MappedChannel plain = c;
       plain.magnitude = false;
       zero_.push_back(plain.value(0.0));
@@ -40,7 +40,19 @@ class Rows {
   }
 
   /// The time of a row [s]. @throws InputError
-  double time_s(const std::vector<Cell>& cells, int line) { return clock_.time_s(cells, line, read_.record.n_samples()); }
+  double time_s(const std::vector<Cell>& cells, int line) {
+    return clock_.time_s(cells, line, read_.record.n_samples() + n_left_out_since_first_);
+  }
+
+  /// Whether all channels have their cells, and none of them a reading.
+  [[nodiscard]] bool has_no_reading(const std::vector<Cell>& cells) const {
+    return std::all_of(channel_.begin(), channel_.end(),
+                       [&](std::size_t i) { return i < cells.size() && is_missing(map_, cells[i].text); });
+  }
+  void leave_out(int line) {
+    left_out_.push_back(line);
+    if (n_rows() > 0) ++n_left_out_since_first_;
+  }
 
   void add(const std::vector<Cell>& cells, int line, double time_s) {
     Record& record = read_.record;
@@ -60,12 +72,23 @@ class Rows {
     last_line_ = line;
   }
 
-  ReadRecord take() { return std::move(read_); }
+  ReadRecord take() {
+    read_.n_without_reading = left_out_.size();
+    if (!left_out_.empty())
+      note(fmt::format("{}: rows in which no channel has a reading are left out: {} ({})", path_, left_out_.size(),
+                       left_out_words()));
+    return std::move(read_);
+  }
+  [[nodiscard]] std::string left_out_words() const {
+    return left_out_.size() == 1 ? fmt::format("line {}", left_out_.front())
+                                 : fmt::format("lines {} to {}", left_out_.front(), left_out_.back());
+  }
+  [[nodiscard]] std::size_t n_left_out() const { return left_out_.size(); }
   [[nodiscard]] std::size_t n_rows() const { return read_.record.n_samples(); }
   void note(std::string sentence) { read_.notes.push_back(std::move(sentence)); }
 
  private:
-  /// @throws InputError  for a time that does not follow the one before
+  /// @throws InputError  for a time that does not increase
   void must_follow(const std::vector<Cell>& cells, int line, double time_s) {
     const std::vector<double>& t = read_.record.time_s;
     const double step_s = time_s - t.back(), usual_s = t.size() > 1 ? t[1] - t[0] : std::abs(step_s);
@@ -95,12 +118,14 @@ class Rows {
   const ColumnMap& map_;
   RowClock clock_;
   std::vector<std::size_t> channel_;
-  std::vector<double> zero_, slope_;  // of each channel: what 0 is in its unit, and what 1 adds
+  std::vector<double> zero_, slope_;  // of each channel: value of 0 in its unit, and increment per 1
   int last_line_ = 0;
+  std::vector<int> left_out_;               // lines of rows without a reading
+  std::size_t n_left_out_since_first_ = 0;  // after the first row of the record
   ReadRecord read_;
 };
 
-/// What was left unread of the columns, once for the file.
+/// Notes which columns were not read, once per file.
 void note_ignored(const std::string& path, const ColumnMap& map, const LoggerHeader& header, Rows& rows) {
   std::vector<bool> is_used(header.names.size());
   for (const ColumnPlace& p : places_of(map)) {
@@ -115,6 +140,29 @@ void note_ignored(const std::string& path, const ColumnMap& map, const LoggerHea
   if (!ignored.empty())
     rows.note(fmt::format("{}: not named in `columns` and not read: column{} {}", path, ignored.size() > 1 ? "s" : "",
                           fmt::join(ignored, ", ")));
+}
+
+/// Rows in which marks for no reading were all that the channels had.
+void leave_out_rows_without_reading(const std::string& path, ReadRecord& read) {
+  Record& record = read.record;
+  std::size_t n_kept = 0;
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    if (std::all_of(record.channels.begin(), record.channels.end(),
+                    [&](const Channel& c) { return std::isnan(c.values[i]); }))
+      continue;
+    record.time_s[n_kept] = record.time_s[i];
+    for (Channel& c : record.channels) c.values[n_kept] = c.values[i];
+    ++n_kept;
+  }
+  const std::size_t n_left_out = record.n_samples() - n_kept;
+  if (n_left_out == 0) return;
+  if (n_kept < 2)
+    throw InputError(fmt::format("{}: no channel has a reading in {} of its {} rows; at least two with one are required",
+                                 path, n_left_out, record.n_samples()));
+  record.time_s.resize(n_kept);
+  for (Channel& c : record.channels) c.values.resize(n_kept);
+  read.n_without_reading += n_left_out;
+  read.notes.push_back(fmt::format("{}: rows that have no other reading are left out: {}", path, n_left_out));
 }
 
 ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
@@ -139,6 +187,10 @@ ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
     }
     const bool is_empty = std::all_of(cells.begin(), cells.end(), [](const Cell& c) { return c.text.empty(); });
     if (is_empty) continue;  // a spreadsheet's row of separators
+    if (rows.has_no_reading(cells)) {
+      rows.leave_out(number);
+      continue;
+    }
     double time_s = 0.0;
     try {
       time_s = rows.time_s(cells, number);
@@ -153,7 +205,10 @@ ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
   }
   if (rows.n_rows() == 0 && first_failure) throw *first_failure;
   if (rows.n_rows() < 2)
-    throw InputError(fmt::format("{}: the record has {} rows of data; at least two are required", path, rows.n_rows()));
+    throw InputError(fmt::format("{}: the record has {} rows of data; at least two are required{}", path, rows.n_rows(),
+                                 rows.n_left_out() > 0 ? fmt::format(". In {} more no channel has a reading ({})",
+                                                                     rows.n_left_out(), rows.left_out_words())
+                                                       : ""));
   if (!passed_over.empty())
     rows.note(fmt::format("{}: between header and rows is passed over: {}", path, fmt::join(passed_over, "; ")));
   return rows.take();
@@ -165,6 +220,7 @@ ReadRecord read_record(const std::string& path, const std::optional<ColumnMap>& 
   ReadRecord read = columns ? read_mapped(path, *columns) : ReadRecord{read_record_csv(path), {}};
   if (columns) require_possible_span(path, read.record.time_s.front(), read.record.time_s.back());
   for (const std::string& sentence : take_out_no_readings(read.record)) read.notes.push_back(path + ": " + sentence);
+  if (columns) leave_out_rows_without_reading(path, read);
   return read;
 }
 

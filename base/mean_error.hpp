@@ -1,20 +1,22 @@
 #pragma once
-// A mean and how well it is known.
+// A mean and its standard error.
 
 #include <cstddef>
 #include <span>
 
 namespace driftwright {
 
+/// Mean, standard error and number of values.
 struct MeanError {
-  double mean = 0.0, standard_error = 0.0;  ///< of fewer than two values the error is 0
+  double mean = 0.0, standard_error = 0.0;  ///< the error is 0 for fewer than two values
   std::size_t n = 0;
 };
 
-/// Of the values that are finite.
+/// Mean and standard error of the finite values.
 [[nodiscard]] MeanError mean_error(std::span<const double> values);
 
-/// What the mean exceeds with 95 % where the values are independent and normal: the lower end of Student's one-sided interval; of fewer than two values -infinity.
+/// Lower limit of the mean with 95 % confidence (Student's one-sided interval), for independent normal values; -infinity for
+/// fewer than two values.
 [[nodiscard]] double surely_above(const MeanError& error);
 
 }  // namespace driftwright

@@ -1,5 +1,5 @@
 #pragma once
-// The value in the middle, and values that a share of others keeps.
+// Median and quantile.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace driftwright {
 
-/// The middle of the values in order; of an even number of them the upper of the two in the middle, of none 0.
+/// The median; for an even number of values the upper of the two in the middle, for none 0.
 [[nodiscard]] inline double upper_median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -16,7 +16,8 @@ namespace driftwright {
   return *middle;
 }
 
-/// The smallest of the values that at least this share of them does not exceed. @param values  at least one; @param share  above 0, at most 1
+/// The smallest value that at least this share of the values does not exceed. @param values at least one; @param share above
+/// 0, at most 1
 [[nodiscard]] inline double quantile(std::vector<double> values, double share) {
   const auto n = static_cast<double>(values.size());
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(std::ceil(share * n), 1.0)) - 1;

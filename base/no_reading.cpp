@@ -13,11 +13,11 @@
 namespace driftwright {
 namespace {
 
-constexpr double kLeap_K = 100.0;        // from a row to the next: no thermometer in a machine follows so fast
-constexpr std::size_t kFewestAtEnd = 3;  // readings at an end of the record, which nothing on the other side speaks against
-constexpr double kTimesSpan = 3.0;       // of all other readings
+constexpr double kLeap_K = 100.0;        // from a row to the next: no thermometer in a machine changes so fast
+constexpr std::size_t kFewestAtEnd = 3;  // readings at an end of the record, where a reading on the other side is missing
+constexpr double kTimesSpan = 3.0;       // times the span of all other readings
 
-/// Readings of one value in a row.
+/// Consecutive readings of one value.
 struct Stretch {
   std::size_t first = 0, last = 0, n = 0;
   double value = 0.0;
@@ -65,7 +65,7 @@ bool is_outside(double value, const Kind& kind) {
   return value > usual.high || value < (kind.is_absolute ? usual.low : -usual.high);
 }
 
-/// What all readings but those of one value span.
+/// Span of all readings except those of one value.
 double span_without(const std::vector<double>& values, double value) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (double v : values) {
@@ -82,7 +82,8 @@ bool is_none(const Channel& channel, const Kind& kind, const std::vector<Stretch
   if (kind.is_temperature ? !is_outside(value, kind) : !is_mark(value)) return false;
   const double leap = kind.is_temperature ? kLeap_K : kTimesSpan * span_without(channel.values, value);
   const bool is_first = s == 0, is_last = s + 1 == stretches.size();
-  // of a channel of one value nothing else tells; one that is usual in kelvin is that, which is refused by name where it is read
+  // a channel of one value has no other readings to compare; a value that is usual in kelvin is probably kelvin, which is
+  // refused by name when read
   if (is_first && is_last) return stretches[s].n >= kFewestAtEnd && is_outside(value - kZeroCelsius_K, kind);
   if ((is_first || is_last) && stretches[s].n < kFewestAtEnd) return false;
   return (is_first || std::abs(value - stretches[s - 1].value) > leap) &&

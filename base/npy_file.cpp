@@ -73,7 +73,7 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_npy(const std::filesy
     fail("an array of unreadable shape");
   }
   const auto values_at = file.tellg();
-  file.seekg(0, std::ios::end);  // of the open file: its name may be gone by now
+  file.seekg(0, std::ios::end);  // of the open file: its name may no longer exist
   const auto n_bytes = static_cast<double>(file.tellg() - values_at);
   file.seekg(values_at);
   if (static_cast<double>(rows) * static_cast<double>(columns) * sizeof(Scalar) > n_bytes) {

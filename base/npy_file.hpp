@@ -13,7 +13,7 @@ void write_npy(const std::filesystem::path& file, const Eigen::Ref<const Eigen::
 void write_npy(const std::filesystem::path& file, const Eigen::Ref<const Eigen::MatrixXf>& values);
 void write_npy(const std::filesystem::path& file, const Eigen::Ref<const Eigen::MatrixXi>& values);
 
-/// Reads what write_npy() has written: the same type, in Fortran order.
+/// Reads a file written by write_npy(): the same type, in Fortran order.
 /// @throws InputError  naming the file, when it is missing, cut short, or of another type or order
 template <class Scalar>
 [[nodiscard]] Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_npy(const std::filesystem::path& file);

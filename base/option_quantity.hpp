@@ -5,7 +5,7 @@
 
 namespace driftwright {
 
-/// The number that an option's text says, in `unit`. @throws InputError  with the option, its text and what is wrong with it
+/// The number in an option's text, in `unit`. @throws InputError  with the option, its text and what is wrong with it
 [[nodiscard]] double option_quantity(const std::string& option, const std::string& text, const std::string& unit);
 
 }  // namespace driftwright

@@ -1,5 +1,5 @@
 #pragma once
-// Independent pieces of work on all cores.
+// Runs independent pieces of work on all cores.
 
 #include <atomic>
 #include <cstddef>
@@ -11,14 +11,15 @@
 
 namespace driftwright {
 
-/// Calls work(i, space) for each i < n, on as many threads as OpenMP has; each thread makes itself a space and keeps it. What throws, the listener too, is carried out of
-/// the threads: that of the smallest i, the same from run to run, once all others are done.
-/// @param listener  told of the share that is done; once it wants an end, what has not begun is left out
+/// Calls work(i, space) for each i < n, on as many threads as OpenMP has. Each thread creates its own space and reuses it.
+/// An exception of the work or the listener is rethrown after all others are done: the one of the smallest i, so it is the
+/// same from run to run.
+/// @param listener  receives the share that is done; once it requests an end, work that has not begun is skipped
 template <class MakeSpace, class Work>
 void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work, const Listener& listener = {}) {
   std::vector<std::exception_ptr> failures(n);
   std::atomic<std::size_t> n_done = 0;
-#pragma omp parallel if (n > 1)  // a single piece has all cores for the loops inside it
+#pragma omp parallel if (n > 1)  // a single piece leaves all cores to the loops inside it
   {
     std::optional<decltype(make_space())> space;
 #pragma omp for schedule(dynamic)
@@ -45,7 +46,7 @@ void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work
   }
 }
 
-/// The same for work(i), which needs no space of its own.
+/// The same for work(i), which needs no space.
 template <class Work>
 void parallel_for(std::size_t n, const Work& work, const Listener& listener = {}) {
   struct NoSpace {};

@@ -1,6 +1,6 @@
 #pragma once
-// Long work in numbered pieces, which processes may share out among themselves, keep, and put together: what a piece comes to is a few numbers, the
-// same whoever works it out.
+// Long work in numbered pieces, which several processes can share, store and put together. The result of a piece is a list
+// of numbers that does not depend on the process that computes it.
 
 #include <cstddef>
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace driftwright {
 
-/// The i-th of n parts of the work.
+/// The share of the work of one process: part `number` of `of`.
 struct Shard {
   std::size_t number = 1, of = 1;  ///< from 1
 
@@ -23,19 +23,19 @@ struct Shard {
 /// "3/8"; empty: all. @throws InputError  naming --shard
 [[nodiscard]] Shard read_shard(const std::string& text);
 
-/// Where pieces are kept. Each may be left out: then all is worked out, and nothing kept.
+/// Where pieces are stored. Each function may be left out: then all pieces are computed and none is stored.
 struct Pieces {
   using Numbers = std::vector<double>;
 
   Shard shard = {};
   std::function<std::optional<Numbers>(std::size_t piece)> find = {};
   std::function<void(std::size_t piece, const Numbers&)> keep = {};  ///< from any thread
-  std::function<void()> look_again = {};                             ///< at what other processes have kept meanwhile
+  std::function<void()> look_again = {};                             ///< reads what other processes have stored meanwhile
 
   [[nodiscard]] std::optional<Numbers> found(std::size_t piece) const { return find ? find(piece) : std::nullopt; }
 
-  /// A piece that whatever follows needs, whoever's it is: as it is kept, also by another process meanwhile, or worked out here.
-  /// @param listener  what was worked out until it wanted an end is not kept
+  /// A piece that all following work needs, of whichever shard: the stored one, also from another process, or computed here.
+  /// @param listener  a result that was cut short by its request to end is not stored
   template <class Work>
   [[nodiscard]] Numbers of(std::size_t piece, const Work& work, const Listener& listener = {}) const {
     if (look_again && !found(piece)) look_again();
@@ -45,8 +45,8 @@ struct Pieces {
     return made;
   }
 
-  /// Pieces first, first + 1, ... of this shard, side by side. Those of other shards stay empty.
-  /// @param prepare  called once, where something has to be worked out
+  /// Pieces first, first + 1, ... of this shard, in parallel. Those of other shards stay empty.
+  /// @param prepare  called once, if anything has to be computed
   /// @param work     of i < n
   template <class Prepare, class Work>
   [[nodiscard]] std::vector<Numbers> of_shard(std::size_t first, std::size_t n, const Prepare& prepare, const Work& work,
@@ -74,9 +74,10 @@ struct Pieces {
     return all;
   }
 
-  /// All of them, since what follows needs them: those of this shard first, then what of the others nobody has kept meanwhile.
+  /// All pieces: first those of this shard, then those of the others that no process has stored meanwhile.
   template <class Prepare, class Work>
-  [[nodiscard]] std::vector<Numbers> of_all(std::size_t first, std::size_t n, const Prepare& prepare, const Work& work) const {
+  [[nodiscard]] std::vector<Numbers> of_all(std::size_t first, std::size_t n, const Prepare& prepare,
+                                            const Work& work) const {
     std::vector<Numbers> all = of_shard(first, n, prepare, work);
     if (shard.is_all()) return all;
     Pieces others = *this;
@@ -84,7 +85,7 @@ struct Pieces {
     return others.of_shard(first, n, prepare, work);
   }
 
-  /// The same, counted from another piece.
+  /// The same pieces, numbered from `first` on.
   [[nodiscard]] Pieces from(std::size_t first) const;
 };
 

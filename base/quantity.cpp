@@ -28,7 +28,7 @@ struct FreeConverter {
 using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
 using ConverterPtr = std::unique_ptr<cv_converter, FreeConverter>;
 
-ut_system* unit_system() {  // the one table of units, read from UDUNITS' own files at first use
+ut_system* unit_system() {  // the only table of units, read from UDUNITS' own files at first use
   static const std::unique_ptr<ut_system, FreeSystem> system = [] {
     ut_set_error_message_handler(ut_ignore);
     return std::unique_ptr<ut_system, FreeSystem>(ut_read_xml(nullptr));
@@ -37,7 +37,7 @@ ut_system* unit_system() {  // the one table of units, read from UDUNITS' own fi
   return system.get();
 }
 
-/// How units are often written, and what was meant: W/m2K would be W K/m2 where it is understood at all, C is the coulomb.
+/// Common spellings of units and their meaning: UDUNITS would read W/m2K as W K/m2 if at all, and C as coulomb.
 std::string meant_by(const std::string& unit) {
   static const std::map<std::string, std::string> meant = {
       {"C", "degC"},          {"°C", "degC"},      {"deg", "degC"},       {"W/m2K", "W/(m^2 K)"},  {"W/m^2K", "W/(m^2 K)"},
@@ -53,7 +53,7 @@ UnitPtr parse_unit(const std::string& text) {
   return unit;
 }
 
-/// UDUNITS counts the radian as 1, so that 1 Hz would be 9.55 rpm. Here an angle is an angle.
+/// UDUNITS treats the radian as 1, so that 1 Hz would be 9.55 rpm. Here an angle is a dimension.
 bool carries_angle(const UnitPtr& unit) {
   char text[256];
   const int length = ut_format(unit.get(), text, sizeof text, UT_ASCII | UT_DEFINITION);
@@ -68,8 +68,8 @@ ConverterPtr make_converter(const std::string& from, const std::string& to) {
   return ConverterPtr(ut_get_converter(a.get(), b.get()));
 }
 
-/// Each thread keeps the converters it has used: making one takes longer than all else that reading a value takes, and
-/// UDUNITS' parser serves one thread at a time.
+/// Each thread keeps the converters that it has used: making one takes longer than all the rest of reading a value, and
+/// UDUNITS' parser is not thread-safe.
 const cv_converter* converter(const std::string& from, const std::string& to) {
   thread_local std::map<std::pair<std::string, std::string>, ConverterPtr> known;
   const auto found = known.find({from, to});
@@ -90,11 +90,11 @@ Quantity split(const std::string& text, const std::string& wanted) {
   return {number, unit};
 }
 
-/// The unit that a bare number of a machine was most likely meant in: feeds are written in m/min and mm/min, lengths in mm.
+/// The most likely unit of a bare number of a machine: feeds are written in m/min and mm/min, lengths in mm.
 const char* likely_unit_of(double number, const std::string& unit) {
   struct UpTo {
     const char* wanted;
-    double most;  ///< number that is likely in it
+    double most;  ///< largest likely number in it
     const char* likely;
   };
   constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -149,7 +149,7 @@ double convert(double number, const std::string& from, const std::string& to) {
 bool has_offset(const std::string& unit) {
   try {
     return cv_convert_double(converter(unit, "K"), 0.0) != 0.0;
-  } catch (const RangeError&) {  // no temperature
+  } catch (const RangeError&) {  // not a temperature
     return false;
   }
 }

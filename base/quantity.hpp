@@ -1,7 +1,7 @@
 #pragma once
-// Quantities with units, as they are in files: "24 degC", "10 W/(m^2 K)", "80 mm".
-// Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens. Threads may call
-// everything here at once.
+// Quantities with units, as in files: "24 degC", "10 W/(m^2 K)", "80 mm".
+// Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens. All functions are
+// thread-safe.
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace driftwright {
 /// Converts the text of a quantity, "<number> <unit>", to `unit`.
 ///
 /// @param text  such as "80 mm"; the unit is compulsory unless `unit` is "1"
-/// @param unit  the unit wanted, in UDUNITS syntax: "m", "W/(m^2 K)", "rpm", "1"
+/// @param unit  the required unit, in UDUNITS syntax: "m", "W/(m^2 K)", "rpm", "1"
 /// @throws RangeError  when the number or unit cannot be read, is not finite, has another dimension (an angle counts as
 ///                     one: Hz or 1/min is no rpm), or when a
 ///                     temperature with an offset (degC) is given where a temperature difference (K) is required
@@ -24,23 +24,23 @@ namespace driftwright {
 /// @throws RangeError  when the dimensions differ
 [[nodiscard]] double unit_factor(const std::string& from, const std::string& to);
 
-/// A quantity as it is written.
+/// A quantity as written in a file.
 struct Quantity {
   double number = 0.0;
-  std::string unit;  ///< as it is written; empty where none is
+  std::string unit;  ///< as written; empty without a unit
 };
 
-/// The parts of "80 mm". @throws RangeError  when it begins with no finite number, or its unit is unknown
+/// The parts of "80 mm". @throws RangeError  when it does not begin with a finite number, or its unit is unknown
 [[nodiscard]] Quantity split_quantity(const std::string& text);
 
-/// A number in `from` as a number in `to`; temperatures are taken as absolute ones, "" is "1".
+/// A number in `from` as a number in `to`. Temperatures are absolute; "" means "1".
 /// @throws RangeError  when the dimensions differ
 [[nodiscard]] double convert(double number, const std::string& from, const std::string& to);
 
 /// True for units of temperature whose zero is not that of the kelvin scale.
 [[nodiscard]] bool has_offset(const std::string& unit);
 
-/// A unit as names carry it: "W/(m^2 K)" gives "W_m2K", "" gives "1".
+/// A unit in the form used in names: "W/(m^2 K)" gives "W_m2K", "" gives "1".
 [[nodiscard]] std::string unit_in_name(const std::string& unit);
 
 inline constexpr double kZeroCelsius_K = 273.15;

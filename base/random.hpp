@@ -1,5 +1,6 @@
 #pragma once
-// Random numbers whose every bit follows from a seed, on every machine: the standard library fixes its engines, not its distributions.
+// Random numbers that a seed fixes to the last bit on every machine: the standard library fixes its engines, but not its
+// distributions.
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace driftwright {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  /// @param purpose  draws for different purposes do not move each other
+  /// @param purpose  an independent sequence for each purpose: more draws for one do not change the draws for another
   Random(std::uint64_t seed, std::uint64_t purpose)
       : state_(seed * 0x2545f4914f6cdd1dULL + purpose * 0xd1342543de82ef95ULL) {
     (void)bits();

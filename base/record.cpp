@@ -21,9 +21,9 @@ const std::array<std::string, 16>& unit_table() {
   return units;
 }
 
-/// "bearing_front_degC" -> {"bearing_front", "degC"}; an empty unit where none is known.
+/// "bearing_front_degC" -> {"bearing_front", "degC"}; an empty unit if it ends with no known one.
 Channel split_header(const std::string& header) {
-  for (const std::string& unit : unit_table()) {  // longest first, so that mm_min wins over min
+  for (const std::string& unit : unit_table()) {  // longest first, so that mm_min is found before min
     if (header.size() > unit.size() + 1 && header.ends_with("_" + unit)) {
       return {header.substr(0, header.size() - unit.size() - 1), unit, {}};
     }

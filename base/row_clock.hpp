@@ -1,5 +1,5 @@
 #pragma once
-// The time of each row of a logger's file, and its cells with words for those that are not there.
+// The time of each row of a logger's file, and access to its cells with clear errors for missing ones.
 
 #include <chrono>
 #include <optional>
@@ -10,15 +10,16 @@
 
 namespace driftwright {
 
+/// Reads the time of the rows, one after another.
 class RowClock {
  public:
   RowClock(const std::string& path, const ColumnMap& map, const LoggerHeader& header);
 
-  /// Of the row that comes behind `n_rows` others [s]: stamps count from the first. @throws InputError
+  /// Time of the row that follows `n_rows` others [s]; stamps count from the first row. @throws InputError
   [[nodiscard]] double time_s(const std::vector<Cell>& cells, int line, std::size_t n_rows);
-  /// Where it stands.
+  /// The position of the time cell, for messages.
   [[nodiscard]] Where place(const std::vector<Cell>& cells, int line) const;
-  /// False where stamps might be of a clock that is set twice a year and nobody has said so.
+  /// False if stamps might be from a clock with summer time and the map does not say so.
   [[nodiscard]] bool knows_clock_changes() const;
 
  private:
@@ -31,13 +32,13 @@ class RowClock {
   std::optional<std::chrono::nanoseconds> first_;
 };
 
-/// Where cell `i` of a line stands.
+/// The position of cell `i` of a line.
 [[nodiscard]] Where place_of(const std::string& path, const std::vector<Cell>& cells, std::size_t i, int line,
                              const std::string& key);
 /// @throws InputError  where a row is too short
 [[nodiscard]] const Cell& cell_of(const std::string& path, const std::vector<Cell>& cells, std::size_t i, int line,
                                   const std::string& key);
-/// It stands for a reading that does not exist.
+/// True if the cell's text means a missing reading.
 [[nodiscard]] bool is_missing(const ColumnMap& map, const std::string& text);
 
 }  // namespace driftwright

@@ -135,7 +135,7 @@ std::string range(const Value& v) {
 std::string otherwise(const Key& key) {
   if (!key.said.empty()) return key.said;
   if (key.word) return *key.word;
-  if (!key.number || !(*key.number < kNoLimit)) return "";  // not given, or without end
+  if (!key.number || !(*key.number < kNoLimit)) return "";  // not given, or infinite
   const Value* quantity = key.way(Value::Kind::kQuantity);
   return readable(*key.number, quantity ? quantity->unit : "");
 }

@@ -1,6 +1,7 @@
 #pragma once
-// What the maps of a YAML file may hold, as plain data: a reader describes its keys once, and ConfigMap reads by that, `driftwright schema` prints
-// it, docs/reference/scenario.md has it as tables. A key that stands in no description cannot be read, and one that nobody reads cannot stand there.
+// What the maps of a YAML file may contain, as plain data. A reader describes its keys once; ConfigMap reads by the
+// description, `driftwright schema` prints it, and docs/reference/scenario.md shows it as tables. A key without description
+// cannot be read, and a described key must be read.
 
 #include <limits>
 #include <optional>
@@ -13,7 +14,7 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 namespace schema {
 
-/// Of absolute temperatures [K].
+/// Default limits of absolute temperatures [K].
 inline constexpr double kColdest_K = 1.0, kHottest_K = 3000.0;
 
 struct Map;
@@ -29,16 +30,16 @@ struct Value {
     kList,      ///< entries, each as items[0]
     kRow,       ///< as many entries as `items`, each as its own
     kMap,       ///< as one of `maps`
-    kAnything,  ///< whatever stands in another file at that place
+    kAnything,  ///< whatever the other file at that place contains
   };
   Kind kind = Kind::kText;
   std::vector<std::string> options = {};
-  std::string unit = {};                    ///< UDUNITS syntax; "": any
+  std::string unit = {};                    ///< UDUNITS syntax; "": any unit
   double low = -kNoLimit, high = kNoLimit;  ///< inclusive
-  bool or_zero = false;                     ///< of a quantity: 0 is allowed beside low to high
-  std::size_t least = 0;                    ///< entries of a list
+  bool or_zero = false;                     ///< of a quantity: 0 is allowed besides low to high
+  std::size_t least = 0;                    ///< smallest number of entries of a list
   std::vector<Value> items = {};
-  std::vector<Map> maps = {};  ///< the first whose condition holds; one without a condition always does
+  std::vector<Map> maps = {};  ///< the first whose condition holds applies; a map without a condition always applies
 };
 
 /// A key of a map.
@@ -47,12 +48,11 @@ struct Key {
   std::vector<Value> values;  ///< one or more ways to write it
   std::string meaning;
   bool is_compulsory = false;
-  std::optional<double> number =
-      {};  ///< what holds when it is left out: of a quantity in its unit (K for degC), of an integer
-  std::optional<std::string> word = {};  ///< the same of texts and choices
-  std::string said = {};                 ///< the same in words, where the reader knows it from elsewhere
+  std::optional<double> number = {};     ///< the default: of a quantity in its unit (K for degC), of an integer as it is
+  std::optional<std::string> word = {};  ///< the default of texts and choices
+  std::string said = {};                 ///< the default in words, where the reader gets it from elsewhere
 
-  /// The way of a kind, or nullptr.
+  /// The way with this kind, or nullptr.
   [[nodiscard]] const Value* way(Value::Kind kind) const;
 };
 
@@ -63,20 +63,21 @@ struct Group {
     kAtLeastOne,
     kAtMostOne,
     kAllOrNone,
-    kWantFirst,  ///< each of them wants the first beside it
+    kWantFirst,  ///< each of them requires the first
   };
   Rule rule;
   std::vector<std::string> keys;
   std::string message;  ///< what is required, for errors
 };
 
-/// Keys of a map. Where several maps may stand in one place, `when` says which it is: the one that has that key, with that word.
+/// Keys of a map. If one place allows several maps, `when_key` and `when_word` choose: the map applies if it has that key
+/// with that word.
 struct Map {
-  std::string name;  ///< heading of its table, unlike all others
+  std::string name;  ///< heading of its table; unique
   std::vector<Key> keys = {};
   std::vector<Group> groups = {};
-  std::vector<Key> others =
-      {};  ///< at most one: of every key that is not among `keys`; its name says of what they are names
+  /// At most one: describes every key that is not among `keys`; its name says what those keys name.
+  std::vector<Key> others = {};
   std::string when_key = {};
   std::string when_word = {};  ///< "": any
   std::string about = {};      ///< a sentence before its table
@@ -98,7 +99,7 @@ struct Map {
 [[nodiscard]] Value temperature(double low_K = kColdest_K, double high_K = kHottest_K);
 [[nodiscard]] Value list(Value of, std::size_t least = 0);
 [[nodiscard]] Value row(std::vector<Value> items);
-/// One at least, each such a row.
+/// At least one row, each as described.
 [[nodiscard]] Value rows(std::vector<Value> items);
 /// Three quantities, along x, y and z.
 [[nodiscard]] Value vector3(const std::string& unit, double low = -kNoLimit, double high = kNoLimit);
@@ -113,23 +114,23 @@ using Ways = std::vector<Value>;
 [[nodiscard]] Key compulsory(std::string name, Ways ways, std::string meaning);
 [[nodiscard]] Key optional(std::string name, Value value, std::string meaning);
 [[nodiscard]] Key optional(std::string name, Ways ways, std::string meaning);
-/// @param otherwise  what holds when it is left out
+/// @param otherwise  the default if the key is left out
 [[nodiscard]] Key optional(std::string name, Value value, double otherwise, std::string meaning);
 [[nodiscard]] Key optional(std::string name, Value value, const char* otherwise, std::string meaning);
-/// @param otherwise  the same in words: the reader knows it from elsewhere
+/// @param otherwise  the default in words: the reader gets it from elsewhere
 struct Said {
   std::string words;
 };
 [[nodiscard]] Key optional(std::string name, Value value, Said otherwise, std::string meaning);
 [[nodiscard]] Key optional(std::string name, Ways ways, Said otherwise, std::string meaning);
 
-/// What holds when a key is left out, as it would be written, or in words; "" where nothing does.
+/// The default of a key as it would be written, or in words; "" without a default.
 [[nodiscard]] std::string otherwise(const Key& key);
-/// A number of a quantity in its unit, as error messages have it: "0.0005 m"; of "degC" in K: "20 degC".
+/// A number of a quantity in its unit, for error messages: "0.0005 m"; for "degC" the argument is in K: "20 degC".
 [[nodiscard]] std::string written(double number, const std::string& unit);
-/// What a quantity or integer may be: "0 to 1 m", "1 N or more"; "" where anything is allowed.
+/// The allowed range of a quantity or integer: "0 to 1 m", "1 N or more"; "" where anything is allowed.
 [[nodiscard]] std::string range(const Value& value);
-/// A number in the unit that suits it: "0.5 mm".
+/// A number in a convenient unit: "0.5 mm".
 [[nodiscard]] std::string readable(double number, const std::string& unit);
 
 }  // namespace schema

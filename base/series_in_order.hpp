@@ -1,11 +1,11 @@
 #pragma once
-// Values of a series at one time after another.
+// Values of a time series at increasing times.
 
 #include "base/cyclogram.hpp"
 
 namespace driftwright {
 
-/// Asked for times that grow, it looks from where the last one was; for an earlier one as TimeSeries::at() does.
+/// For increasing times the search starts at the last knot found; for an earlier time it does what TimeSeries::at() does.
 class SeriesInOrder {
  public:
   explicit SeriesInOrder(const TimeSeries& series) : series_(series) {}  ///< borrowed

@@ -22,7 +22,7 @@ struct Entry {
   double value;
 };
 
-/// What the rows of a log say, in the order of their times: some logs list one tag behind the other.
+/// The rows of a log, sorted by time: some logs list one tag after the other.
 class Log {
  public:
   Log(const std::string& path, const ColumnMap& map) : path_(path), map_(map), last_s_(map.channels.size(), -1e300) {}
@@ -65,7 +65,7 @@ class Log {
   }
 
  private:
-  /// A row at each time, or every so often until one stands at or behind the end, with what holds there.
+  /// A row at each time, or every `every_s` until a row is at or after the end, with the values in force.
   Record held() const {
     Record record{.source = path_, .time_s = {}, .channels = {}};
     for (const MappedChannel& c : map_.channels) record.channels.push_back({c.name, c.unit, {}});

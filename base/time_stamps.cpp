@@ -46,7 +46,8 @@ bool fits(const std::string& text, const std::string& format, Time& time) {
   return !in.fail() && (in >> std::ws).eof();
 }
 
-/// Since 1970, of a stamp with its date. Nanoseconds in 64 bits reach from 1677 to 2262; clocks that were never set tell the year 1 or 9999.
+/// Time since 1970 of a stamp with its date. Nanoseconds in 64 bits reach from 1677 to 2262; clocks that were never set show
+/// the year 1 or 9999.
 std::optional<nanoseconds> dated(const std::string& stamp, const std::string& format) {
   std::istringstream in(stamp);
   date::fields<nanoseconds> told;
@@ -74,7 +75,7 @@ std::optional<StampOffset> offset_at_end(const std::string& stamp) {
   static const std::regex number("(.*[0-9])[ \t]*([-+])([0-9]{2}):?([0-9]{2})?"), word("(.*[0-9])[ \t]*([A-Z]{1,4})");
   static const std::map<std::string, int> hours = {{"Z", 0},    {"UTC", 0}, {"GMT", 0},  {"WET", 0}, {"WEST", 1}, {"CET", 1},
                                                    {"CEST", 2}, {"MEZ", 1}, {"MESZ", 2}, {"EET", 2}, {"EEST", 3}};
-  constexpr std::size_t kLongest = 64;  // a regular expression of the library goes as deep as its text is long
+  constexpr std::size_t kLongest = 64;  // std::regex recurses once per character
   if (stamp.size() > kLongest) return std::nullopt;
   std::smatch parts;
   if (std::regex_match(stamp, parts, number)) {
@@ -146,7 +147,7 @@ nanoseconds TimeStamps::read(const std::string& text) {
 }
 
 nanoseconds milliseconds(double count) {
-  constexpr double kMost = 1e9;  // eleven days; 64 bits of nanoseconds are far from full
+  constexpr double kMost = 1e9;  // eleven days; 64 bits of nanoseconds hold far more
   if (!(std::abs(count) <= kMost))
     throw RangeError(fmt::format("{:g} is no number of milliseconds; at most {:g} are allowed", count, kMost));
   return nanoseconds(std::llround(1e6 * count));

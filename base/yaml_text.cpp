@@ -9,7 +9,7 @@
 namespace driftwright {
 namespace {
 
-/// Nodes that stand at more than one place of the tree.
+/// Finds nodes that occur at more than one place of the tree.
 void find_shared(const ConfigNode& node, std::set<const ConfigNode*>& seen, std::set<const ConfigNode*>& shared) {
   if (!seen.insert(&node).second) {
     shared.insert(&node);
@@ -28,7 +28,7 @@ bool says_nothing(const std::string& line) {
   return first == std::string::npos || line[first] == '#' || line.starts_with("...") || line.starts_with("---");
 }
 
-/// Behind the quotes that open at `begin`, or npos where they do not close on this line.
+/// Index after the quotes that open at `begin`, or npos if they do not close on this line.
 std::size_t behind_quotes(const std::string& line, std::size_t begin) {
   const char quote = line[begin];
   for (std::size_t i = begin + 1; i < line.size(); ++i) {
@@ -36,7 +36,7 @@ std::size_t behind_quotes(const std::string& line, std::size_t begin) {
       ++i;
     } else if (line[i] == quote) {
       if (quote == '"' || i + 1 >= line.size() || line[i + 1] != quote) return i + 1;
-      ++i;  // '' stands for one '
+      ++i;  // '' means one '
     }
   }
   return std::string::npos;
@@ -77,7 +77,7 @@ std::optional<std::size_t> YamlText::length_at(Spot spot, const std::string& sca
   if (end == std::string::npos) return std::nullopt;
   try {
     if (read_config_text(line.substr(begin, end - begin), root_->source->path)->text != scalar) return std::nullopt;
-  } catch (const InputError&) {  // not what it seemed to be
+  } catch (const InputError&) {  // it is not a quoted scalar
     return std::nullopt;
   }
   return end - begin;
@@ -105,7 +105,7 @@ YamlText::Spot YamlText::closing(Spot open) const {
         if (quote == '"' && c == '\\') {
           ++s.column;
         } else if (c == quote && quote == '\'' && at({s.line, s.column + 1}) == quote) {
-          ++s.column;  // '' stands for one '
+          ++s.column;  // '' means one '
         } else if (c == quote) {
           quote = '\0';
         }
@@ -166,7 +166,7 @@ bool YamlText::add_pair(const ConfigNode& map, const std::string& key, const std
     r.text.insert(r.text.size() - 1, ", " + key + ": " + value);
     return true;
   }
-  // Before the first key, so that no value of several lines has to be stepped over.
+  // Insert before the first key, so that no value of several lines has to be skipped.
   const ConfigNode::Key& first = map.keys.front();
   const std::optional<std::size_t> length = length_at({first.line, first.column}, first.text);
   if (!length) return false;
@@ -205,7 +205,7 @@ bool YamlText::comment_out(const ConfigNode& list, std::size_t entry) {
   const int first = line_of(entry);
   const int end = entry + 1 < list.items.size() ? line_of(entry + 1) : next_line(*root_, first);
   const std::string& text = lines_[static_cast<std::size_t>(first) - 1];
-  if (text[text.find_first_not_of(' ')] != '-') return false;  // the dash stands on a line before
+  if (text[text.find_first_not_of(' ')] != '-') return false;  // the dash is on an earlier line
   for (int line = first; line <= last_line(end); ++line) dead_.push_back(line);
   return true;
 }

@@ -48,7 +48,7 @@ std::int64_t rows(bool bypass, bool inserting) {
   PulseInjector injector({.bypass = bypass});
   std::int64_t n_out = 0;
   for (std::int64_t done = 0, i = 0; done < kEdges; done += kBlock, ++i) {
-    if (inserting) injector.set_target(i % 2 == 0 ? kBlock : -kBlock);  // a cycle behind each low row
+    if (inserting) injector.set_target(i % 2 == 0 ? kBlock : -kBlock);  // a cycle after each low row
     n_out += static_cast<std::int64_t>(injector.run(in, out.data()));
   }
   return injector.encoder().count() + injector.inserted();

@@ -2,8 +2,9 @@
 //
 //   watch MODEL.json TOP_RPM [MACHINES DAYS CASES]
 //
-// MODEL.json is an observer of `validate`. Thresholds are simulated as `follow --calibrate-watch` does. Then MACHINES others (100) work for DAYS (16) with
-// nothing wrong, and CASES faults (60) of five sorts begin in machines of their own at hours that nobody tells.
+// MODEL.json is an observer of `validate`. Thresholds are simulated as `follow --calibrate-watch` does. Then MACHINES
+// others (100) work for DAYS (16) with nothing wrong, and CASES faults (60) of five sorts begin in machines of their own
+// at unknown hours.
 #include <fmt/format.h>
 
 #include <algorithm>

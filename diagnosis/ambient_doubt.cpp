@@ -10,9 +10,9 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kStretches = 12;
-constexpr double kNoMatter_K = 2e-3;  // as the floor of readings
+constexpr double kNoMatter_K = 2e-3;  // smaller effects are ignored; equal to the floor of readings
 
-/// The ambient with a hat of some height beside it: none at `before_s` and `after_s`, linear between.
+/// The ambient plus a triangular hat: zero at `before_s` and `after_s`, linear between.
 TimeSeries with_hat(const TimeSeries& ambient, double before_s, double at_s, double after_s, double height_K) {
   std::set<double> times(ambient.time_s.begin(), ambient.time_s.end());
   times.insert({before_s, at_s, after_s});

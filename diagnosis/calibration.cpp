@@ -20,12 +20,12 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kMostTurns = 6;
-constexpr double kSameWeight = 0.02;  // of the logarithm of what a channel is missed by
+constexpr double kSameWeight = 0.02;  // of the logarithm of a channel's error; weights that change by less are converged
 
-/// Numbers fitted by one way to weigh readings.
+/// Numbers fitted with one way to weigh readings.
 struct Attempt {
   std::unique_ptr<Fitter> fitter;
-  SearchResult fitted;  ///< of no claims
+  SearchResult fitted;  ///< without claims
 };
 
 Attempt fitted_by(const Fitter& fresh, const std::vector<MeasuredRun>& runs,
@@ -38,7 +38,7 @@ Attempt fitted_by(const Fitter& fresh, const std::vector<MeasuredRun>& runs,
   return a;
 }
 
-/// Weights and the numbers that they give, found by turns. @param beside  with columns of what the scenario may miss
+/// Weights and the numbers fitted with them, by alternation. @param beside  with columns of the scenario's discrepancy
 Attempt fitted_by_what_is_missed(const Fitter& beside, const std::vector<MeasuredRun>& runs, const Prediction& as_written,
                                  const std::map<std::string, NoiseModel>& noise, const Listener& listener) {
   std::map<std::string, OutputError> errors = output_errors(runs, as_written);
@@ -55,7 +55,8 @@ Attempt fitted_by_what_is_missed(const Fitter& beside, const std::vector<Measure
   return best;
 }
 
-/// What is missed, in units of each channel's noise: root mean square of all rows. @param all  of all channels, else of displacements; NaN where there are none
+/// The error in units of each channel's noise: root mean square of all rows. @param all  over all channels, else over
+/// displacements; NaN if there are none
 double over_noise(const std::map<std::string, OutputError>& errors, const Diagnosis& d, bool all) {
   double squares = 0.0, n = 0.0;
   for (const auto& [name, error] : errors) {
@@ -66,16 +67,17 @@ double over_noise(const std::map<std::string, OutputError>& errors, const Diagno
   return std::sqrt(squares / n);
 }
 
-/// Where the simulation errs by no more than noise its likelihood is worth its numbers. Where it errs by more, own rows must not be missed by more than by the scenario as it
-/// is, nor kept-out ones beyond a standard error of the folds; displacements, where there are some, are judged by themselves besides: they are what a machine is simulated for.
-/// @return  a clause; "": the numbers are worth writing
+/// If the simulation errs by no more than noise, the numbers are written. If it errs by more, the fitted rows must not
+/// have larger errors than with the scenario as written, nor kept-out rows by more than a standard error of the folds.
+/// Displacements, if there are some, are also judged alone: a machine is simulated for their sake.
+/// @return  a clause; "" if the numbers are written
 std::string why_not_written(const Judge& judge, const Models& models, const std::map<std::string, OutputError>& own,
                             const std::map<std::string, OutputError>& before, const Diagnosis& d) {
   if (!d.weighed_by_model_error) return "";
   for (const Judge::Of of : {Judge::Of::kAll, Judge::Of::kDisplacements}) {
     const bool all = of == Judge::Of::kAll;
     const double own_misses = over_noise(own, d, all), own_before = over_noise(before, d, all);
-    if (std::isnan(own_before)) continue;  // no displacement
+    if (std::isnan(own_before)) continue;  // there is no displacement
     const MeanError loss =
         kept_out_loss(judge.over_noise_by_fold(models.calibrated, of), judge.over_noise_by_fold(models.written, of));
     const std::string what = all ? "all channels" : "displacements";
@@ -96,7 +98,7 @@ std::string why_not_written(const Judge& judge, const Models& models, const std:
   return "";
 }
 
-/// The same numbers without the columns that stood for what the scenario misses: what it leaves, for readings weighed by that.
+/// The same numbers without the discrepancy's columns; readings are weighed by the error that is left.
 Attempt without_discrepancy(const Fitter& fresh, const std::vector<MeasuredRun>& runs, const Attempt& beside,
                             const std::map<std::string, NoiseModel>& working) {
   Attempt a{std::make_unique<Fitter>(fresh, runs), beside.fitted};
@@ -130,7 +132,7 @@ std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd
     const double sd = std::sqrt(covariance(at, at));
     TwinState turned = twin.as_written();
     k.set(turned, k.value(x[at]));
-    std::string of;  // one of several sensitivities of a body
+    std::string of;  // names one of several sensitivities of a body
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
     numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x[at]),

@@ -1,26 +1,28 @@
 #pragma once
-// The scenario's uncertain numbers fitted to records; no cause is looked for.
+// Fits the scenario's uncertain numbers to records, without a search for causes.
 //
-// What is fitted is what will be asked: what the simulation gives, driven by what was recorded and by no reading. Where it errs by no more than noise, readings are
-// weighed by their noise. Where it errs by more, numbers are fitted beside a discrepancy in which the model's error may lie (discrepancy.hpp), readings weighed by a working
-// likelihood of what both together miss (output_error.hpp); what is written and judged is the machine without the discrepancy.
+// The fit uses what will later be asked: the simulation, driven by the recorded drive and by no reading. If its error is
+// no larger than the noise, readings are weighed by their noise. If it is larger, numbers are fitted together with a
+// discrepancy that may absorb the model's error (discrepancy.hpp), and readings are weighed by a working likelihood of
+// the error that both together leave (output_error.hpp); the machine without the discrepancy is written and judged.
 
 #include "base/mean_error.hpp"
 #include "diagnosis/diagnosis.hpp"
 
 namespace driftwright::diagnosis {
 
-/// How much worse kept-out rows are predicted by one model than by another: the logarithm of what they miss, over the folds.
-/// @param misses, others  root mean squares, a fold each; folds that could not judge are NaN
+/// How much worse one model predicts kept-out rows than another: logarithm of the ratio of their errors, over the folds.
+/// @param misses, others  root mean squares, one per fold; NaN for folds that could not judge
 [[nodiscard]] MeanError kept_out_loss(const std::vector<double>& misses, const std::vector<double>& others);
 
-/// The scenario's own numbers at x, with intervals of 95 %. @param known_to  1 sigma of each
+/// The scenario's own numbers at x, with 95 % intervals. @param known_to  standard deviation of each prior
 [[nodiscard]] std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x,
                                                    const Eigen::MatrixXd& covariance, const std::vector<double>& known_to);
 
-/// A diagnosis without causes: numbers, gain, what is left. Where the simulation errs by more than noise, numbers are written unless the rows that they were fitted to are
-/// missed by more than by the scenario as it is, or rows that were kept out, by more than a standard error of the folds.
-/// @param coarse, runs, listener  as diagnose() has them
+/// A diagnosis without causes: numbers, gain, and what is left. If the simulation errs by more than noise, numbers are
+/// written unless the error is larger than the scenario's: on the rows that they were fitted to, or on kept-out rows by
+/// more than a standard error of the folds.
+/// @param coarse, runs, listener  as in diagnose()
 [[nodiscard]] Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                                   const DiagnosisOptions& options, const Listener& listener = {});
 

@@ -18,7 +18,7 @@ Candidate& candidate(std::vector<Candidate>& list, const std::string& effect, co
   return list.back();
 }
 
-/// Another value of a number that is written, beyond what is known of it.
+/// Another value of a number in the scenario, beyond its prior.
 Variant other_value(const Twin& twin, std::size_t effect, std::size_t parameter) {
   const effects::Effect& e = twin.as_written()[effect];
   const effects::Parameter& p = e.kind->parameters[parameter];
@@ -58,7 +58,7 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
            .high = n.high,
            .is_time = n.is_time,
            .grows_with_size = n.grows_with_size};
-    if (!n.set) {  // no search goes where no scenario can follow
+    if (!n.set) {  // no search for what no scenario can express
       const effects::EffectKind& kind = *doubt.added.front().kind;
       for (const effects::Parameter& p : kind.parameters) {
         if (p.name != n.name) continue;
@@ -87,7 +87,8 @@ namespace {
 
 constexpr double kSameTime_s = 60.0;
 
-/// Stops that a record does not have are looked for at some times of it; where a window was seen they are looked for as well, for as long.
+/// Stops that a record does not contain are searched at some times of it; if a window was found, also at its time with
+/// its length.
 void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
               std::vector<std::pair<std::size_t, std::size_t>>& added) {
   for (Candidate& c : list) {
@@ -99,7 +100,7 @@ void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
     stop.trial_x = stop.knobs[0].x((seen.end_s - seen.begin_s) / 60.0);
     stop.grid = {{stop.knobs[1].x(seen.begin_s)}};
     stop.seen = true;
-    const auto is_known = [&](const Variant& v) {  // seen in another body
+    const auto is_known = [&](const Variant& v) {  // found in another body already
       return v.in == stop.in && v.grid.size() == 1 && std::abs(v.grid[0][0] - stop.grid[0][0]) < kSameTime_s;
     };
     if (std::any_of(c.variants.begin(), c.variants.end(), is_known)) continue;

@@ -1,6 +1,6 @@
 #pragma once
-// What could be wrong: every effect of the catalogue at every place where it can be, as knobs of the twin. What each kind may be doubted for it says
-// itself (effects/doubt.hpp); numbers of effects that are written may be others.
+// All possible faults: every effect of the catalogue at every possible place, as knobs of the twin. Each kind lists its
+// own doubts (effects/doubt.hpp); also numbers of existing effects may be wrong.
 
 #include <memory>
 #include <set>
@@ -11,50 +11,53 @@ namespace driftwright::diagnosis {
 
 struct Event;
 
-/// One law of an effect: its size first, then what shapes it.
+/// One law of an effect: its size first, then the numbers that shape it.
 struct Variant {
   std::string law;                               ///< in words
-  std::vector<Knob> knobs;                       ///< knobs[0] is the size; turned in their order
-  double trial_x = 0.1;                          ///< size at which its signature is taken
+  std::vector<Knob> knobs;                       ///< knobs[0] is the size; they are set in this order
+  double trial_x = 0.1;                          ///< size at which its signature is computed
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
-  double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
-  bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
-  double price_nats =
-      0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
+  double at_speed_rpm = 0.0;                     ///< speed at which its size is stated; 0: none
+  bool all_or_nothing = false;                   ///< such as two swapped cables: the size is trial_x or zero
+  double price_nats = 0.0;         ///< cost before any reading: rarity among laws, or choices such as seen windows
   bool happens = false;            ///< for a while or from a time on, not throughout
-  bool of_chosen_records = false;  ///< its records were read off these very readings, which price_nats pays for
-  bool seen = false;    ///< at times that were read off these very readings: simulated ones say nothing of its chances
-  std::string in = {};  ///< run in which it is, or begins; "": all
+  bool of_chosen_records = false;  ///< its records were chosen by these same readings; price_nats includes the cost
+  bool seen = false;               ///< its times were chosen by these same readings: simulated records cannot test its odds
+  std::string in = {};             ///< run in which it exists or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
-      {};                 ///< that it was made of, where it can be said of some records alone
+      {};                 ///< doubt that it was made of, if that can be limited to some records
   std::string adds = {};  ///< keys of the effects that it adds to the machine
 };
 
 /// A doubt as a law of a candidate.
 [[nodiscard]] Variant law_of(const effects::Doubt& doubt);
 
-/// An effect at a place. One candidate among many, whatever laws it may follow.
+/// An effect at a place. It counts as one candidate, whichever of its laws it follows.
 struct Candidate {
   std::string effect, where;
   std::vector<Variant> variants;
 };
 
-/// What one law of a candidate costs for being one of several [nats]; those whose records the readings have chosen pay for that themselves.
+/// Cost [nats] of a law for being one of several of a candidate; laws with records chosen by the readings have their own
+/// cost.
 [[nodiscard]] double law_price(const Candidate& candidate);
 
-/// @param without  keys of effects that are not looked for
+/// @param without  keys of effects that are excluded
 [[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                                 const std::set<std::string>& without);
 
-/// Adds windows that were found as further laws of heat or exchange for a while, and stops of the spindle at the same times. @returns  candidate and law of each
+/// Adds windows that were found as further laws of temporary heat or exchange, and stops of the spindle at the same
+/// times.
+/// @returns candidate and law of each
 std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
                                                             const std::set<std::string>& without);
 
-/// Those that some readings may tell of. What is or begins in a run without any looks, in the others, like what is always there.
-/// @param runs  readings that are not to be known missing (NaN)
+/// The candidates that the readings can show. One that exists or begins only in a run without readings looks, in the
+/// other runs, like one that is always there.
+/// @param runs  with NaN for readings that must not be used
 [[nodiscard]] std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list);
 
-/// The knobs of a doubt: the first one adds its effects to a state, the others turn numbers of those added last.
+/// The knobs of a doubt: the first adds its effects to a state, the others change numbers of those effects.
 [[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);
 
 }  // namespace driftwright::diagnosis

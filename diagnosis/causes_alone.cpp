@@ -8,8 +8,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kMostWorse = 1.1;    // of the squares
-constexpr double kWorseOfOne = 1.05;  // RMSE of one channel
+constexpr double kMostWorse = 1.1;    // largest ratio of the squares
+constexpr double kWorseOfOne = 1.05;  // largest ratio of the RMSE of one channel
 constexpr double kStrong = 20.0;      // nats of a cause that may be written alone
 
 }  // namespace
@@ -19,7 +19,7 @@ std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult
   if (fitter.runs().size() != 1 || held.n_searched == 0) return std::nullopt;
   std::vector<std::size_t> strong;  // the strongest first
   for (std::size_t c = 0; c < result.findings.size(); ++c) {
-    // what happened at a time of this record says nothing of another one
+    // An event of this record says nothing about another one.
     if (result.findings[c].log_evidence_gain >= kStrong && held.n_again[c] == held.n_searched &&
         !has_time(result.hypothesis[c]))
       strong.push_back(c);

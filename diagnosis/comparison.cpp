@@ -10,10 +10,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSlow_s = 1200.0;           // time constant of what instruments and integrators are off by
-constexpr double kNoMatter = 1e-3;           // variance of shared noise along a direction, in units of the channels' own
-constexpr Eigen::Index kFewestForNoise = 4;  // readings of a channel in a record
-constexpr std::size_t kRowsForColumns = 60;  // fewer tell no noise from what follows them
+constexpr double kSlow_s = 1200.0;           // time constant of the slow errors of instruments and integrators
+constexpr double kNoMatter = 1e-3;           // least variance of shared noise along a direction, over the channels' own
+constexpr Eigen::Index kFewestForNoise = 4;  // least readings of a channel in a record
+constexpr std::size_t kRowsForColumns = 60;  // with fewer, noise and columns cannot be distinguished
 
 }  // namespace
 
@@ -41,7 +41,8 @@ Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std:
   }
 }
 
-/// (I + U U')^-1/2 = I - Q diag(1 - 1/sqrt(1 + s^2)) Q' with U = Q diag(s) V', U the root once each channel's own noise is white.
+/// (I + U U')^-1/2 = I - Q diag(1 - 1/sqrt(1 + s^2)) Q' with U = Q diag(s) V', U the root once each channel's own noise
+/// is white.
 void Comparison::take_shared(Run& run, const Eigen::MatrixXd& root) {
   const Eigen::Index n_times = root.rows() / static_cast<Eigen::Index>(run.n_blocks);
   Eigen::MatrixXd u(run.n, root.cols());

@@ -1,5 +1,5 @@
 #pragma once
-// Model against measurement in units of noise: every channel of every run whitened, one after the other.
+// Compares model and measurement in units of noise: all channels of all runs, whitened, one after the other.
 
 #include <map>
 
@@ -11,24 +11,26 @@ namespace driftwright::diagnosis {
 /// Outputs of all runs, each n_outputs x n_times.
 using Prediction = std::vector<Eigen::MatrixXd>;
 
-/// What readings of a run have beside the noise of each channel, in several channels at once: a root R of its covariance, so that the readings of
-/// all channels have the covariance of their noise and R R'. By run, (n_channels n_times) x n_pieces, channel after channel; no columns: nothing.
+/// Noise that the channels of a run share, in addition to the noise of each channel: a root R of its covariance; the
+/// readings of all channels then have the covariance of their noise plus R R'. For each run (n_channels n_times) x
+/// n_pieces, channel after channel; no columns: no shared noise.
 using SharedNoise = std::vector<Eigen::MatrixXd>;
 
 class Comparison {
  public:
-  /// @param noise   by channel; one for each that is measured
-  /// @param shared  unless empty, of each run
+  /// @param noise   for each measured channel, by name
+  /// @param shared  for each run, or empty
   Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
              const SharedNoise& shared = {});
 
   [[nodiscard]] Eigen::Index n() const { return n_; }
   /// W y of a prediction, or of a difference of two.
   [[nodiscard]] Eigen::VectorXd whitened(const Prediction& prediction) const;
-  /// The same of one run. @param readings  of its channels, in their order, n_channels x n_times. @param whitened  as many rows as n_of(run)
+  /// The same for one run. @param readings  of its channels, in their order, n_channels x n_times. @param whitened
+  /// n_of(run) rows
   void whiten(std::size_t run, const Eigen::Ref<const Eigen::MatrixXd>& readings,
               Eigen::Ref<Eigen::VectorXd> whitened) const;
-  /// W of what was measured.
+  /// W times the measured values.
   [[nodiscard]] const Eigen::VectorXd& measured() const { return measured_; }
 
   struct Block {
@@ -38,30 +40,31 @@ class Comparison {
     Eigen::Index first, n;  ///< of the whitened vector
   };
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Of one channel's own noise.
+  /// The whitener of one channel's own noise.
   [[nodiscard]] const Whitener& whitener(std::size_t block) const { return whiteners_[block]; }
   [[nodiscard]] Eigen::Index first_of(std::size_t run) const { return runs_[run].first; }  ///< of the whitened vector
   [[nodiscard]] Eigen::Index n_of(std::size_t run) const { return runs_[run].n; }
 
-  /// What moves slowly is told by fewer readings. A block that has at least twice as many as these has so many or a few more once neighbours are
-  /// taken together; a shorter one all that it had.
+  /// Slow signals need fewer readings. A block with at least twice this number is condensed, by taking neighbours
+  /// together, to this number or a few more; a shorter block is unchanged.
   static constexpr Eigen::Index kEnough = 200;
   [[nodiscard]] Eigen::Index n_condensed() const {
     return condensed_.empty() ? 0 : condensed_.back().first + condensed_.back().n;
   }
-  /// Whitened readings, a column each, with neighbours summed over the root of their number: noise stays of variance 1.
+  /// Whitened readings, one column each, in which neighbours are summed and divided by the root of their number: the
+  /// noise keeps variance 1.
   [[nodiscard]] Eigen::MatrixXd condensed(const Eigen::Ref<const Eigen::MatrixXd>& whitened) const;
-  /// The same of one run alone.
+  /// The same for one run only.
   [[nodiscard]] Eigen::VectorXd condensed(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& whitened) const;
-  /// Where a run's are, and how many. @return first, n
+  /// The condensed rows of a run. @return first, n
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> condensed_rows(std::size_t run) const;
-  /// The same of one block.
+  /// The same for one block.
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> condensed_block(std::size_t block) const {
     return {condensed_[block].first, condensed_[block].n};
   }
 
  private:
-  /// Where the readings of a block are once neighbours are taken together.
+  /// The rows of a block in the condensed vector.
   struct Condensed {
     Eigen::Index first, n, together;
   };
@@ -85,19 +88,21 @@ class Comparison {
   Eigen::Index n_ = 0;
 };
 
-/// What no reading is better than, white and slowly coming and going (20 min): errors of the reduced model, of integrators, of any instrument.
+/// Least noise of any reading, white and slowly varying (20 min): errors of the reduced model, of integrators, and of
+/// instruments.
 struct NoiseFloor {
   double white_K = 2e-3, white_m = 5e-9, white_rad = 5e-8;
   double slow_K = 2e-3, slow_m = 5e-9, slow_rad = 5e-8;
 };
 
-/// Noise of each channel, from what measured runs and a prediction differ by; the least there is where a channel has no readings.
+/// The noise of each channel, from the differences of measured runs and a prediction; the least noise for a channel
+/// without readings.
 [[nodiscard]] std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs,
                                                                const Prediction& prediction, const NoiseFloor& least);
 
-/// Values of a run's drive between 0 and 1 per time, for smooth_curves().
+/// The drive of a run scaled to 0 to 1, per time, for smooth_curves().
 [[nodiscard]] Eigen::VectorXd relative_speed(const MeasuredRun& run);
-/// smooth_curves() of a run, and what is recorded beside its drive (beside_drive()) behind the same lags.
+/// smooth_curves() of a run, and its other recorded channels (beside_drive()) with the same lags.
 [[nodiscard]] Eigen::MatrixXd curves_of(const MeasuredRun& run);
 
 }  // namespace driftwright::diagnosis

@@ -18,11 +18,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-const double kSureOdds = std::log(kSure / (1.0 - kSure));  // of a number that has gone too far [nats]
-constexpr double kWrongAmbient_K = 1.0;                    // a recorded ambient is known to a third of it
-constexpr double kMostWork = 2e7;                          // some ten seconds
-constexpr double kSmallMachine = 15.0;                     // unknowns, below which a prediction costs the same
-constexpr double kNotLinear = 6.0;                         // of what one of a linear machine costs
+const double kSureOdds = std::log(kSure / (1.0 - kSure));  // for a number that moved too far [nats]
+constexpr double kWrongAmbient_K = 1.0;                    // offset above which an ambient is wrong; thrice its prior
+constexpr double kMostWork = 2e7;                          // largest cost of repeated searches, about ten seconds
+constexpr double kSmallMachine = 15.0;                     // states, below which a prediction has constant cost
+constexpr double kNotLinear = 6.0;                         // cost relative to a linear machine
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -30,7 +30,7 @@ Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::In
   return n_nuisance;
 }
 
-/// A claim of a hypothesis in numbers.
+/// A claim of a hypothesis, with its numbers.
 Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const Hypothesis& hypothesis, std::size_t claim,
                const Fit& fit, double gain, const Listener& listener) {
   const Claim& of = hypothesis[claim];
@@ -53,7 +53,7 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   return c;
 }
 
-/// Claims that kept-out rows are predicted better with, and all numbers fitted beside them alone.
+/// The claims with which kept-out rows are predicted better, with all numbers fitted for them alone.
 Written written_of(const Fitter& fitter, const SearchResult& result, const HeldOut& held, Twin::Workspace& workspace) {
   Written w{.hypothesis = result.hypothesis,
             .causes = {},
@@ -88,7 +88,7 @@ void leave_out(Cause& cause, const std::string& why) {
   cause.why_not_written = why;
 }
 
-/// Numbers of the scenario that have gone so far that they are no calibration: causes by their own key, as fitted.
+/// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted.
 std::vector<Cause> moved_numbers(const Diagnosis& d) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
@@ -97,7 +97,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     const Knob& k = d.scatter[i];
     const double fitted = k.scale == Knob::Scale::kLog ? std::log(e.value / k.nominal) : e.value - k.nominal;
     const double known_to = std::abs(e.deviation) > 0.0 ? std::abs(fitted / e.deviation) : k.prior_sd;
-    // the density of its value under the wide prior of a fault over that under what is known of it
+    // The density of its value under the wide prior of a fault divided by that under its own prior.
     const double gain =
         0.5 * e.deviation * e.deviation - 0.5 * std::pow(fitted / k.prior_sd, 2) - std::log(k.prior_sd / known_to) - price;
     Estimate number = e;
@@ -107,7 +107,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
     c.standing = gain >= kSureOdds ? Standing::kNamed : Standing::kSuspected;
     if (c.standing == Standing::kNamed &&
-        !d.written.keeps_numbers) {  // what was fitted does harm where it was not fitted to
+        !d.written.keeps_numbers) {  // the fitted numbers harm rows that they were not fitted to
       c.standing = Standing::kSuspected;
       c.doubt = d.written.why_nothing;
     }
@@ -118,7 +118,8 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
   return causes;
 }
 
-/// Of one record of a machine that is wrong in a way that nothing explains: what was fitted to it held for its own rows alone wherever that was tried (docs/theory/measured.md).
+/// For one record of a machine with an unexplained error: in all trials, fits held for their own rows only
+/// (docs/theory/measured.md).
 void write_nothing(Diagnosis& d, const std::string& why) {
   d.written.keeps_numbers = false;
   d.written.why_nothing = why;
@@ -133,7 +134,7 @@ void write_nothing(Diagnosis& d, const std::string& why) {
   d.misses.extended = d.misses.as_written;
 }
 
-/// Of a record's ambient, as fitted beside all causes.
+/// The largest offset of a record's ambient, as fitted with all causes.
 double largest_offset_K(const std::vector<Knob>& scatter, const Eigen::VectorXd& x) {
   double largest_K = 0.0;
   for (std::size_t i = 0; i < scatter.size(); ++i) {
@@ -142,7 +143,7 @@ double largest_offset_K(const std::vector<Knob>& scatter, const Eigen::VectorXd&
   return largest_K;
 }
 
-/// Takes from every cause that it is sure.
+/// Removes the certainty of every cause.
 void doubt_all(Diagnosis& d, const std::string& why) {
   for (Cause& c : d.causes) {
     if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = why;
@@ -150,7 +151,7 @@ void doubt_all(Diagnosis& d, const std::string& why) {
   }
 }
 
-/// Numbers of the written causes, as they are written. @param fitter  that they were fitted with
+/// Sets the written causes' numbers as they are written. @param fitter  fitter of these numbers
 void say_what_is_written(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
   for (std::size_t i = 0; i < d.written.causes.size(); ++i) {
     Cause& c = d.causes.at(d.written.causes[i]);
@@ -160,7 +161,7 @@ void say_what_is_written(Diagnosis& d, const Fitter& fitter, const Listener& lis
   }
 }
 
-/// Causes with the scenario's own numbers as they are written.
+/// Writes causes with the scenario's own numbers unchanged.
 void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, Twin::Workspace& workspace,
                  const Listener& listener) {
   d.written = {.hypothesis = alone.hypothesis,
@@ -187,7 +188,7 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
   say_what_is_written(d, numbers_as_written, listener);
 }
 
-/// Of a diagnosis that was ended: what stands so far is said, and that it was not judged.
+/// For a diagnosis that was ended: reports what is known so far, and that it was not judged.
 void leave_incomplete(Diagnosis& d, const std::string& stage) {
   d.ended_at = stage;
   for (Cause& c : d.causes) {
@@ -200,7 +201,7 @@ void leave_incomplete(Diagnosis& d, const std::string& stage) {
                          d.causes.empty() ? "Nothing stands up so far." : "So far: " + reason_of(d));
 }
 
-/// Laws times readings times records times what a prediction costs: how long searching once without each record would take.
+/// Laws times readings times records times the cost of a prediction: the time of one search without each record.
 double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
   const auto& system = fitter.twin().machine().system;
   const double size = std::max(1.0, system.size() / kSmallMachine) * (system.is_linear() ? 1.0 : kNotLinear);
@@ -253,7 +254,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.moved = std::move(own.moved);
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
-  d.scatter = fitter.scatter();  // with the priors of faults where numbers have gone too far
+  d.scatter = fitter.scatter();  // with priors of faults for numbers that moved too far
   const std::vector<Candidate>& list = d.search.candidates;
   d.n_candidates = static_cast<int>(standing.size());
   if (const auto nameless = without_name(fitter, d.search, d.statements, d.noise)) {
@@ -295,7 +296,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, listener);
   d.calibrated = fitted_numbers(fitter, d.written.fit.x, d.written.fit.covariance, known_to);
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
-  // what came back once others were no longer held is no cause
+  // A number that moved back once others were free again is no cause.
   std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
@@ -334,7 +335,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     }
   }
   const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
-  std::vector<char> in_doubt(d.search.findings.size(), 0);  // what is suspected beside nothing at all
+  std::vector<char> in_doubt(d.search.findings.size(), 0);  // marks a cause that is suspected against nothing at all
   for (std::size_t c = 0; c < in_doubt.size() && d.verdict == Verdict::kSuspected; ++c)
     in_doubt[c] = d.causes[c].standing == Standing::kSuspected;
   const bool is_in_doubt = std::any_of(in_doubt.begin(), in_doubt.end(), [](char doubt) { return doubt != 0; });

@@ -11,7 +11,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kPoles = 4;
-constexpr double kRowsOfShortest = 3.0, kShortest = 0.003, kLongest = 1.0 / 3.0;  // as identification has them
+constexpr double kRowsOfShortest = 3.0, kShortest = 0.003, kLongest = 1.0 / 3.0;  // as in identification
 constexpr double kExponent = 5.0 / 3.0;
 
 std::vector<double> poles_s(const std::vector<MeasuredRun>& runs) {
@@ -27,7 +27,7 @@ std::vector<double> poles_s(const std::vector<MeasuredRun>& runs) {
   return tau_s;
 }
 
-using Course = std::vector<Eigen::RowVectorXd>;  ///< a row of each run
+using Course = std::vector<Eigen::RowVectorXd>;  ///< one row per run
 
 }  // namespace
 
@@ -71,7 +71,7 @@ std::vector<Prediction> discrepancy_columns(const std::vector<MeasuredRun>& runs
       ambient.push_back(std::move(row));
     }
     add(std::move(ambient));
-    for (std::size_t r = 0; r < runs.size(); ++r) {  // how warm a record begins
+    for (std::size_t r = 0; r < runs.size(); ++r) {  // the temperature at a record's start
       Course start;
       for (const MeasuredRun& run : runs)
         start.push_back(Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size())));
@@ -80,7 +80,7 @@ std::vector<Prediction> discrepancy_columns(const std::vector<MeasuredRun>& runs
       add(std::move(start));
     }
   }
-  std::map<int, double> sizes;  // of outputs
+  std::map<int, double> sizes;  // by output
   for (const MeasuredRun& run : runs) {
     for (const MeasuredChannel& c : run.channels) {
       if (errors.contains(c.name)) sizes[c.output] = errors.at(c.name).rms;

@@ -7,7 +7,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-/// Of (1 + R R')⁻¹, by its small side: 1 - R (1 + R'R)⁻¹ R'.
+/// (1 + R R')⁻¹, computed by its small side: 1 - R (1 + R'R)⁻¹ R'.
 struct Spread {
   const Eigen::MatrixXd& root;
   Eigen::LLT<Eigen::MatrixXd> factor;
@@ -34,7 +34,7 @@ Outlook outlook(const Fitter& ahead, const Explanation& of, Twin::Workspace& wor
   for (const Claim& c : of.hypothesis) {
     for (const Knob& k : c.knobs) {
       const Eigen::Index i = at++;
-      // The fit has no slope by these either: what is not known of them is left out.
+      // The fit has no slope for these either; their uncertainty is left out.
       if (c.all_or_nothing || k.is_jump()) continue;
       double step = k.step;
       if (k.value(of.x[i] + step) == k.value(of.x[i])) step = -step;  // at its bound

@@ -15,12 +15,12 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRows_s = 60.0;
-constexpr double kTells = 5.0;   // d' from which on fewer than 1 record in 40 speaks for the wrong one
-constexpr double kHardly = 2.0;  // d' up to which a further thermometer is worth its price; above, a cyclogram costs nothing
-constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, where none was measured
+constexpr double kTells = 5.0;   // d' above which fewer than 1 record in 40 supports the wrong explanation
+constexpr double kHardly = 2.0;  // d' below which another thermometer is worth its price; above, a cyclogram is free
+constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, if no thermometer was measured
 constexpr const char* kMeanOf = "mean of ";
 
-/// Without linear columns: they are about the runs at hand.
+/// Without linear columns, which belong to the present runs.
 Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fit& fit) {
   const auto n_scatter = static_cast<Eigen::Index>(fitter.scatter().size());
   std::vector<Eigen::Index> kept;
@@ -29,7 +29,7 @@ Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fi
   }
   Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept)};
   Eigen::Index at = n_scatter;
-  for (const Claim& c : e.hypothesis) {  // what has no slope has no covariance: it stays where the search has put it
+  for (const Claim& c : e.hypothesis) {  // numbers without slope have no covariance: they keep the value from the search
     for (const Knob& k : c.knobs) {
       if (c.all_or_nothing || k.is_jump()) {
         e.covariance.row(at).setZero();
@@ -42,19 +42,19 @@ Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fi
   return e;
 }
 
-/// What stands to be told apart: the search's own hypothesis first, then those with another claim in a finding's place.
+/// The open explanations: the search's hypothesis first, then those with another claim in the place of a finding.
 struct Open {
   std::vector<Explanation> explanations;
   std::vector<Pair> pairs;
-  std::vector<const Claim*> claims;  ///< in dispute, of each explanation; of the first, the first finding's
-  std::vector<std::string> names;    ///< of these in words
+  std::vector<const Claim*> claims;  ///< in dispute, one per explanation; for the first, the first finding's
+  std::vector<std::string> names;    ///< of these claims, in words
 };
 
 std::string words(const Claim& c) {
   return fmt::format("{} at {}", c.knobs.front().effect, c.knobs.front().where);
 }
 
-/// The search's hypothesis without one of its findings, fitted anew; none where the machine has no solution so.
+/// The search's hypothesis without one of its findings, fitted anew; none if the machine then has no solution.
 std::optional<Explanation> without_finding(const Fitter& fitter, const SearchResult& result, std::size_t finding) {
   const Remainder rest = without_claims(result.hypothesis, {finding}, fitter.n_nuisance());
   if (rest.hypothesis.empty()) return explanation_of(fitter, {}, result.without);
@@ -112,7 +112,7 @@ std::vector<MeasuredChannel> channels_of(const std::vector<MeasuredRun>& runs) {
   return list;
 }
 
-/// That of the median thermometer.
+/// The noise of the median thermometer.
 NoiseModel thermometer_noise(const std::vector<MeasuredChannel>& channels, const std::map<std::string, NoiseModel>& noise) {
   std::vector<NoiseModel> list;
   for (const MeasuredChannel& c : channels) {
@@ -125,13 +125,13 @@ NoiseModel thermometer_noise(const std::vector<MeasuredChannel>& channels, const
   return *middle;
 }
 
-/// A record to come, and what each explanation says of it.
+/// A future record, and the prediction of each explanation for it.
 struct Ahead {
-  std::vector<MeasuredRun> runs;  ///< one
+  std::vector<MeasuredRun> runs;  ///< a single one
   std::unique_ptr<Fitter> fitter;
   std::vector<Outlook> outlooks;
 
-  /// Least d' of all pairs that some channels see.
+  /// The least d' of all pairs, seen by some channels.
   [[nodiscard]] double least(const std::vector<Pair>& pairs, const std::set<std::string>& channels) const {
     std::vector<Outlook> seen;
     for (const Outlook& o : outlooks) seen.push_back(only(o, fitter->comparison(), channels));
@@ -141,7 +141,7 @@ struct Ahead {
   }
 };
 
-/// @return null where an explanation has no solution there
+/// @return null if an explanation has no solution there
 std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
                                   const std::map<std::string, NoiseModel>& noise,
                                   const std::vector<Explanation>& explanations) {
@@ -160,7 +160,7 @@ std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
   return ahead;
 }
 
-/// Whether a claim does nothing in a record to come: it happened once.
+/// Whether a claim has no effect in a future record, since it happened only once.
 bool is_silent(const Ahead& ahead, const Explanation& of, const Claim& claim) {
   Hypothesis others;
   Eigen::VectorXd x = of.x.head(ahead.fitter->n_nuisance());
@@ -202,7 +202,7 @@ MeasuredRun run_of(const std::vector<MeasuredRun>& runs, const Cyclogram& cyclog
   return run;
 }
 
-/// What all explanations in pairs differ by at most in an output [K].
+/// The largest difference of any pair of explanations in an output [K].
 double largest_difference_K(const Ahead& ahead, const Open& open, int output) {
   Twin::Workspace workspace(ahead.fitter->twin());
   std::vector<Eigen::VectorXd> rows;
@@ -253,7 +253,7 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
   std::set<std::string> measured;
   for (const MeasuredChannel& c : channels) measured.insert(c.name);
   const auto& names = fitter.twin().outputs().name;
-  for (std::size_t o = 0; o < names.size(); ++o) {  // as if there were a thermometer on each part
+  for (std::size_t o = 0; o < names.size(); ++o) {  // as if each part had a thermometer
     if (!names[o].starts_with(kMeanOf) || measured.contains(names[o])) continue;
     channels.push_back({names[o], static_cast<int>(o), "K", {}});
     noise[names[o]] = further;
@@ -275,7 +275,7 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
     chosen = std::move(ahead);
   }
   if (!chosen) return std::nullopt;
-  if (once_only) {  // the record again, and with it what happened
+  if (once_only) {  // repeats the record, and its event with it
     double most_d = -1.0;
     for (const MeasuredRun& run : runs) {
       MeasuredRun repeated = run_of(runs, run.cyclogram, channels);
@@ -289,7 +289,7 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
         chosen = std::move(ahead);
       }
     }
-    best.discrimination = 0.0;  // what does not happen again is not seen again
+    best.discrimination = 0.0;  // an event does not happen again in a new record
   }
   for (const MeasuredChannel& c : channels) {
     if (measured.contains(c.name)) continue;

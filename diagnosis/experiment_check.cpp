@@ -10,9 +10,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kCannotTell = 3.0;  // nats, as the search has it
+constexpr double kCannotTell = 3.0;  // nats, as in the search
 
-/// Standard normal numbers by Box and Muller: the standard library fixes its engines, not its distributions.
+/// Standard normal numbers by Box and Muller: the standard library defines its engines exactly, but not its
+/// distributions.
 double normal(std::mt19937_64& random) {
   const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1.0p-53; };
   const double radius = std::sqrt(-2.0 * std::log(uniform()));
@@ -28,7 +29,7 @@ void add_noise(const NoiseModel& noise, double row_s, Eigen::VectorXd& series, s
   }
 }
 
-/// Linear columns are about the records so far: nothing in the new one.
+/// Linear columns for the records so far, with zeros for the new one.
 std::vector<Prediction> with_nothing_in(const std::vector<Prediction>& linear, std::size_t n_times) {
   std::vector<Prediction> list = linear;
   for (Prediction& column : list)
@@ -70,11 +71,11 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
           c.value = said.front().row(c.output).transpose();
           add_noise(noise.at(c.name), row_s, c.value, random);
         }
-        joint.set_noise(noise);  // looks at the readings anew
+        joint.set_noise(noise);  // evaluates the readings anew
         for (const Explanation& o : explanations)
           evidence.push_back(joint.fit(o.hypothesis, o.claim_x(n_scatter), workspace).log_evidence);
       });
-      if (!is_solved) continue;  // numbers that no machine can have
+      if (!is_solved) continue;  // the drawn numbers are impossible
       bool is_told = true;
       for (const Pair& p : pairs) {
         if (p.first != truth && p.second != truth) continue;

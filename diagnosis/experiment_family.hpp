@@ -1,11 +1,12 @@
 #pragma once
-// Cyclograms that ask different questions of a machine, within what it has done so far.
+// Cyclograms that excite a machine in different ways, within the limits of its records.
 
 #include "diagnosis/measured_run.hpp"
 
 namespace driftwright::diagnosis {
 
-/// Speeds and feeds no higher than those of the runs; six hours each. Without a speed there is no spindle in them, without feeds no axes.
+/// Six hours each, with speeds and feeds no higher than in the runs. Without recorded speeds they have no spindle,
+/// without feeds no axes.
 [[nodiscard]] std::vector<Cyclogram> experiment_family(const std::vector<MeasuredRun>& runs);
 
 }  // namespace driftwright::diagnosis

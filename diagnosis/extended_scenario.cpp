@@ -34,7 +34,7 @@ double rounded(double value, const effects::Parameter& parameter) {
   return rounded(value - zero) + zero;
 }
 
-/// Eight digits are enough for a thousandth of a kelvin, and can be read.
+/// Eight digits are accurate to a thousandth of a kelvin and readable.
 Effect rounded(Effect e) {
   for (std::size_t p = 0; p < e.values.size(); ++p) e.values[p] = rounded(e.values[p], e.kind->parameters[p]);
   for (auto& [name, table] : e.tables) {
@@ -78,7 +78,7 @@ class Writer {
     if (!scenarios::give_absolute_paths(yaml_, folder_).empty()) in_one_piece_ = true;
   }
 
-  /// @returns what was done; nothing where nothing differs
+  /// @returns the changes, as sentences; empty if nothing differs
   std::vector<std::string> write(const StatedChange& change) {
     TwinState next = list_;
     change.make(next);
@@ -92,7 +92,7 @@ class Writer {
     return done_;
   }
 
-  /// The edited text; where it does not say what it should, that of a file written anew.
+  /// The edited text; if it does not have the right effects, a text written anew.
   [[nodiscard]] std::string text(std::vector<std::string> head) const {
     if (const std::string edited = yaml_.text(head); !in_one_piece_ && says_what_it_should(edited)) return edited;
     head.emplace_back("written anew: the text of the scenario could not be edited in place");
@@ -117,15 +117,15 @@ class Writer {
   }
 
  private:
-  /// Whether the effects of a text are those of the list; entries that were replaced stand elsewhere.
+  /// Whether the effects of a text are those of the list; replaced entries are at another position.
   [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
     TwinState read;
     try {
-      std::vector<scenarios::FormerWord> former;  // the user's own, which stay as they are
+      std::vector<scenarios::FormerWord> former;  // in the user's text; they are kept
       const ConfigMap root =
           ConfigMap::of_tree(scenarios::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
       for (const ConfigMap& one : root.maps("effects")) read.push_back(effects::read_effect(one));
-    } catch (const InputError&) {  // no YAML any more, or an effect that is none
+    } catch (const InputError&) {  // it is no longer valid YAML, or has an invalid effect
       return false;
     }
     if (read.size() != list_.size()) return false;
@@ -148,7 +148,7 @@ class Writer {
     done_.push_back("added " + text);
   }
 
-  /// Changed numbers of an effect.
+  /// Writes the changed numbers of an effect.
   void values(std::size_t i, const Effect& next) {
     for (std::size_t p = 0; p < next.values.size(); ++p) {
       const double was = list_[i].values[p], now = rounded(next.values[p], next.kind->parameters[p]);
@@ -161,7 +161,7 @@ class Writer {
     }
   }
 
-  /// The number where it stands, in the unit that it was given in.
+  /// Edits the number in place, in its unit.
   bool in_place(std::size_t i, const effects::Parameter& parameter, double was, double now) {
     const ConfigNode* scalar = entry(i).find(parameter.name);
     if (!scalar) {
@@ -180,7 +180,7 @@ class Writer {
     return true;
   }
 
-  /// The whole entry, behind the others; the old one becomes a comment.
+  /// Writes the whole entry after the others; the old one becomes a comment.
   void replace(std::size_t i) {
     if (is_in_file(i) && yaml_.comment_out(*effects_, i) &&
         yaml_.append(*effects_, effects::yaml_of(list_[i]), change_->comment)) {
@@ -190,7 +190,7 @@ class Writer {
     in_one_piece_ = true;
   }
 
-  /// By its file and, where a logger wrote that, the scenario's `columns`; of a record that a program holds there is no file.
+  /// A cyclogram from the run's file and, for a logger's file, the scenario's `columns`; a record in memory has no file.
   [[nodiscard]] std::string cyclogram_of(const MeasuredRun& run) const {
     const auto is_read = [&](const std::optional<ColumnMap>& columns) {
       try {
@@ -244,14 +244,14 @@ class Writer {
   YamlText yaml_;
   std::filesystem::path folder_;
   std::optional<ColumnMap> columns_;
-  TwinState list_;  ///< what the text says
+  TwinState list_;  ///< effects of the text
   const ConfigNode* effects_ = nullptr;
   const StatedChange* change_ = nullptr;
   std::set<std::size_t> replaced_;
   std::vector<std::string> cyclograms_, done_;
   std::vector<std::pair<std::string, std::string>> added_cyclograms_;  ///< names and YAML
-  std::map<int, std::vector<std::string>> notes_;                      ///< what changed, by line
-  bool in_one_piece_ = false;                                          ///< the text could not be edited: it is written anew
+  std::map<int, std::vector<std::string>> notes_;                      ///< changes, by line
+  bool in_one_piece_ = false;                                          ///< the text could not be edited and is written anew
 };
 
 }  // namespace

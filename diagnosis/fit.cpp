@@ -349,8 +349,7 @@ Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) c
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
       [&](std::size_t i, Twin::Workspace& own) {
-        slopes.col(static_cast<Eigen::Index>(i)) =
-            comparison_->whitened(slope(hypothesis, x, base, about, i, own));
+        slopes.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(slope(hypothesis, x, base, about, i, own));
       });
   return slopes;
 }

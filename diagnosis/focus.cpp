@@ -14,12 +14,12 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kDoubts = 40, kChecks = 4;
-constexpr int kClaims = 6;           // at once
-constexpr int kSmallEnough = 24;     // states: nothing to gain below
-constexpr double kLeftOut_K = 1e-3;  // root mean square of what the basis leaves out; 2 um/K
-constexpr int kThin = 4;             // every so many rows
+constexpr int kClaims = 6;           // number of claims at once
+constexpr int kSmallEnough = 24;     // states; with fewer nothing is gained
+constexpr double kLeftOut_K = 1e-3;  // root mean square of the part outside the basis; 2 um/K
+constexpr int kThin = 4;             // every so many rows are used
 
-/// A machine in which everything is a little wrong and some things much. Same seed, same state.
+/// A machine with small errors in everything and large ones in some places. The same seed gives the same state.
 TwinState doubt(const Twin& twin, const std::vector<Knob>& scatter, const std::vector<Candidate>& candidates,
                 unsigned seed) {
   std::mt19937 random(seed);
@@ -52,7 +52,7 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
   Focus focus{twin.machine(), 0.0, 0.0};
   if (system.size() <= kSmallEnough) return focus;
 
-  // Weights: 1 K everywhere, 1 K at a sensor and half a micrometre count alike.
+  // Weights: 1 K everywhere, 1 K at a sensor and half a micrometre count the same.
   const auto n = static_cast<Eigen::Index>(system.size());
   Eigen::MatrixXd norm = Eigen::MatrixXd::Identity(n, n) / system.ones.squaredNorm();
   for (std::size_t o = 0; o < twin.outputs().unit.size(); ++o) {
@@ -62,7 +62,7 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(norm);
 
-  std::vector<Eigen::MatrixXd> squares(kDoubts);  // summed in order: the same bytes on any number of threads
+  std::vector<Eigen::MatrixXd> squares(kDoubts);  // summed in order: the result does not depend on the number of threads
   std::vector<double> counts(kDoubts, 0.0);
   for_each_index(
       kDoubts, [&] { return Twin::Workspace(twin); },
@@ -71,7 +71,7 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
         squares[i] = Eigen::MatrixXd::Zero(n, n);
         for (const MeasuredRun& run : runs) {
           Eigen::MatrixXd z;
-          if (!has_solution([&] { z = twin.states(state, run, workspace); })) continue;  // too wrong to have one
+          if (!has_solution([&] { z = twin.states(state, run, workspace); })) continue;  // too wrong to have a solution
           const Eigen::Index n_kept = (z.cols() + kThin - 1) / kThin;
           Eigen::MatrixXd y(n, n_kept);
           for (Eigen::Index c = 0; c < n_kept; ++c) y.col(c) = z.col(kThin * c);

@@ -13,7 +13,7 @@ bool may_be_planned_for(const Variant& v) {
          std::none_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.is_time; });
 }
 
-/// Kinds count alike, places of a kind alike, laws of a place alike.
+/// Equal weights for kinds, for the places of a kind, and for the laws of a place.
 void weigh(Doubts& doubts) {
   std::map<std::string, std::set<std::size_t>> places;
   for (const Doubts::Shape& s : doubts.shapes) places[doubts.candidates[s.candidate].effect].insert(s.candidate);

@@ -10,14 +10,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kWorseForeseen = 1.1;  // of the squares
-// Where the scenario's own numbers can do what a claim does, if they go far enough, kept-out rows are predicted alike with it and without; then it is the
-// evidence of all rows that counts how far they had to go.
+constexpr double kWorseForeseen = 1.1;  // ratio of the squares
+// If the scenario's own numbers can do the same as a claim by moving far enough, kept-out rows are predicted equally with
+// and without it; then the evidence of all rows decides, which includes how far the numbers moved.
 constexpr double kAlike = 3.0;            // nats
 constexpr double kSurelyLikelier = 10.0;  // nats
-constexpr double kWorseUnforeseen = 1.1;  // of the squares
+constexpr double kWorseUnforeseen = 1.1;  // ratio of the squares
 
-/// Where nobody waited for it.
+/// The result when the user ended the diagnosis before.
 HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
   HeldOut held;
   held.how = "the rows that were fitted to: the diagnosis was ended before any were kept out";
@@ -33,12 +33,12 @@ HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std
   return held;
 }
 
-/// What is left of the channel whose kept-out rows some claims predict worst beside what none of them leaves.
+/// The channel whose kept-out rows some claims predict worst compared with no claims, and what is left of it.
 Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::string, NoiseModel>& noise,
                                    const std::vector<Prediction>& with, const std::vector<Prediction>& without) {
   struct Sums {
     std::string unit;
-    double with = 0.0, without = 0.0, n = 0.0;  // squares over those of noise; rows
+    double with = 0.0, without = 0.0, n = 0.0;  // squares divided by those of noise; number of rows
   };
   std::map<std::string, Sums> channels;
   const auto square = [&](const MeasuredChannel& c, double miss) { return std::pow(miss / noise.at(c.name).total(), 2); };
@@ -62,7 +62,7 @@ Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::strin
           (sums.with - sums.n) / std::sqrt(2.0 * sums.n)};
 }
 
-/// The evidence of a claim beside what it has to pay for being one of many [nats].
+/// The cost of a claim for being one of many [nats].
 double price_of(const SearchResult& result, std::size_t claim) {
   const Candidate& candidate = result.candidates[result.hypothesis[claim].candidate];
   return std::log(static_cast<double>(result.n_catalogue)) + law_price(candidate);
@@ -84,11 +84,11 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   Judge judge(fitter, result, noise, std::move(folds.list));
   const Subset all = (1U << n_claims) - 1U;
 
-  // What kept-out rows are better off without is taken out, the worst first.
+  // Claims without which kept-out rows are predicted better are removed, the worst first.
   Subset kept = all;
   while (kept != 0) {
     Subset best = kept;
-    double most = kAlike;  // nats gained by taking it out
+    double most = kAlike;  // nats gained by its removal
     for (std::size_t c = 0; c < n_claims; ++c) {
       const Subset without = kept & ~(1U << c);
       if (without == kept) continue;
@@ -102,7 +102,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (best == kept) break;
     kept = best;
   }
-  // What went for another's sake comes back where that one went, too.
+  // A claim that was removed because of another one returns if that one is removed, too.
   for (std::size_t c = 0; c < n_claims; ++c) {
     const Subset with = kept | (1U << c);
     if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
@@ -134,7 +134,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   }
   kept = 0;
   for (std::size_t c = 0; c < n_claims; ++c) kept |= held.why_not_written[c].empty() ? 1U << c : 0U;
-  // What comes again and again at times that nobody knows ahead is true of these records, and of no use for those to come.
+  // Repeated events at unpredictable times are true for these records, but useless for future ones.
   for (std::size_t c = 0; c < n_claims; ++c) {
     const Subset without = kept & ~(1U << c);
     const Claim& claim = result.hypothesis[c];
@@ -152,7 +152,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     Judge::Refound again = judge.refound(search_again, kept, listener);
     models.calibrated = std::move(again.calibrated);
     models.found = std::move(again.extended);
-    // A search that finds what does harm to rows it has not seen would do so to records that are still to come.
+    // If a search finds causes that harm unseen rows, it would harm future records as well.
     if (kept != 0 && judge.squares_over_noise(models.found) > kWorseForeseen * judge.squares_over_noise(models.calibrated)) {
       for (std::size_t c = 0; c < n_claims; ++c) {
         if (((kept >> c) & 1U) != 0)

@@ -1,5 +1,5 @@
 #pragma once
-// What an extension gains on rows that its numbers were not fitted to, and which of its parts gain nothing there.
+// The gain of an extension on rows that its numbers were not fitted to, and the parts of it without gain there.
 
 #include "diagnosis/diagnosis.hpp"
 
@@ -7,61 +7,71 @@ namespace driftwright::diagnosis {
 
 struct HeldOut {
   std::string how;
-  std::vector<ChannelGain> channels;  ///< of the claims that are kept
-  KeptOutMisses misses = {};          ///< of all channels together
-  /// Per claim: how much likelier the kept-out rows are with it than without it, those fitted given, whatever is not known of all numbers counted in [nats].
+  std::vector<ChannelGain> channels;  ///< with the claims that are kept
+  KeptOutMisses misses = {};          ///< over all channels
+  /// For each claim: how much likelier the kept-out rows are with it, given the fitted ones and the uncertainty of all
+  /// numbers [nats].
   std::vector<double> claim_nats;
-  /// Per claim: why the kept-out rows make it a hint, a clause; "" where they do not. They are predicted worse with it; or no better, and no claim would have been
-  /// suspected without some of them.
+  /// For each claim: the reason why the kept-out rows make it only a hint, a clause; otherwise "". They are predicted
+  /// worse with it; or no better, and without some of them no claim would have been suspected.
   std::vector<std::string> doubt;
-  /// Per claim: why it is not worth writing, a clause; "" where it is. It is doubted; or kept-out rows are predicted no better with it; or it happens
-  /// in several records at times that nobody knows ahead, where a record whose times are not known is predicted worse by what was fitted beside it; or a search without the kept-out rows finds what does harm to them.
+  /// For each claim: the reason why it is not written, a clause; otherwise "". It is doubted; or kept-out rows are
+  /// predicted no better with it; or it happens in several records at times that are unknown in advance, and the numbers
+  /// fitted with it predict a record with unknown times worse; or a search without the kept-out rows finds something that
+  /// harms them.
   std::vector<std::string> why_not_written;
-  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one that this is not told from.
+  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one
+  /// that cannot be distinguished from it.
   int n_searched = 0;
   std::vector<int> n_again = {};
-  bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does
-  /// Where they fail, the channel that they predict worst, and how: what is left of its kept-out rows.
+  bool fails = false;  ///< the claims together predict kept-out rows clearly worse than no claim
+  /// If they fail: the channel with the worst prediction, and the rest of its kept-out rows.
   Unexplained::Channel fails_at;
-  /// The same of what would be written, once all is taken out that is of single records: where the scenario as written predicts better then.
+  /// The same for the file to be written, without parts that belong to single records, if the scenario as written then
+  /// predicts better.
   std::optional<Unexplained::Channel> elsewhere_at = {};
-  std::string why_nothing = {};  ///< why neither causes nor fitted numbers are worth writing, a clause; "" where they are
+  std::string why_nothing = {};  ///< reason why neither causes nor fitted numbers are written, a clause; otherwise ""
 };
 
-/// A search for what is wrong in records that have some of their readings alone: with noise, bars, numbers and process noise of these.
+/// A search for faults in records with only some of their readings; noise, thresholds, numbers and process noise come
+/// from these.
 using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& fitted)>;
 
-/// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the rest. What happened in one run alone, or
-/// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew. Misses are those of what a file would hold:
-/// of the machine's effects and numbers, without what is not known of a warm start or of the mesh.
-/// @param search_again  makes the search again without the rows of each run, or of the last third; null: which claims there are was decided on all rows
-/// @param listener      once it wants an end, the misses are those of rows that were fitted to, and nothing is worth writing
+/// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the
+/// rest. Events in a single run, or at a time of the only run, are judged on blocks of it, with every other block kept
+/// out. All numbers are fitted anew each time. Errors are those of a written file: of the machine's effects and numbers,
+/// without unknown warm starts or mesh errors.
+/// @param search_again  repeats the search without the rows of each run, or of the last third; null: the claims were
+/// found on all rows
+/// @param listener      after a request to end, the errors are those of fitted rows, and nothing is written
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
                                     const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again,
                                     const Listener& listener = {});
 
-/// Whether duty cycles, each kept out whole, are together predicted worse by what would be written, with numbers fitted to the records of the others, than by the scenario as written. Of a model
-/// that is wrong in a way that nothing explains, a record of a cycle that others went through as well is predicted by what is true of that cycle alone.
-/// @param claims  of the search's hypothesis: those that would be written
-/// @return        a clause; "" where they are not, or where each record is of a cycle of its own, or all are of one
+/// Whether the file to be written, with numbers fitted to the records of other duty cycles, predicts whole duty cycles
+/// worse than the scenario as written, over all cycles. If the model has an unexplained error, a fit also predicts other
+/// records of the same cycle well, but by features of that cycle alone.
+/// @param claims  of the search's hypothesis: those to be written
+/// @return        a clause; "" if the prediction is not worse, or if each record has its own cycle, or all have the same
 [[nodiscard]] std::string worse_in_another_cycle(const Fitter& fitter, const SearchResult& result,
                                                  const std::map<std::string, NoiseModel>& noise,
                                                  const std::vector<std::size_t>& claims);
 
-/// Of a single record of which more is left than its causes explain: numbers of the scenario that were fitted beside them took up what nobody named, and hold for
-/// their own rows alone. The causes with the scenario's numbers as they are written may hold.
+/// For a single record with more left than its causes explain: the scenario's numbers fitted with them absorbed unnamed
+/// effects and hold for their own rows only. The causes with the scenario's numbers unchanged may hold.
 struct CausesAlone {
-  std::vector<std::size_t> claims;  ///< of the search's hypothesis, in their order
+  std::vector<std::size_t> claims;  ///< indices in the search's hypothesis, in order
   Hypothesis hypothesis;
-  Fit fit;                            ///< of them to all rows; x is of their knobs alone
-  std::string how;                    ///< the kept-out rows
-  std::vector<ChannelGain> channels;  ///< on these, fitted without them
+  Fit fit;                            ///< to all rows; x has their knobs only
+  std::string how;                    ///< the kept-out rows, in words
+  std::vector<ChannelGain> channels;  ///< on the kept-out rows, fitted without them
   KeptOutMisses misses = {};
 };
 
-/// Those that bring 20 nats and are found again without the last third of the record, none of which tells of a time, if that is predicted better with them than by the scenario as it is
-/// written, by a tenth of the squares, and no channel worse; the strongest one, where all together do not.
-/// @param held  of held_out_gain(), which searched again
+/// The claims with at least 20 nats that are found again without the last third of the record and that are not events, if
+/// they predict this third better than the scenario as written, by a tenth of the squares, with no channel worse; if all
+/// together do not, the strongest one.
+/// @param held  from held_out_gain(), which repeated the search
 [[nodiscard]] std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult& result,
                                                       const std::map<std::string, NoiseModel>& noise, const HeldOut& held);
 

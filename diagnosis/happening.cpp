@@ -12,20 +12,20 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortestWindow_s = 1.0;       // of a window that another length has shortened
-constexpr std::size_t kWindowsFittedAlone = 5;  // whose times are fitted one by one
-constexpr double kTurnsGoOn = 2.0;              // of the longest run: how long turns are written for
-// Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
+constexpr double kShortestWindow_s = 1.0;       // least length of a window that was shortened by its fitted length
+constexpr std::size_t kWindowsFittedAlone = 5;  // up to this number, windows' times are fitted separately
+constexpr double kTurnsGoOn = 2.0;              // times the longest run: length for which turns are written
+// Exponent of the speed by which heat of bearings and motors usually grows: start value for a fit of another speed.
 constexpr double kUsualExponent = 1.5;
 
-/// Whether the twin's reduced machine holds for such an exchange.
+/// Whether the twin's reduced machine is valid for such an exchange.
 bool holds(const Twin& twin, const effects::Effect& window) {
   const solver::ExchangePlace asked = solver::place_of(effects::heat_balance({window}).exchanges.front());
   const auto& exchanges = twin.machine().system.exchanges;
   return std::any_of(exchanges.begin(), exchanges.end(), [&](const auto& e) { return e.place == asked; });
 }
 
-/// How much longer all windows are than they were seen to be.
+/// The extension of all windows beyond their detected length.
 effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effect>& before) {
   effects::DoubtedNumber longer = effects::doubted("longer", "min", sd_min, 0.1 * sd_min);
   longer.set = [before](std::span<effects::Effect> added, double value) {
@@ -41,8 +41,8 @@ effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effec
   return longer;
 }
 
-/// Beginnings and ends of windows, each known to about as much as would do as well: from there on they are fitted.
-/// @param wide_s  of them all, in the order of the effects and their rows
+/// Begin and end of windows, each with the uncertainty of its detection as prior.
+/// @param wide_s  for all windows, in the order of the effects and their rows
 std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::Effect>& windows, const Times& wide_s,
                                                      double row_min) {
   std::vector<effects::DoubtedNumber> numbers;
@@ -75,7 +75,7 @@ std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::
   return numbers;
 }
 
-/// Begin, length and period of windows that repeat, each known to about a row.
+/// Begin, length and period of repeating windows, each known to about one row.
 std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double row_min) {
   const double begin_min = h.in.front().second.front().first / 60.0,
                length_min = (h.in.front().second.front().second - h.in.front().second.front().first) / 60.0;
@@ -101,7 +101,7 @@ std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double ro
   return {begin, length, every};
 }
 
-/// One window alone: when it begins and how long it lasts are numbers of its own, and pay for themselves.
+/// One window: its begin and length are fitted numbers, whose cost is part of their evidence.
 std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening& h, const effects::Effect& window,
                                const effects::DoubtedNumber& size) {
   const auto& [run, windows] = h.in.front();
@@ -116,12 +116,12 @@ std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening
   return event;
 }
 
-/// What is doubted of a happening: the effect, but for its times, and its size.
+/// The doubt of a happening: the effect without its times, and its size.
 struct Asked {
   effects::Effect window;
   effects::DoubtedNumber size = {};
-  std::string where = {}, to = {};  ///< the other end in words, where there is one
-  double trial = 0.0;               ///< of the size, from its nominal value
+  std::string where = {}, to = {};  ///< the other end in words, if there is one
+  double trial = 0.0;               ///< of the size, relative to its nominal value
 };
 
 Asked another_speed(const Happening& h) {
@@ -133,7 +133,7 @@ Asked another_speed(const Happening& h) {
   return a;
 }
 
-/// @returns  nothing where the twin has no place for it, or it has no size that is allowed
+/// @returns  nothing if the twin has no place for it, or if no size is allowed
 std::optional<Asked> asked_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
   if (h.is_speed) return another_speed(h);
   Asked a{.window = effects::make_effect("heat_window", h.body)};
@@ -237,7 +237,8 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   } else if (is_fitted) {
     for (effects::DoubtedNumber& n : times_of_windows(d.added, h.wide_s, longest_row_s / 60.0))
       d.numbers.push_back(std::move(n));
-    // the prior of each is as wide as what would do as well: this far the choice among all rows is paid already
+    // Each prior is as wide as the uncertainty of its detection: that part of the choice among all rows is in the price
+    // already.
     event.price_nats -= static_cast<double>(n_windows) * std::log(2.0 * std::numbers::pi);
   } else {
     d.numbers.push_back(longer_by(longest_row_s / 60.0, d.added));

@@ -1,5 +1,6 @@
 #pragma once
-// Windows of one size, wherever they are, and the doubt that they make: heat in a body, an exchange with another one, or another speed of the spindle.
+// Windows of time with one size, and the doubt made from them: heat in a body, an exchange with another body, or another
+// spindle speed.
 
 #include <optional>
 
@@ -11,54 +12,55 @@ namespace driftwright::diagnosis {
 /// Windows as one cause of the catalogue.
 struct Event {
   effects::Doubt
-      doubt;  ///< windows of heat, of an exchange or of another speed; its numbers: the size, and how much longer, or when they come again
-  double price_nats = 0.0;  ///< of their times, which were read off the data
+      doubt;  ///< windows of heat, exchange or another speed; its numbers: the size, and how much longer, or when they repeat
+  double price_nats = 0.0;  ///< cost of their times, which were chosen by the data
   struct Window {
     std::string in;  ///< run
     double begin_s = 0.0, end_s = 0.0;
   };
-  std::optional<Window> once = {};  ///< where there is one window in all
+  std::optional<Window> once = {};  ///< if there is only one window
 };
 
 /// Keys of effects that events may have.
 inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "speed_override", "hidden_body"};
 
-using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends [s]
+using Times = std::vector<std::pair<double, double>>;  ///< begin and end of each [s]
 
-/// Windows of one size, wherever they are.
+/// Windows with one size, at any times.
 struct Happening {
   effects::Body body;
-  std::optional<effects::Body> other = {};  ///< an exchange with it; else heat
-  bool is_speed = false;  ///< of the spindle, whatever the body: the size is what heat of turning grows by, over itself
+  std::optional<effects::Body> other = {};  ///< an exchange with this body; none: heat
+  bool is_speed = false;  ///< of the spindle, with any body: the size is the relative increase of the heat of turning
   std::vector<std::pair<const MeasuredRun*, Times>> in =
-      {};  ///< each run that has some; no run: all of them, one window in each turn
-  /// How much of the record would do as well as each beginning and end [s], in the order of all windows; empty: not known.
+      {};  ///< each run with windows; no run: one window in each turn of all runs
+  /// Uncertainty of each begin and end [s], in the order of all windows: range that fits as well; empty: unknown.
   Times wide_s = {};
-  double every_s = 0.0;  ///< of windows that repeat
+  double every_s = 0.0;  ///< period of windows that repeat
   double size = 0.0;     ///< W, W/K or 1
   double price_nats = 0.0;
 };
 
-/// 1 sigma of a conductance that nobody knows of, per W of heat that nobody knows of [W/K].
+/// Prior standard deviation of an unknown conductance per W of the prior of an unknown heat [W/K].
 inline constexpr double kUnknownExchange = 0.2;
-/// 1 sigma of what the heat of turning grows by, over itself, where another speed is doubted.
+/// Prior standard deviation of the relative increase of the heat of turning when another speed is suspected.
 inline constexpr double kUnknownSpeed = 0.7;
 
-/// The window of an exchange between two bodies, either end of which may be the one that stands first. None between two regions, or where the twin has no
-/// place for it.
+/// The window of an exchange between two bodies, in the order that the catalogue allows. None between two regions, or if
+/// the twin has no place for it.
 [[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a,
                                                              const effects::Body& b);
 
-/// Whether half of the windows' time or more lies in holes of their records, where nobody saw what went on. What repeats in each turn was seen in others.
+/// Whether at least half of the windows' time lies in holes of their records, so that it was not observed. Repeating
+/// windows were observed in other turns.
 [[nodiscard]] bool is_unseen(const Happening& happening);
 
-/// Share of the time of its records that windows take; of what repeats, of a turn.
+/// Share of the records' time that the windows take; for repeating windows, share of a turn.
 [[nodiscard]] double share_of_time(const Happening& happening);
 
-/// From row to row [s], on average.
+/// Mean time between rows [s].
 [[nodiscard]] double row_s(const MeasuredRun& run);
 
-/// @returns  nothing where there is no window, or none of a size that is allowed
+/// @returns  nothing if there is no window, or none with an allowed size
 [[nodiscard]] std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening);
 
 }  // namespace driftwright::diagnosis

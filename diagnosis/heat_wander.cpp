@@ -10,13 +10,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kKnots = 24;  // of a run, between which heat is a straight line
-constexpr int kMaximisations = 30;   // of expectation and maximisation
-constexpr double kMatters = 0.02;    // of all that the bodies do
-constexpr double kShortest = 1.0;    // time constants that are tried, in distances of knots
+constexpr Eigen::Index kKnots = 24;  // of a run; heat is linear between them
+constexpr int kMaximisations = 30;   // largest number of iterations
+constexpr double kMatters = 0.02;    // share of the effect of all bodies; smaller ones are dropped
+constexpr double kShortest = 1.0;    // range of trial time constants, in distances of knots
 constexpr double kLongest = 64.0;
 
-/// Hats of 1 W about each knot, n_steps x kKnots: means from row to row.
+/// Triangular hats of 1 W at each knot, n_steps x kKnots: means from row to row.
 Eigen::MatrixXd hats(const std::vector<double>& time_s) {
   const auto n_steps = static_cast<Eigen::Index>(time_s.size()) - 1;
   const double length_s = time_s.back() - time_s.front();
@@ -32,7 +32,7 @@ Eigen::MatrixXd hats(const std::vector<double>& time_s) {
   return hat;
 }
 
-/// Root of exp(-|t_i - t_j| / τ) of the knots.
+/// Root of exp(-|t_i - t_j| / τ) for the knots.
 Eigen::MatrixXd root_of_correlation(double spacing_s, double time_s) {
   Eigen::MatrixXd c(kKnots, kKnots);
   for (Eigen::Index i = 0; i < kKnots; ++i) {
@@ -41,7 +41,7 @@ Eigen::MatrixXd root_of_correlation(double spacing_s, double time_s) {
   return c.llt().matrixL();
 }
 
-/// Readings of a run as 1 W about each knot in each body changes them, whitened and condensed.
+/// The change of a run's readings by 1 W at each knot in each body, whitened and condensed.
 struct Run {
   double spacing_s = 0.0;
   Eigen::MatrixXd columns;  ///< n_rows x (n_bodies kKnots), body after body
@@ -52,10 +52,11 @@ struct FittedCourse {
   double log_likelihood = -1e300;
   double time_s = 0.0;
   Eigen::VectorXd variance_W2;  ///< of each body
-  Eigen::VectorXd does;         ///< of each body, squares of what it does to the readings
+  Eigen::VectorXd does;         ///< of each body: squares of its effect on the readings
 };
 
-/// Expectation and maximisation. @param gram, along  of each run: columns' products, and with the residual
+/// Expectation and maximisation. @param gram, along  of each run: products of the columns with each other and with the
+/// residual
 FittedCourse fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& gram,
                     const std::vector<Eigen::VectorXd>& along, Eigen::Index n_bodies, double time_s) {
   const Eigen::Index n = n_bodies * kKnots;

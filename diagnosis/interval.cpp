@@ -10,8 +10,8 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRise = 1.92;       // of Φ: half the 95 % quantile of χ² with one degree of freedom
-constexpr double kNearBound = 0.15;  // to it
-constexpr int kMostTries = 7;        // a side
+constexpr double kNearBound = 0.15;  // accepted distance of the rise of Φ from kRise
+constexpr int kMostTries = 7;        // on each side
 constexpr int kMostRows = 15;
 constexpr double kHopelessStep = 8.0;  // of Φ
 
@@ -33,7 +33,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
   const double sd = is_jump ? row_s : std::sqrt(std::max(0.0, variance));
   if (!(sd > 0.0)) return {middle, middle};
 
-  // Rise of Φ at a distance; the others begin where the best fit's own covariance expects them.
+  // The rise of Φ at a distance; the other numbers start where the best fit's covariance predicts them.
   const auto rise = [&](double distance, Twin::Workspace& workspace) {
     Eigen::VectorXd start = best.x;
     if (is_jump || !(variance > 0.0)) {
@@ -41,12 +41,12 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
     } else {
       start += best.covariance.col(at) * (distance / variance);
     }
-    double misfit = 1e300;  // no solution so far out
+    double misfit = 1e300;  // no solution at this distance
     (void)has_solution([&] { misfit = fitter.fit_others(hypothesis, start, at, workspace).misfit - best.misfit; });
     return misfit;
   };
   const auto room = [&](double sign) { return std::max(0.0, sign > 0.0 ? high - middle : middle - low); };
-  // A jump between two rows is anywhere between them; beyond a worse row there may be a better one.
+  // A jump between two rows may be anywhere between them; beyond a worse row there may be a better one.
   const auto last_row = [&](double sign, Twin::Workspace& workspace) {
     double last = 0.0;
     for (int i = 1; i <= kMostRows && i * row_s < room(sign); ++i) {
@@ -69,7 +69,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
       } else {
         outside = distance, rise_outside = r;
       }
-      if (outside > 0.0) {  // Φ is about a parabola: its root between the two
+      if (outside > 0.0) {  // Φ is about a parabola: root between the two
         const double share = rise_outside < 1e200 ? (std::sqrt(kRise) - std::sqrt(rise_inside)) /
                                                         (std::sqrt(rise_outside) - std::sqrt(rise_inside))
                                                   : 0.5;
@@ -78,7 +78,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
         distance = std::min(room(sign), std::clamp(std::sqrt(kRise / std::max(1e-3, rise_inside)), 1.2, 3.0) * inside);
       }
     }
-    // never left: the data allow all that the knob does
+    // The threshold was never crossed: the data allow the knob's whole range.
     return middle + sign * (outside > 0.0 ? 0.5 * (inside + outside) : std::min(room(sign), 8.0 * knob.prior_sd));
   };
   double ends[2] = {};

@@ -11,21 +11,23 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kAllFitted = -1;  // of a fit of all numbers
-constexpr double kNoSolution = -1e6;     // nats of a fold that no numbers fit
-// What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
+constexpr Eigen::Index kAllFitted = -1;  // index for the fit to all rows
+constexpr double kNoSolution = -1e6;     // nats of a fold without a fit
+// Features of a kept-out record alone, such as its ambient, contribute to errors and say nothing about a claim: errors
+// decide only if the likelihood is not clear.
 constexpr double kSurelyLikelierKeptOut = 10.0;  // nats
-constexpr double kWorseKeptOut = 1.1;            // of the squares
-constexpr double kMuchWorse = 1.25;              // of the squares: speaks against a claim, not only against writing it
-constexpr int kMostAgain = 6;                    // climbs from where the last one ended
-constexpr double kStoppedShort = 0.3;            // nats that another climb gains
+constexpr double kWorseKeptOut = 1.1;            // ratio of the squares
+constexpr double kMuchWorse = 1.25;              // ratio of the squares: evidence against a claim itself
+constexpr int kMostAgain = 6;                    // largest number of further climbs from the end of the last one
+constexpr double kStoppedShort = 0.3;            // nats; a climb that gains less is converged
 
-/// The kind of a cause, whether it lasts or comes in windows, or is of a path that the scenario has or lacks: with fewer rows the one may look like the other.
+/// The kind of a cause, regardless of whether it lasts or comes in windows, or of a path that the scenario has or lacks:
+/// with fewer rows these may look alike.
 std::string_view lasting_kind(std::string_view effect) {
   return effect == "heat_window" ? "heat_source" : effect == "exchange_window" || effect == "link" ? "contact" : effect;
 }
 
-/// Climbs until it stays: what stops short in one fold is a difference of evidence that the rows do not hold.
+/// Climbs until convergence: a premature stop in one fold would give a false difference of evidence.
 void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
   for (int again = 0; again < kMostAgain; ++again) {
     Fit next;
@@ -60,7 +62,7 @@ const Judge::Judged& Judge::judged(Subset claims) {
   const Eigen::Index n_n = whole_.n_nuisance();
   const Remainder rest = without_claims(result_.hypothesis, left_out, n_n);
   const Eigen::VectorXd x = result_.fit.x(rest.x);
-  std::vector<Fit> fits(folds_.size() + 1);  // the last one to all rows
+  std::vector<Fit> fits(folds_.size() + 1);  // the last fit is to all rows
   for_each_index(
       fits.size(), [&] { return Twin::Workspace(whole_.twin()); },
       [&](std::size_t f, Twin::Workspace& workspace) {
@@ -71,7 +73,8 @@ const Judge::Judged& Judge::judged(Subset claims) {
         }
         go_on(fitter, rest.hypothesis, fits[f], workspace);
       });
-  // Fewer readings are never missed by more than all of them: a fit to them that is has stopped short, and goes on from where the fit to all ended.
+  // A fit to fewer readings cannot have a larger misfit than the fit to all: if it has, it stopped early, and continues
+  // from the end of the fit to all.
   const Fit& all = fits.back();
   for (std::size_t f = 0; f < folds_.size() && !all.prediction.empty(); ++f) {
     if (!fits[f].prediction.empty() && fits[f].misfit <= all.misfit) continue;
@@ -258,7 +261,7 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
       n_rows[i] += 1.0;
     });
     for (std::size_t i = 0; i < gains.size(); ++i) {
-      gains[i].*rmse = std::sqrt(gains[i].*rmse / n_rows[i]);  // of no rows: NaN
+      gains[i].*rmse = std::sqrt(gains[i].*rmse / n_rows[i]);  // NaN without rows
       if (peak && n_rows[i] == 0.0) gains[i].*peak = std::numeric_limits<double>::quiet_NaN();
     }
   };

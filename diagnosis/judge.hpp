@@ -1,5 +1,5 @@
 #pragma once
-// What claims make of kept-out rows: how likely these are with them, and by how much they are missed.
+// Evaluates claims on kept-out rows: how likely the rows are with them, and how large the errors.
 
 #include <map>
 #include <memory>
@@ -10,59 +10,61 @@
 
 namespace driftwright::diagnosis {
 
-/// Claims that are fitted together: a bit each.
+/// A set of claims that are fitted together, one bit each.
 using Subset = unsigned;
 
-/// Of the folds of some rows; each subset of the claims is fitted once.
+/// Evaluates sets of claims on folds; each set is fitted once.
 class Judge {
  public:
-  /// All are loans for the judge's life.
+  /// All arguments must outlive the judge.
   Judge(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
         std::vector<Fold> folds);
 
-  /// What some of the claims make of the folds, all numbers fitted anew to the rows of each.
+  /// The result of some claims on the folds, with all numbers fitted anew to the fitted rows of each.
   struct Judged {
-    std::vector<Prediction> predicted;  ///< of all runs, a fold each
-    /// Logarithm of the probability of the kept-out rows, the fitted ones given, summed over the folds; up to what all claims share:
-    /// the evidence of all rows less that of the fitted ones.
+    std::vector<Prediction> predicted;  ///< of all runs, one per fold
+    /// Logarithm of the probability of the kept-out rows given the fitted ones, summed over the folds, up to a constant
+    /// of all sets: the evidence of all rows minus that of the fitted ones.
     double log_predictive = 0.0;
     std::vector<double> log_evidence = {};  ///< of the fitted rows of each fold
     Hypothesis hypothesis = {};
-    std::vector<Eigen::VectorXd> x = {};  ///< of each fold's fit; empty where there is none
+    std::vector<Eigen::VectorXd> x = {};  ///< of each fold's fit; empty if there is none
   };
   const Judged& judged(Subset claims);
-  /// What a file that holds some claims, all numbers as fitted to a fold's rows, predicts of its kept-out ones. Of a run that is kept out whole nobody knows when
-  /// something happens, as nobody would of one still to come: no window of time is open in it.
+  /// Predictions of kept-out rows by a file with some claims, with numbers fitted to a fold's rows. In a run that is kept
+  /// out completely, the times of events are unknown, as in a future run: no window of time is open in it.
   [[nodiscard]] std::vector<Prediction> filed(Subset claims);
-  /// The same as records still to come would be predicted: without what was found or fitted of single records, such as the offset of one's ambient.
+  /// The same for future records: without claims or numbers of single records, such as the offset of one record's
+  /// ambient.
   [[nodiscard]] std::vector<Prediction> filed_elsewhere(Subset claims);
-  /// Least evidence of a claim in the fitted rows of a fold [nats, its price not paid]: what is known of it where some rows were never read.
+  /// The least evidence of a claim in the fitted rows of a fold [nats], without its cost: what would be known without
+  /// some rows.
   [[nodiscard]] double least_evidence(Subset claims, Subset without);
-  /// What comes of the search made again without the kept-out rows; of a fold of blocks, in which something happened, what the claims make of it.
+  /// The results of repeated searches without the kept-out rows; for a fold of blocks, in which something happened, those
+  /// of the claims.
   struct Refound {
     std::vector<Prediction> extended, calibrated;
-    std::vector<int>
-        n_again;  ///< per claim: in how many of the searches the same effect was found at its place, or at one that its own is not told from
+    std::vector<int> n_again;  ///< per claim: searches that found its effect at its place, or at one like it
     int n_searched = 0;
   };
   [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept, const Listener& listener);
-  /// What regressions without a machine make of the folds.
+  /// Predictions of regressions without a machine model.
   [[nodiscard]] std::vector<Prediction> regressed(Regressors regressors) const;
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
 
-  /// Whether some claims miss kept-out rows by more than fewer of them do, and likelihood does not clearly say otherwise.
+  /// Whether some claims predict kept-out rows with larger errors than fewer of them, unless the likelihood clearly says
+  /// otherwise.
   [[nodiscard]] bool is_worse(Subset claims, Subset fewer);
-  /// The same by a quarter of the squares, which speaks against the claims and not only against writing them: where numbers beyond what is known of them do what a claim
-  /// does, both miss about as much.
+  /// The same with a quarter more in the squares, which speaks against the claims and not only against writing them: if
+  /// numbers beyond their prior can do the same as a claim, both have about the same errors.
   [[nodiscard]] bool is_much_worse(Subset claims, Subset fewer);
 
-  /// Root mean square of kept-out misses over the noise of their channels.
-  /// NaN where no row is kept out that could judge.
+  /// Root mean square of kept-out errors divided by the noise of their channels. NaN if no kept-out row can judge.
   [[nodiscard]] double over_noise(const std::vector<Prediction>& predicted) const;
-  /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
+  /// Squares of kept-out errors divided by those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const;
   enum class Of { kAll, kDisplacements };
-  /// over_noise() of each fold, of all channels or of displacements alone.
+  /// over_noise() of each fold, over all channels or displacements only.
   [[nodiscard]] std::vector<double> over_noise_by_fold(const std::vector<Prediction>& predicted, Of channels) const;
   template <class Work>
   void for_each_miss(const std::vector<Prediction>& predicted, const Work& work) const {
@@ -80,9 +82,10 @@ class Judge {
       }
     }
   }
-  /// Whether what a search without some rows found is a claim, of the same lasting_kind(), or its effect at a place that the claim's is not told from.
+  /// Whether a search result is the same as a claim: of the same lasting_kind(), or its effect at a place that cannot be
+  /// distinguished.
   [[nodiscard]] bool is_told_as(std::size_t claim, const Candidate& found) const;
-  /// @param x  empty: no numbers fit, and the scenario stays as it is written
+  /// @param x  empty: no fit, and the scenario stays as written
   [[nodiscard]] Prediction filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const;
 
   const Fitter& whole_;
@@ -94,10 +97,10 @@ class Judge {
   Prediction written_;
 };
 
-/// Of readings in what they are shown in: K, um, urad.
+/// Factor from SI to the unit in which readings are shown: K, um, urad.
 [[nodiscard]] double shown_scale(const std::string& unit);
 
-/// Predictions of all folds by several models; empty: there is none.
+/// Predictions of all folds by several models; empty: not available.
 struct Models {
   std::vector<Prediction> written, calibrated, extended, named = {}, found = {};
 };

@@ -10,13 +10,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kFitted = 2.0 / 3.0;  // of a single run
-constexpr int kThirds = 3;             // of a single run
-constexpr int kBlocks = 6;             // of a run, every other one kept out
-// Of the greatest speed, by which speeds of the same rank differ in the mean. Days of one lathe that went through one cycle lie 0.00 to 0.11 apart (one of them stopped
-// for five hours of twenty-four), those of two cycles 0.30 to 0.60; runs of speeds drawn at random 0.08 to 0.28.
+constexpr double kFitted = 2.0 / 3.0;  // share of a single run that numbers are fitted to
+constexpr int kThirds = 3;             // parts of a single run
+constexpr int kBlocks = 6;             // of a run; every other one is kept out
+// Share of the greatest speed: mean difference of speeds with the same rank, up to which two runs have the same cycle.
+// Days of one lathe with the same cycle differ by 0.00 to 0.11 (one of them stopped for five hours of twenty-four), days
+// with two cycles by 0.30 to 0.60, and runs with random speeds by 0.08 to 0.28.
 constexpr double kOneCycle = 0.2;
-constexpr int kShares = 200;  // of a run's time, at whose middles speeds are compared
+constexpr int kShares = 200;  // parts of a run's time; speeds are compared at their middles
 
 Fold fold_of(const std::vector<MeasuredRun>& runs, const std::function<bool(std::size_t run, double t_s)>& is_kept_out) {
   Fold fold{runs, runs};
@@ -29,7 +30,7 @@ Fold fold_of(const std::vector<MeasuredRun>& runs, const std::function<bool(std:
   return fold;
 }
 
-/// Whether a claim changes any reading of a run.
+/// Marks the runs in which a claim changes a reading.
 std::vector<char> runs_of(const Fitter& fitter, const SearchResult& result, std::size_t claim, Twin::Workspace& workspace) {
   const Remainder rest = without_claims(result.hypothesis, {claim}, fitter.n_nuisance());
   const Prediction without = fitter.predict(rest.hypothesis, result.fit.x(rest.x), workspace);
@@ -38,7 +39,7 @@ std::vector<char> runs_of(const Fitter& fitter, const SearchResult& result, std:
   return acts;
 }
 
-/// Speeds by rank: at the middles of equal shares of a run's time.
+/// Sorted speeds, at the middles of equal parts of a run's time.
 Eigen::ArrayXd speeds_by_rank_rpm(const MeasuredRun& run) {
   std::map<double, double> time_s;  // by speed
   double total_s = 0.0;
@@ -87,7 +88,7 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
       folds.how += "; and sixths of it, every other one kept out, for something happened in it";
     }
   } else {
-    std::vector<char> happened(runs.size(), 0);  // something in this run alone
+    std::vector<char> happened(runs.size(), 0);  // marks runs with an event of their own
     for (std::size_t c = 0; c < result.hypothesis.size(); ++c) {
       const std::vector<char> acts = runs_of(fitter, result, c, workspace);
       if (std::count(acts.begin(), acts.end(), 1) == 1)
@@ -137,7 +138,7 @@ std::vector<std::vector<std::size_t>> duty_cycles(const std::vector<MeasuredRun>
     return (rpm[a] - rpm[b]).abs().mean() <= kOneCycle * std::max(rpm[a].maxCoeff(), rpm[b].maxCoeff());
   };
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<std::size_t> joined;  // all cycles that a run is like one of are one
+    std::vector<std::size_t> joined;  // all cycles that resemble the run are merged
     std::erase_if(cycles, [&](const std::vector<std::size_t>& cycle) {
       if (std::none_of(cycle.begin(), cycle.end(), [&](std::size_t other) { return is_alike(r, other); })) return false;
       joined.insert(joined.end(), cycle.begin(), cycle.end());

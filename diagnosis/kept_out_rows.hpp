@@ -1,5 +1,5 @@
 #pragma once
-// Which rows numbers are fitted to, and which are kept out to judge them on.
+// Splits rows into those that numbers are fitted to and those that are kept out to judge them.
 
 #include <vector>
 
@@ -10,17 +10,17 @@ namespace driftwright::diagnosis {
 inline constexpr const char* kAheadWords =
     "the last third of the only record, predicted with numbers fitted to the first two thirds";
 
-/// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
+/// Fitted and kept-out rows. Both have all runs; the readings of the other part are missing (NaN).
 struct Fold {
   std::vector<MeasuredRun> fitted, kept_out;
-  std::vector<std::size_t> whole = {};  ///< runs that are kept out whole
-  bool is_ahead = false;                ///< the end of the only run
+  std::vector<std::size_t> whole = {};  ///< runs that are kept out completely
+  bool is_ahead = false;                ///< the end of the only run is kept out
   [[nodiscard]] bool is_searched() const { return !whole.empty() || is_ahead; }
 };
 
-/// Whether a claim happens at a time of its own.
+/// Whether a claim happens at a certain time.
 [[nodiscard]] bool has_time(const Claim& claim);
-/// The end of a single run.
+/// The fold that keeps out the end of a single run.
 [[nodiscard]] Fold ahead_of(const std::vector<MeasuredRun>& runs);
 
 struct Folds {
@@ -28,16 +28,17 @@ struct Folds {
   std::string how;
 };
 
-/// Each run in turn; of a single one its last third; of one in which alone something happened blocks, every other one.
+/// The folds: each run in turn; for a single run its last third; for a run that alone contains an event, blocks, every
+/// other one.
 [[nodiscard]] Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace);
 
-/// What judges numbers alone: each third of all runs in turn, and where there are several each run.
+/// The folds for numbers alone: each third of all runs in turn, and with several runs each run.
 [[nodiscard]] Folds folds_of_numbers(const std::vector<MeasuredRun>& runs);
 
-/// Runs of one duty cycle, each its numbers: speeds that are held for about as long, in whatever order. Cycles in the order of their first runs; a single one where
-/// the spindle turns alike in all runs, or never.
+/// Indices of the runs of each duty cycle: speeds held for about the same time, in any order. Cycles are in the order of
+/// their first runs; there is a single cycle if the spindle turns alike in all runs, or never.
 [[nodiscard]] std::vector<std::vector<std::size_t>> duty_cycles(const std::vector<MeasuredRun>& runs);
-/// Each duty cycle in turn, all its runs kept out; empty where there is one, or none has a second run: then each run is a cycle.
+/// Each duty cycle in turn, with all its runs kept out; empty if there is only one cycle, or if each run has its own.
 [[nodiscard]] std::vector<Fold> folds_of_cycles(const std::vector<MeasuredRun>& runs);
 
 }  // namespace driftwright::diagnosis

@@ -7,7 +7,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kFewest = 4;  // readings of a channel in a record that could leave anything smooth
+constexpr Eigen::Index kFewest = 4;  // least readings of a channel in a record that could show a smooth rest
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
     }
     found->squares += xr.dot(amplitude);
     found->n_curves += static_cast<double>(curves.cols());
-    // where there is no reading nothing is left: curves that go on beside what was measured say anything there
+    // Rows without readings are left out: there the curves could have any value.
     const std::vector<char> there = present(run.find(block.channel)->value);
     const Eigen::VectorXd smooth = curves * amplitude;
     for (Eigen::Index i = 0; i < smooth.size(); ++i) {

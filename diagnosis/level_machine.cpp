@@ -9,7 +9,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-/// What the machine feels of a level; the level itself where what it feels is no level.
+/// The real drive of the machine at a level; the level itself if the real drive is not constant.
 Drive felt(const effects::DriveChange& change, const Drive& level, double duration_s, const std::string& run) {
   const Cyclogram is = effects::true_cyclogram(change, {.name = run, .sections = {{duration_s, level}}});
   return is.sections.size() == 1 ? is.sections.front().drive : level;
@@ -75,7 +75,8 @@ LevelMachine::Course LevelMachine::course_of(const TwinState& state, const std::
                        .time_s = 0.5 * run_.cyclogram.duration_s()};
     at.run = run_.name;
     const LinearStep step = linear_step(linear_system(system, at, bound.start), system.mass, row_s_);
-    course.steps.push_back({step.phi.cast<float>(), step.constant.cast<float>(), step.of_ambient.cast<float>(), step.of_rise.cast<float>()});
+    course.steps.push_back(
+        {step.phi.cast<float>(), step.constant.cast<float>(), step.of_ambient.cast<float>(), step.of_rise.cast<float>()});
   }
   return course;
 }
@@ -97,7 +98,7 @@ Eigen::MatrixXd LevelMachine::response(const Course& course, const std::vector<i
 }
 
 Eigen::MatrixXd LevelMachine::information(const std::vector<int>& level_of_step) const {
-  MeasuredRun run;  // what instruments look at
+  MeasuredRun run;  // the data that instruments depend on
   run.name = run_.name;
   run.ambient = run_.ambient;
   run.time_s = run_.time_s;
@@ -125,7 +126,7 @@ Eigen::MatrixXd LevelMachine::information(const std::vector<int>& level_of_step)
     Eigen::Map<Eigen::ArrayXXd> whitened(columns.col(static_cast<Eigen::Index>(i) - 1).data(), n_channels, n_rows);
     whitened = (readings(outputs_, Eigen::all) - as_written(outputs_, Eigen::all)).array() / t.by;
     estimate.setZero();
-    for (Eigen::Index row = 0; row < n_rows; ++row) {  // Whitener::apply for all channels at once
+    for (Eigen::Index row = 0; row < n_rows; ++row) {  // as Whitener::apply, for all channels at once
       estimate *= carry_.col(row);
       innovation = whitened.col(row) - estimate;
       estimate += gain_.col(row) * innovation;

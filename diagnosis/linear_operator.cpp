@@ -239,7 +239,7 @@ void LinearOperator::run_modes(const Load& load, const Eigen::RowVectorXd& cours
   Eigen::VectorXd decay;
   double decay_dt_s = -1.0;
   std::size_t decay_of = modes_.size();
-  Eigen::Index stretch = 0;  // first row of the modes at hand
+  Eigen::Index stretch = 0;  // first row of the current modes
   for (Eigen::Index k = 0; k + 1 < n; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const std::size_t m = of_interval_[i];

@@ -1,5 +1,6 @@
 #pragma once
-// What a little heat more does to the readings of one run: the machine linear from row to row, about the states that a prediction went through.
+// The effect of a little more heat on the readings of one run: the machine linearised from row to row at the states of a
+// prediction.
 //
 //     z' = -K(t) z + b(t) in the modes K V = M V Λ of each stretch in which K is the same; a load is constant from row to row
 
@@ -18,49 +19,53 @@ class LinearOperator {
   /// @throws SolveError  where the state has no solution
   LinearOperator(const Twin& twin, const MeasuredRun& run, const TwinState& state, Twin::Workspace& workspace);
 
-  /// Heat that enters the machine from row to row, in its modes, n_modes x n_rows - 1: a loadcourse times any course over the intervals is another one.
+  /// Heat entering the machine from row to row, in its modes, n_modes x n_rows - 1. Its product with any course over the
+  /// intervals is also a load.
   using Load = Eigen::MatrixXd;
-  /// 1 W in a body. @return  empty where no heat can enter it
+  /// 1 W in a body. @return  empty if no heat can enter it
   [[nodiscard]] Load heat(const effects::Body& body) const;
-  /// 1 W/K between two bodies, or a body and the ambient, by the temperatures that the machine runs with.
+  /// 1 W/K between two bodies, or a body and the ambient, at the temperatures of the prediction.
   [[nodiscard]] Load conductance(const effects::Body& a, const effects::Body& b) const;
-  /// What one of the system's own exchanges moves: 1 W/K or 1 W/(m² K).
+  /// The heat of one of the system's own exchanges per 1 W/K or 1 W/(m² K).
   [[nodiscard]] Load exchange(std::size_t e) const;
-  /// What heat [W] there would be more if the spindle stood.
+  /// The additional heat [W] if the spindle stood still.
   [[nodiscard]] Load standing() const;
-  /// What a part of the machine conducts within itself, once more.
+  /// The heat that a part of the machine conducts within itself, added once more.
   [[nodiscard]] Load conduction(std::size_t part) const;
-  /// All heat of the machine's own, and all that it exchanges with the ambient.
+  /// All of the machine's own heat, and all of its exchange with the ambient.
   [[nodiscard]] Load all_heat() const;
   [[nodiscard]] Load all_loss() const;
-  /// 1 K more of the ambient, of what exchanges have of it.
+  /// 1 K more of the ambient, through the exchanges.
   [[nodiscard]] Load ambient() const;
-  /// Heat that 1 J/K more in a body would take up. @param lag_s  time constant of its way to the body; 0: it is the body's own
+  /// Heat that 1 J/K more in a body would store. @param lag_s  time constant of the heat's way to the body; 0: it is the
+  /// body's own
   [[nodiscard]] Load capacity(const effects::Body& body, double lag_s) const;
 
-  /// What a load does to the channels. @param course  of the intervals. @param before  the course before the run, of a machine that starts at rest; 0: nothing
+  /// The effect of a load on the channels. @param course  over the intervals. @param before  the course before the run,
+  /// for a machine that starts at rest; 0: nothing
   /// @return n_channels x n_rows
   [[nodiscard]] Eigen::MatrixXd response(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
   [[nodiscard]] Eigen::Index n_rows() const { return static_cast<Eigen::Index>(time_s_.size()); }
   [[nodiscard]] const std::vector<double>& time_s() const { return time_s_; }
-  /// Mean temperature of a body at the rows over the reference [K]; empty where it has none.
+  /// Mean temperature of a body at the rows over the reference [K]; empty if it has none.
   [[nodiscard]] Eigen::RowVectorXd temperature(const effects::Body& body) const;
   [[nodiscard]] const Eigen::RowVectorXd& ambient_K() const { return ambient_K_; }
   /// Heat of the machine's own laws in a body from row to row [W].
   [[nodiscard]] Eigen::RowVectorXd own_heat(const effects::Body& body) const;
   [[nodiscard]] const std::vector<Drive>& drive() const { return drive_; }  ///< of the intervals
-  /// What the model's channels say, n_channels x n_rows.
+  /// The model's readings of the channels, n_channels x n_rows.
   [[nodiscard]] const Eigen::MatrixXd& predicted() const { return predicted_; }
-  /// What 1 K more of each part's temperature has of each channel by the expansion of that part alone, n_channels x n_rows.
+  /// The effect of 1 K more in each part on each channel, by the expansion of that part alone, n_channels x n_rows.
   [[nodiscard]] Eigen::MatrixXd expansion(std::size_t part) const;
-  [[nodiscard]] double coefficient(std::size_t e) const;  ///< of an exchange, the mean over the run
+  [[nodiscard]] double coefficient(std::size_t e) const;  ///< of an exchange, mean over the run
 
  private:
   struct Modes {
     Eigen::VectorXd rate_1_s;
     Eigen::MatrixXd vectors, observe, from;
   };
-  /// Modal states of a load, each stretch in its own modes, n_modes x n_rows; of() is told the stretches: modes, first row, number of rows.
+  /// Modal states of a load, each stretch in its own modes, n_modes x n_rows; calls of() for each stretch: modes, first
+  /// row, number of rows.
   template <class Of>
   void run_modes(const Load& load, const Eigen::RowVectorXd& course, double before, Of of) const;
   [[nodiscard]] Load in_modes(const Eigen::MatrixXd& load) const;

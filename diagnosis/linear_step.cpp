@@ -7,10 +7,10 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kDifference_K = 0.5;
-constexpr double kNoWayOut_1_s = 1e-14;  // what keeps a node that nothing reaches from having no steady state
-constexpr int kLooks = 8;                // at laws of temperature, for the balance
+constexpr double kNoWayOut_1_s = 1e-14;  // lets an isolated node have a steady state
+constexpr int kLooks = 8;                // iterations of laws of temperature, for the balance
 
-/// What a law says of a state: its value there, and its slopes by each of its probes.
+/// A law at a state: its value, and its slope for each of its probes.
 struct Said {
   double value = 0.0;
   std::vector<double> by_probe;
@@ -33,11 +33,11 @@ Said said_by(const solver::BoundLaw& law, const solver::ReducedSystem& system, e
   return said;
 }
 
-/// @param on  which thermostats switch at this drive
+/// @param on  marks the thermostats that switch at this drive
 LinearSystem about(const solver::ReducedSystem& system, const effects::Inputs& at, const Eigen::VectorXd& state,
                    const std::vector<char>& on) {
   LinearSystem linear{system.conduction, Eigen::VectorXd::Zero(system.size()), Eigen::VectorXd::Zero(system.size())};
-  /// A load that follows the law's probes.
+  /// Adds a load that depends on the law's probes.
   const auto add_slopes = [&](const solver::BoundLaw& law, const Said& said, const Eigen::VectorXd& load) {
     for (std::size_t j = 0; j < said.by_probe.size(); ++j) {
       const solver::Probe& probe = system.probes[static_cast<std::size_t>(law.probes[j])];

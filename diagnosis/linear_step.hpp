@@ -1,5 +1,5 @@
 #pragma once
-// A system at one drive as a linear one, laws that look at temperatures taken to first order.
+// Linearises a system at one drive, including its laws of temperatures.
 
 #include "solver/thermal_system.hpp"
 
@@ -11,12 +11,13 @@ struct LinearSystem {
   Eigen::VectorXd constant, of_ambient;
 };
 
-/// About the state halfway from `start` to balance at this drive.
-/// @param at  its ambient is the one to be about
+/// Linearised at the state halfway from `start` to balance at this drive.
+/// @param at  gives the ambient
 [[nodiscard]] LinearSystem linear_system(const solver::ReducedSystem& system, const effects::Inputs& at,
                                          const Eigen::VectorXd& start);
 
-/// From one row to the next, z' = phi z + constant + ambient of_ambient + rise of_rise, exactly while the ambient rises evenly.
+/// One step from row to row, z' = phi z + constant + ambient of_ambient + rise of_rise, exact while the ambient rises
+/// linearly.
 struct LinearStep {
   Eigen::MatrixXd phi;
   Eigen::VectorXd constant, of_ambient, of_rise;

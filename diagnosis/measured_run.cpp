@@ -18,16 +18,16 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kAmbientKnots_s = 600.0;     // at the most
-constexpr double kAmbientKnown_K = 0.003;     // what is left of a course matters to nobody
-constexpr double kMostNoise_K = 0.1;          // that an ambient thermometer has
-constexpr std::size_t kReadingsOfStart = 24;  // that say how warm the air was as the record begins
-constexpr int kLongerAtLimit = 2;             // equal readings there, than at any other value
-constexpr int kSaturatedRows = 10;            // at the largest or smallest value of all
-constexpr int kMostColumns = 6;               // that nobody drives the machine by; each may drive it at each body
-constexpr std::ptrdiff_t kFewestLeft = 20;    // readings of a channel that was stuck for a while
+constexpr double kAmbientKnots_s = 600.0;     // largest distance
+constexpr double kAmbientKnown_K = 0.003;     // a smaller rest of the course is ignored
+constexpr double kMostNoise_K = 0.1;          // largest noise of an ambient thermometer
+constexpr std::size_t kReadingsOfStart = 24;  // readings that determine the ambient at the record's start
+constexpr int kLongerAtLimit = 2;             // ratio of equal readings at the limit to those at any other value
+constexpr int kSaturatedRows = 10;            // least equal rows at the largest or smallest value
+constexpr int kMostColumns = 6;               // most columns that no effect uses; each may drive the machine at each body
+constexpr std::ptrdiff_t kFewestLeft = 20;    // least readings of a channel that was stuck for a while
 
-/// Readings that are there.
+/// The existing readings of a series.
 struct Readings {
   std::vector<double> time_s, value;
 };
@@ -44,7 +44,7 @@ TimeSeries on_knots(const Readings& r, int n_pieces) {
     square.block<2, 2>(k, k) += hats * hats.transpose();
     rhs.segment<2>(k) += r.value[i] * hats;
   }
-  for (int k = 1; k < n_pieces; ++k) {  // a light hand on curvature bridges gaps
+  for (int k = 1; k < n_pieces; ++k) {  // a small penalty on curvature bridges gaps
     const Eigen::Vector3d curvature(0.05, -0.1, 0.05);
     square.block<3, 3>(k - 1, k - 1) += curvature * curvature.transpose();
   }
@@ -65,14 +65,14 @@ double rms_beside(const Readings& r, const TimeSeries& series) {
   return std::sqrt(sum / static_cast<double>(r.time_s.size()));
 }
 
-/// Standard deviation of white noise, by second differences: a course has next to none.
+/// Standard deviation of white noise, by second differences, which a smooth course hardly affects.
 double white_noise(const Readings& r) {
   double sum = 0.0;
   for (std::size_t i = 2; i < r.value.size(); ++i) sum += std::pow(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2], 2);
   return r.value.size() < 3 ? 0.0 : std::sqrt(sum / (6.0 * static_cast<double>(r.value.size() - 2)));
 }
 
-/// The same, of which a single door that opens and steps of an instrument know nothing: by the median.
+/// The same by the median, so that a single open door, or an instrument's steps, have no effect.
 double usual_noise(const Readings& r) {
   std::vector<double> bends;
   for (std::size_t i = 2; i < r.value.size(); ++i)
@@ -83,7 +83,8 @@ double usual_noise(const Readings& r) {
   return *middle / (0.6745 * std::sqrt(6.0));
 }
 
-/// As recorded, but for the first reading: a machine that has stood is as warm as the air was on the whole, not as its last gust.
+/// As recorded, except the first reading: a machine at rest has the mean temperature of the air, not that of its last
+/// gust.
 TimeSeries gusty(const Readings& r) {
   TimeSeries series{r.time_s, r.value};
   const std::size_t n_readings = std::min(r.time_s.size(), kReadingsOfStart);
@@ -100,7 +101,8 @@ TimeSeries gusty(const Readings& r) {
   return series;
 }
 
-/// Marks the knots between two that a straight line does not meet. Source: Douglas & Peucker, Cartographica 10 (1973) 112-122.
+/// Marks the knots between two others that a straight line misses. Source: Douglas & Peucker, Cartographica 10 (1973)
+/// 112-122.
 void keep_bends(const TimeSeries& s, std::size_t first, std::size_t last, double within, std::vector<char>& kept) {
   std::size_t farthest = first;
   double most = within;
@@ -118,7 +120,7 @@ void keep_bends(const TimeSeries& s, std::size_t first, std::size_t last, double
   keep_bends(s, farthest, last, within, kept);
 }
 
-/// A series on as few of its knots as meet it: an integrator stops at each.
+/// A series with as few of its knots as are accurate: an integrator stops at each knot.
 TimeSeries with_few_knots(const TimeSeries& s, double within) {
   std::vector<char> kept(s.time_s.size(), 0);
   kept.front() = kept.back() = 1;
@@ -132,7 +134,7 @@ TimeSeries with_few_knots(const TimeSeries& s, double within) {
   return few;
 }
 
-/// Those that are there.
+/// The readings that exist.
 Readings present_readings(const std::vector<double>& time_s, const std::vector<double>& value) {
   Readings r;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -143,15 +145,16 @@ Readings present_readings(const std::vector<double>& time_s, const std::vector<d
   return r;
 }
 
-/// Step that a thermometer reads in; 0: none, or none was seen, as of a temperature that stays.
+/// The resolution of a thermometer; 0: none, or not visible, as for a constant temperature.
 double seen_step(const std::vector<double>& value) {
   constexpr std::size_t kFewest = 3;
   return std::set<double>(value.begin(), value.end()).size() < kFewest ? 0.0 : quantum_of(value);
 }
 
-/// A recorded ambient without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
-/// machine that starts as warm as the ambient would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
-/// what it meets. One reading at least.
+/// A recorded ambient without its noise, but with its whole course: the knots are as far apart as the missed part is
+/// noise, or one per reading if necessary. Otherwise a machine that starts at the ambient would start wrong. Changes
+/// between readings beyond the thermometer's noise are air (wind, a door), which warms and cools the machine. Requires at
+/// least one reading.
 TimeSeries smoothed(const Readings& r) {
   const double noise_K = white_noise(r);
   if (usual_noise(r) > kMostNoise_K + 0.5 * quantum_of(r.value)) return gusty(r);
@@ -161,11 +164,12 @@ TimeSeries smoothed(const Readings& r) {
     const TimeSeries series = on_knots(r, n_pieces);
     if (rms_beside(r, series) <= enough_K) return with_few_knots(series, 2.0 * kAmbientKnown_K);
   }
-  // Rows too far apart to tell noise from course: as recorded. What a few knots would miss would be heat of its own in each body that the air meets.
+  // If rows are too far apart to separate noise and course: as recorded. An error of a few knots would act as heat in
+  // each body in the air.
   return n_readings < 3 ? on_knots(r, 1) : with_few_knots({r.time_s, r.value}, 2.0 * kAmbientKnown_K);
 }
 
-/// Most equal values in a row, of those that are looked at.
+/// Longest run of equal values, among those that are selected.
 template <class LookedAt>
 int most_equal(const std::vector<double>& values, const LookedAt& looked_at) {
   int longest = 0, run = 0;
@@ -184,7 +188,7 @@ bool same_kind(const std::string& record_unit, const std::string& output_unit) {
   return record_unit == "urad";
 }
 
-/// Looks at a channel for what no model is to blame for, and takes out of its values what is not to be compared.
+/// Checks a channel for faults that are not the model's, and removes values that must not be compared.
 /// @param time_s  from the start of the record
 void inspect(const Record& record, const std::vector<double>& time_s, Channel& channel, std::vector<DataFinding>& findings) {
   const auto n_readings = [&] {
@@ -229,7 +233,7 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
                         leaves_out});
     if (leaves_out) return;
   }
-  const bool is_fine = quantum == 0.0 || dithers(channel.values);  // else equal readings mean nothing
+  const bool is_fine = quantum == 0.0 || dithers(channel.values);  // otherwise equal readings mean nothing
   const auto rows_at = [&](double value) { return most_equal(channel.values, [=](double v) { return v == value; }); };
   const double limit = rows_at(high) >= rows_at(low) ? high : low;
   const int n_at_limit = rows_at(limit),
@@ -242,7 +246,7 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
   }
 }
 
-/// Keeps those columns that the scenario's effects want, and others that change, as long as they are few.
+/// Keeps the columns that the scenario's effects require, and other changing ones if there are only a few.
 void keep_columns(MeasuredRun& run, const scenarios::MachineModel& model) {
   const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
   std::vector<Cyclogram::Column> kept;
@@ -258,7 +262,7 @@ void keep_columns(MeasuredRun& run, const scenarios::MachineModel& model) {
     ++(c.unit == "degC" ? n_temperatures : n_others);
   }
   const bool with_temperatures =
-      n_temperatures + n_others <= kMostColumns;  // else a machine full of thermometers that nobody placed
+      n_temperatures + n_others <= kMostColumns;  // otherwise a machine full of unknown thermometers
   for (Cyclogram::Column& c : run.cyclogram.columns) {
     const bool is_one_of_few = c.unit == "degC" ? with_temperatures : n_others <= kMostColumns;
     if (is_wanted(c) || (is_offered(c) && is_one_of_few)) kept.push_back(std::move(c));
@@ -276,7 +280,7 @@ const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
 }
 
 void set_grid(MeasuredRun& run) {
-  constexpr int kFiner = 4, kIntervals = 6;  // of so many intervals after a change
+  constexpr int kFiner = 4, kIntervals = 6;  // subdivision of this many intervals after a change
   run.grid_s.clear();
   run.row_in_grid.clear();
   int since = 0;  // intervals since the last change
@@ -308,7 +312,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   for (const std::string& note : read.notes) run.findings.push_back({"", note, false});
   run.holes = holes_in(whole, run.findings);
   const Record record = without_spikes(whole, run.findings);
-  std::vector<std::string> on_ambient;  // an ambient thermometer does as well
+  std::vector<std::string> on_ambient;  // as good as an ambient thermometer
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) on_ambient.push_back(outputs.name[o]);
   }
@@ -360,7 +364,8 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
       measured.value[static_cast<Eigen::Index>(i)] = scale * (channel.values[i] - offset);
     }
     for (std::size_t i = 0; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
-      // at the very moment of a change, and of the start, it is open whether what follows speed at once has jumped
+      // At the exact time of a change, and of the start, it is unknown whether a reading that follows speed has jumped
+      // already.
       const double before_rpm = i == 0 ? 0.0 : run.cyclogram.speed_rpm(run.time_s[i - 1]);
       if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
       measured.value[static_cast<Eigen::Index>(i)] = std::nan("");

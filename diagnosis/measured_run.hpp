@@ -1,5 +1,5 @@
 #pragma once
-// A measured record as the diagnosis wants it: what drove the machine, and readings beside the model's outputs.
+// A measured record in the form that the diagnosis needs: the drive, and readings for outputs of the model.
 
 #include <Eigen/Core>
 #include <string>
@@ -17,36 +17,38 @@ struct MeasuredChannel {
   int output = -1;                 ///< of the model
   std::string unit;                ///< "K", "m" or "rad"
   Eigen::VectorXd value;           ///< per time; temperatures minus the reference; NaN where missing
-  double quantum = 0.0;            ///< step that all readings are multiples of; 0: none found
-  std::string recorded_unit = {};  ///< of the record's header
+  double quantum = 0.0;            ///< step of which all readings are multiples; 0: none found
+  std::string recorded_unit = {};  ///< from the record's header
 };
 
 using scenarios::DataFinding;
 
-/// A stretch of a record in which nobody saw what drove the machine: the drive before it is held in the run's cyclogram, and nothing that was read within counts.
+/// A stretch of a record with an unknown drive: the run's cyclogram holds the drive before it, and readings within it do
+/// not count.
 struct Hole {
   double begin_s = 0.0, end_s = 0.0;
 };
 
 struct MeasuredRun {
-  std::string name;  ///< of the file, without folder and ending
+  std::string name;  ///< of the file, without folder and extension
   std::string path;
   std::vector<double> time_s;  ///< from 0
-  /// Times at which the model is asked: the rows, and more of them after changes of the drive, where readings with lags bend.
+  /// Times at which the model is evaluated: the rows, and additional times after changes of the drive, where readings
+  /// with lags bend.
   std::vector<double> grid_s;
   std::vector<Eigen::Index> row_in_grid;
   Cyclogram cyclogram;       ///< recorded
   TimeSeries ambient;        ///< recorded, smoothed to knots; minus the reference [K]
-  bool has_ambient = false;  ///< else the ambient is the scenario's
+  bool has_ambient = false;  ///< false: the ambient is the scenario's
   double ambient_noise_K = 0.0,
-         ambient_quantum_K = 0.0;  ///< of the recorded one: 1 sigma of white noise, step that it reads in
+         ambient_quantum_K = 0.0;  ///< of the recorded one: standard deviation of white noise, resolution
   std::vector<Hole> holes;         ///< in order of time
-  /// Of a run that begins warm (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
-  /// directions of what that is not known to.
+  /// For a run that begins warm (warm_start.hpp), otherwise empty: the start of each part of the machine over the
+  /// scenario's, and directions of its uncertainty.
   Eigen::VectorXd start_K;
   Eigen::MatrixXd start_doubt_K;
   std::vector<MeasuredChannel> channels;
-  /// Columns of the record that are neither compared nor a drive, and why.
+  /// Columns of the record that are neither compared nor part of the drive, and the reason.
   struct LeftOut {
     std::string name, why;
   };
@@ -59,14 +61,15 @@ struct MeasuredRun {
 /// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known.
 void set_grid(MeasuredRun& run);
 
-/// Finds the channels of a record, whose source is its file or its name, among the model's outputs. Readings of sensors that the model says read the ambient itself are left
-/// out where the record has an ambient temperature.
-/// Readings of a sensor that stood still are taken out (stuck_sensor.hpp).
-/// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
-///                     unit of another kind, with an ambient temperature in another unit than its header says, or with nothing to compare
+/// Assigns the channels of a record, whose source is its file or name, to the model's outputs. Readings of sensors on the
+/// ambient are left out if the record has an ambient temperature. Readings of a sensor that was stuck are removed
+/// (stuck_sensor.hpp).
+/// @throws InputError  for a record without speed or with fewer than three rows; for a channel with the name of an output
+/// but a unit of another kind; for an ambient temperature in another unit than its header says; and if there is nothing
+/// to compare
 [[nodiscard]] MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model,
                                        const solver::Outputs& outputs);
-/// The same of a file. @param columns  how it is written, where it is no record CSV
+/// The same from a file. @param columns  its format, if it is no record CSV
 [[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
                                         const solver::Outputs& outputs,
                                         const std::optional<ColumnMap>& columns = std::nullopt);

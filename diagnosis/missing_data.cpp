@@ -10,8 +10,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kRow_min = 10.0;   // a row: four of them in the 40 min above which a machine is told from noise
-constexpr double kSettlings = 2.0;  // that a record is long
+constexpr double kRow_min = 10.0;   // interval of rows: four of them in 40 min, where machine and noise differ
+constexpr double kSettlings = 2.0;  // length of a record, in settling times
 constexpr double kHour_s = 3600.0, kLongest_h = 400.0;
 
 std::string plural(std::size_t n, const std::string& what) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a record would have to hold for a verdict.
+// What records lack for a verdict.
 
 #include <string>
 
@@ -7,18 +7,20 @@
 
 namespace driftwright::diagnosis {
 
-/// Sentences for a user whose records are too few: channels that are not there, thermometers, speeds, how often and how long.
-/// @param n_readings  that there are  @param n_wanted  of all channels together
+/// Sentences for a user with too few records: missing channels, thermometers, speeds, and the interval and length that
+/// are needed.
+/// @param n_readings  existing ones  @param n_wanted  required number over all channels
 [[nodiscard]] std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& runs, int n_readings,
                                           int n_wanted);
 
-/// Readings of all channels of all runs, below which a verdict would be guessing.
+/// Least number of readings of all channels of all runs; with fewer, a verdict would be a guess.
 inline constexpr Eigen::Index kFewestReadings = 60;
 [[nodiscard]] Eigen::Index readings_of(const std::vector<MeasuredRun>& runs);
-/// What is wrong with the records themselves; where there are several, named by record.
+/// Faults in the records themselves; with several records, named by record.
 [[nodiscard]] std::vector<DataFinding> data_findings(const std::vector<MeasuredRun>& runs);
 
-/// Time after which a machine that starts 1 K too warm at standstill is within 1/e of its ambient everywhere [s]; at most 400 h.
+/// Time [s] after which a machine that starts 1 K too warm at standstill is within 1/e of its ambient everywhere; at most
+/// 400 h.
 [[nodiscard]] double settling_time_s(const Twin& twin, const MeasuredRun& run);
 
 }  // namespace driftwright::diagnosis

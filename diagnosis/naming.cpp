@@ -15,11 +15,10 @@ namespace {
 
 using Words = std::set<std::string>;
 
-constexpr std::size_t kLeastTurns = 3;  // windows as far apart as each other, from which on they repeat
-constexpr double kAlways =
-    0.9;  // of its records' time: what lasts longer is no window, and what pauses instead was not chosen
+constexpr std::size_t kLeastTurns = 3;  // least number of equally spaced windows that count as repeating
+constexpr double kAlways = 0.9;  // share of its records' time: a longer window is no window, and its pauses were not chosen
 
-/// Quantities that a key of the catalogue stands for.
+/// The quantities that a key of the catalogue can mean.
 const std::map<std::string, std::vector<StatedQuantity>>& quantities() {
   using enum StatedQuantity;
   static const std::map<std::string, std::vector<StatedQuantity>> map = {{"heat_source", {kHeat}},
@@ -76,7 +75,7 @@ bool has_common(const Words& a, const Words& b) {
   return std::any_of(a.begin(), a.end(), [&](const std::string& w) { return b.contains(w); });
 }
 
-/// Whether windows begin at even distances, to the width of the cells that they were found in. @returns  the distance, or 0
+/// Whether windows are equally spaced, to the width of the cells that they were found in. @returns  their distance, or 0
 double even_distance_s(const std::vector<StatedWindow>& windows) {
   if (windows.size() < kLeastTurns || windows.front().run != windows.back().run) return 0.0;
   const double every_s = (windows.back().begin_s - windows.front().begin_s) / static_cast<double>(windows.size() - 1);
@@ -87,7 +86,7 @@ double even_distance_s(const std::vector<StatedWindow>& windows) {
   return every_s;
 }
 
-/// A body that a place names; none: it is a surface or an instrument.
+/// The body with this name; none if it is a surface or an instrument.
 std::optional<effects::Body> body_called(const effects::DoubtScene& scene, const std::string& name) {
   if (name == effects::kAmbientName) return effects::ambient_node();
   const auto body =
@@ -96,7 +95,7 @@ std::optional<effects::Body> body_called(const effects::DoubtScene& scene, const
   return *body;
 }
 
-/// The windows of a statement, as heat, an exchange or another speed of the catalogue.
+/// The windows of a statement as heat, an exchange or another speed of the catalogue.
 std::vector<Happening> happenings_of(const Stated::Windows& stated, const effects::DoubtScene& scene,
                                      const std::vector<MeasuredRun>& runs) {
   const Statement& s = stated.says;
@@ -124,20 +123,20 @@ std::vector<Happening> happenings_of(const Stated::Windows& stated, const effect
     rows += static_cast<double>(run.time_s.size());
   }
   const auto n = static_cast<double>(s.windows.size());
-  h.price_nats = 2.0 * n * std::log(rows / n) - std::lgamma(n + 1.0);  // in whatever order
+  h.price_nats = 2.0 * n * std::log(rows / n) - std::lgamma(n + 1.0);  // the order does not matter
   std::vector<Happening> list = {h};
   if (const double every_s = even_distance_s(s.windows); every_s > 0.0) {
     Happening turns = h;
     turns.in = {{h.in.front().first, {h.in.front().second.front()}}};
     turns.wide_s.clear();
     turns.every_s = every_s;
-    turns.price_nats = 3.0 * std::log(rows / n);  // begin, length and distance
+    turns.price_nats = 3.0 * std::log(rows / n);  // for begin, length and distance
     list.push_back(std::move(turns));
   }
   return list;
 }
 
-/// Laws that hold in all records, in those of a statement alone. Each record in or out is one choice of two.
+/// Limits laws that hold in all records to those of a statement. The inclusion of each record is one choice of two.
 void add_of_records(const Statement& s, Candidate& candidate) {
   std::vector<std::string> names;
   for (std::size_t r = 0; r < s.in_run.size(); ++r) {
@@ -162,7 +161,7 @@ void add_of_records(const Statement& s, Candidate& candidate) {
   }
 }
 
-/// Laws that begin in a record, or last for a while of it, are tried at the times of a statement's windows, too.
+/// Laws that begin in a record, or hold for a while, are also tried at the times of a statement's windows.
 void try_at(const std::vector<StatedWindow>& windows, const std::vector<MeasuredRun>& runs, Candidate& candidate) {
   for (Variant& law : candidate.variants) {
     for (const StatedWindow& w : windows) {
@@ -180,7 +179,7 @@ void try_at(const std::vector<StatedWindow>& windows, const std::vector<Measured
   }
 }
 
-/// What a delay does is not linear in it: a law of one is tried at the delay that the statement's column was taken at.
+/// The effect of a delay is not linear: such a law is tried at the delay at which the statement's column was computed.
 void try_size(const Stated& stated, Candidate& candidate) {
   if (stated.says.unit != "s") return;
   const double delay_min = std::copysign(stated.says.unit_size, stated.size) / 60.0;
@@ -209,7 +208,7 @@ bool says(const Statement& s, const std::string& effect, const std::string& wher
       return true;
     case StatedQuantity::kHeat:
       if (effect == "hidden_body" && (s.windows.empty() || claimed.size() > 1))
-        return false;  // what the coming of one to a body takes up is a window that fades
+        return false;  // the heat uptake by a visiting body is a window that fades
       return effect != "run_state" && !(is_of_speed && effect != "heat_window") && has_common(claimed, stated);
     case StatedQuantity::kExchange:
       if (effect == "run_state") return false;

@@ -1,11 +1,11 @@
 #pragma once
-// Where the machine has no solution a search goes on; any other failure is one of ours and is not caught.
+// A search continues if the machine has no solution; any other failure is a bug of ours and is not caught.
 
 #include "base/errors.hpp"
 
 namespace driftwright::diagnosis {
 
-/// Whether the work came to an end: false where the machine has no solution, or one of its laws is asked beyond its range.
+/// Whether the work finished: false if the machine has no solution, or if a law is evaluated outside its range.
 template <class Work>
 [[nodiscard]] bool has_solution(const Work& work) {
   try {

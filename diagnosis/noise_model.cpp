@@ -13,12 +13,13 @@ namespace {
 
 constexpr double kShortestPeriod_s = 2400.0;
 constexpr int kMostCosines = 24;
-// Time constants of noise that follows itself, in rows, as far as it is faster than what a machine does: a radian of the shortest cosine, with room.
+// Time constants of correlated noise, in rows, as far as it is faster than a machine: up to a radian of the shortest
+// cosine, with margin.
 constexpr double kRowsAlike[] = {1.0, 2.0, 4.0, 7.0, 12.0, 20.0, 35.0};
 constexpr double kLongestAlike_s = 480.0;
 constexpr int kMostJumps = 3;
 
-/// Steps where the residual jumps far more than it usually moves; a jump is no noise.
+/// Steps where the residual jumps far more than usual; a jump is not noise.
 Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
   std::vector<std::pair<double, Eigen::Index>> moves;
   double last = std::nan("");
@@ -45,7 +46,7 @@ struct Likelihood {
   double log_value = 0.0, variance = 0.0;
 };
 
-/// REML of a noise up to a factor on its variance, which comes out.
+/// REML of a noise up to a factor on its variance, which is estimated.
 Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& shape) {
   double squares = 0.0, log_determinants = 0.0, n_free = 0.0;
   for (const NoiseSeries& s : series) {
@@ -123,7 +124,7 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
   const double step_s = upper_median(steps_s);
   NoiseModel best{1.0, 0.0, 0.0};
   Likelihood l = likelihood(series, best);
-  double best_value = l.log_value + 2.0;  // correlation must earn its two numbers
+  double best_value = l.log_value + 2.0;  // the correlation must justify its two numbers
   double scale = std::sqrt(l.variance);
   for (double rows : kRowsAlike) {
     const double time_s = rows * step_s;

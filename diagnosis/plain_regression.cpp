@@ -15,9 +15,9 @@ constexpr double kAmbientLags_s[] = {0.0, 3600.0, 14400.0};
 constexpr double kColumnLags_s[] = {0.0, 600.0, 3600.0};
 constexpr double kPenalties[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0};
 constexpr Eigen::Index kParts = 8;     // of a single run
-constexpr double kStandsStill = 1e-9;  // variance over the mean square
+constexpr double kStandsStill = 1e-9;  // variance divided by the mean square, below which a column is constant
 
-/// Behind a first-order lag that is settled at rest: of what drives, each value holds until the next row.
+/// The drive after a first-order lag that starts at rest; each value holds until the next row.
 Eigen::VectorXd held_behind(const Eigen::VectorXd& drive, const std::vector<double>& time_s, double lag_s) {
   if (lag_s <= 0.0) return drive;
   Eigen::VectorXd behind = Eigen::VectorXd::Zero(drive.size());
@@ -27,14 +27,14 @@ Eigen::VectorXd held_behind(const Eigen::VectorXd& drive, const std::vector<doub
   }
   return behind;
 }
-/// The same of what is sampled, settled at its first value.
+/// The same for a sampled signal, starting at its first value.
 Eigen::VectorXd sampled_behind(const Eigen::VectorXd& signal, const std::vector<double>& time_s, double lag_s) {
   Eigen::RowVectorXd behind = signal.transpose();
   effects::lag_behind(behind, time_s, lag_s);
   return behind.transpose();
 }
 
-/// A reading; where it is missing, the last one before.
+/// A reading; a missing one has the value before.
 Eigen::VectorXd held(const Eigen::VectorXd& reading) {
   Eigen::VectorXd whole = reading;
   double last = 0.0;
@@ -47,7 +47,7 @@ Eigen::VectorXd held(const Eigen::VectorXd& reading) {
   return whole;
 }
 
-/// What a run has beside its readings, n_times x n_columns.
+/// The other data of a run besides its readings, n_times x n_columns.
 Eigen::MatrixXd drive_columns(const MeasuredRun& run) {
   const auto n = static_cast<Eigen::Index>(run.time_s.size());
   Eigen::VectorXd speed(n), ambient(n);
@@ -69,7 +69,7 @@ Eigen::MatrixXd drive_columns(const MeasuredRun& run) {
   return all;
 }
 
-/// Sums of a part of the rows: what regressions on several parts together are made of.
+/// Sums over a part of the rows, from which regressions on several parts are computed.
 struct Sums {
   double n = 0.0, y = 0.0, yy = 0.0;
   Eigen::VectorXd x, xy;
@@ -97,7 +97,7 @@ struct Sums {
 struct Line {
   double at_zero = 0.0;
   Eigen::VectorXd slope;
-  /// Squares that it misses some rows by.
+  /// Squares of its errors in some rows.
   [[nodiscard]] double squares(const Sums& s) const {
     const Eigen::VectorXd xx_b = s.xx.selfadjointView<Eigen::Lower>() * slope;
     return s.yy - 2.0 * (at_zero * s.y + slope.dot(s.xy)) + at_zero * at_zero * s.n + 2.0 * at_zero * slope.dot(s.x) +
@@ -105,7 +105,7 @@ struct Line {
   }
 };
 
-/// Minimises |y - a - x b|² / n + penalty |b deviation(x)|²; columns that stand still are left out.
+/// Minimises |y - a - x b|² / n + penalty |b deviation(x)|²; constant columns are left out.
 Line ridge(const Sums& s, double penalty) {
   const Eigen::VectorXd mean = s.x / s.n;
   Eigen::MatrixXd a = s.xx.selfadjointView<Eigen::Lower>();
@@ -129,7 +129,7 @@ Prediction plain_regression(const std::vector<MeasuredRun>& runs, const std::vec
                             Regressors regressors) {
   std::vector<Eigen::MatrixXd> driven;
   Prediction prediction;
-  std::vector<std::string> thermometers;  // in every run
+  std::vector<std::string> thermometers;  // that every run has
   for (const MeasuredRun& run : runs) {
     driven.push_back(drive_columns(run));
     prediction.push_back(Eigen::MatrixXd::Zero(n_outputs, static_cast<Eigen::Index>(run.time_s.size())));

@@ -1,23 +1,25 @@
 #pragma once
-// What a regression that knows nothing of the machine makes of the same rows: the least that a model has to beat.
+// A regression without any knowledge of the machine on the same rows: the least that a model must beat.
 //
-// A channel is a linear function of what else the record has: speed, its square and whether it turns, each as it is and behind first-order lags of
-// 5, 20 and 80 min; the ambient behind 0, 1 and 4 h; every other recorded column behind 0, 10 and 60 min; and, where asked for, the thermometers' readings.
-// Ridge regression; its penalty is the one of nine that predicts best what is left out, each run in turn, of a single one its eighths.
-// Source: Hoerl & Kennard, Technometrics 12 (1970) 55-67; memories of speed: Brecher, Hirsch & Weck, CIRP Annals 53 (2004) 299-302.
+// A channel is a linear function of the record's other data: speed, its square and whether the spindle turns, each as it
+// is and after first-order lags of 5, 20 and 80 min; the ambient after 0, 1 and 4 h; every other recorded column after 0,
+// 10 and 60 min; and, on request, the thermometers' readings. Ridge regression; of nine penalties the one that predicts
+// left-out data best, each run in turn, or for a single run each eighth.
+// Source: Hoerl & Kennard, Technometrics 12 (1970) 55-67; memories of speed: Brecher, Hirsch & Weck, CIRP Annals 53
+// (2004) 299-302.
 
 #include "diagnosis/comparison.hpp"
 
 namespace driftwright::diagnosis {
 
 enum class Regressors {
-  kDrive,             ///< what drove the machine, and the ambient
-  kDriveAndReadings,  ///< and readings of thermometers, that of the channel itself left out
+  kDrive,             ///< the drive and the ambient
+  kDriveAndReadings,  ///< also readings of thermometers, except those of the channel itself
 };
 
-/// @param runs    whole; readings are regressors where they are asked for
-/// @param fitted  the same runs, readings that are kept out NaN
-/// @return of all runs; rows of outputs that are no channel, or one without fitted readings, are 0
+/// @param runs    complete; their readings are regressors on request
+/// @param fitted  the same runs, with NaN for readings that are kept out
+/// @return for all runs; rows of outputs without a channel, or with no fitted readings, are 0
 [[nodiscard]] Prediction plain_regression(const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& fitted,
                                           int n_outputs, Regressors regressors);
 

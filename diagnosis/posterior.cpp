@@ -12,9 +12,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNoShare = 12.0;        // nats below the best set that nothing counts beyond
+constexpr double kNoShare = 12.0;        // nats below the best set, beyond which sets are ignored
 constexpr double kLeastStated = 0.01;    // probability
-constexpr std::size_t kMostUnsure = 16;  // places that are stated, however little each of many is sure
+constexpr std::size_t kMostUnsure = 16;  // most places that are listed, even if each is uncertain
 
 struct Set {
   std::vector<Scored> scored;
@@ -23,7 +23,7 @@ struct Set {
   [[nodiscard]] double value() const { return log_prior + log_evidence; }
 };
 
-/// What tells two sets apart, whatever their order.
+/// A key that is equal for equal sets, whatever their order.
 std::string key_of(const std::vector<Statement>& says) {
   std::vector<std::string> keys;
   for (const Statement& t : says)
@@ -39,7 +39,7 @@ std::vector<Item> items_of(const StatementEvidence& evidence, const Set& set) {
   return items;
 }
 
-/// Nothing at all, and every set that counts, by beam search: the likeliest ones are taken further.
+/// The empty set, and every relevant set, by beam search: the likeliest sets are extended.
 std::vector<Set> sets_of(const StatementEvidence& evidence, const StatementOptions& options) {
   std::vector<Set> sets = {{.scored = {}, .says = {}, .log_prior = std::log(options.nothing)}}, beam = sets;
   double most = sets.front().value(), explained = 0.0;
@@ -89,7 +89,7 @@ std::vector<Set> sets_of(const StatementEvidence& evidence, const StatementOptio
   return sets;
 }
 
-/// Statements of a set with their sizes. @param power  of the evidence: intervals are wider by its root
+/// The statements of a set with their sizes. @param power  of the evidence; intervals are wider by its root
 std::vector<Stated> sized(const StatementEvidence& evidence, const Set& set, double power) {
   const std::vector<Item> items = items_of(evidence, set);
   const StatementEvidence::Sizes s = evidence.sizes(items);
@@ -136,7 +136,7 @@ std::vector<StatedCourse> course_of(const StatementSpace& space, const Statement
   return list;
 }
 
-/// Power that evidence counts with between statements.
+/// The exponent of the evidence between statements.
 double power_of(const StatementEvidence& evidence, const Set& best, const StatementOptions& options) {
   const double explained = options.explained + best.log_evidence;
   if (!options.observed) return temper(explained, options.law_error);
@@ -144,7 +144,8 @@ double power_of(const StatementEvidence& evidence, const Set& best, const Statem
   return 1.0 / (1.0 + law_squares(explained, options.law_error, left, static_cast<double>(evidence.n_rows())));
 }
 
-/// Probabilities of sets, the first one of nothing. @param power  of evidence over nothing. @param power_between  that it counts with among the others
+/// Probabilities of sets; the first set is empty. @param power  of the evidence over nothing. @param power_between  of
+/// that among the others
 std::vector<double> weights_of(const std::vector<Set>& sets, double power, double power_between) {
   std::vector<double> over_nothing, between;
   for (const Set& s : sets) {
@@ -152,7 +153,7 @@ std::vector<double> weights_of(const std::vector<Set>& sets, double power, doubl
     between.push_back(s.log_prior + power_between * s.log_evidence);
   }
   if (sets.size() == 1) return {1.0};
-  const auto sum = [](const std::vector<double>& terms) {  // of all but the first, as a logarithm
+  const auto sum = [](const std::vector<double>& terms) {  // of all except the first, as a logarithm
     const double most = *std::max_element(terms.begin() + 1, terms.end());
     return most + std::log(std::accumulate(terms.begin() + 1, terms.end(), 0.0,
                                            [&](double all, double t) { return all + std::exp(t - most); }));
@@ -174,7 +175,7 @@ double law_squares(double explained, double law_error, double left, double n) {
   if (!(expected > 0.0)) return 0.0;
   const double sd = std::sqrt(2.0 * n);
   const double z = (left - n) / sd - sd / expected;
-  constexpr double kFar = -8.0;  // standard deviations, where the tail is that of its slope
+  constexpr double kFar = -8.0;  // standard deviations beyond which the asymptotic tail is used
   if (z < kFar) return -sd / z;
   return sd * (z + std::exp(-0.5 * z * z) / (std::sqrt(0.5 * std::numbers::pi) * std::erfc(-z / std::numbers::sqrt2)));
 }
@@ -194,7 +195,7 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
     double probability = 0.0;
     struct Follows {
       double probability = 0.0, best = -1e300;
-      std::size_t set = 0, which = 0;  ///< the likeliest set that says it
+      std::size_t set = 0, which = 0;  ///< the likeliest set that contains it
     };
     std::map<std::string, Follows> follows;
   };
@@ -245,7 +246,7 @@ Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual
 StatedBeside::StatedBeside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit)
     : space_(fitter, fitter.state(hypothesis, fit.x)), comparison_(fitter.comparison()) {
   const Eigen::Index n = fitter.n_nuisance(), n_claimed = fit.slopes.cols();
-  Eigen::MatrixXd free(fit.residual.size(), n + n_claimed);  // what is known roughly, and what claims are about their fit
+  Eigen::MatrixXd free(fit.residual.size(), n + n_claimed);  // roughly known numbers, and the claims about their fit
   free.leftCols(n) = fitter.nuisance_slopes() * fitter.nuisance_sd().asDiagonal();
   free.rightCols(n_claimed) = fit.slopes * fitter.prior_sd(hypothesis).tail(n_claimed).asDiagonal();
   residual_ = space_.condense(comparison_, fit.residual + fitter.nuisance_slopes() * fit.x.head(n));

@@ -1,5 +1,5 @@
 #pragma once
-// What is missing, as probabilities: sets of statements found by beam search, and their evidence summed facet by facet.
+// Probabilities of what is missing: sets of statements, found by beam search, with their evidence summed over each facet.
 
 #include <limits>
 #include <optional>
@@ -8,57 +8,62 @@
 
 namespace driftwright::diagnosis {
 
-/// What a record asks for at a place over time, whatever it follows: a random walk of a few steps, alone in the machine.
+/// The course over time that a record requires at a place, whatever its cause: a random walk of a few steps, alone in the
+/// machine.
 struct StatedCourse {
   std::string record;
-  std::vector<double> edge_s;  ///< beginnings of the steps, and the end of the last one
-  std::vector<double> value;   ///< one fewer, in the statement's unit
+  std::vector<double> edge_s;  ///< begin of each step, and end of the last one
+  std::vector<double> value;   ///< one less, in the statement's unit
 };
 
-/// A statement at its best size, and how sure it is.
+/// A statement with its best size and its probabilities.
 struct Stated {
   Statement says;
-  double size = 0.0;             ///< in says.unit; of an unknown course its root mean square
-  double low = 0.0, high = 0.0;  ///< 95 %, by linear theory; both the size where it is of an unknown course
-  double log_evidence = 0.0;     ///< of the best set that it is in, over nothing [nats]
-  double probability = 0.0;      ///< that this quantity is wrong at this place, whatever it follows
-  double p_quantity = 0.0;       ///< that this quantity is, wherever
-  double p_place = 0.0;          ///< of this place, if the quantity is
-  double p_follows = 0.0;        ///< that it follows this, if quantity and place are right
+  double size = 0.0;             ///< in says.unit; for an unknown course its root mean square
+  double low = 0.0, high = 0.0;  ///< 95 %, by linear theory; both equal to the size for an unknown course
+  double log_evidence = 0.0;     ///< of the best set that contains it, over nothing [nats]
+  double probability = 0.0;      ///< that this quantity is wrong at this place, with any course
+  double p_quantity = 0.0;       ///< that this quantity is wrong, at any place
+  double p_place = 0.0;          ///< of this place, if the quantity is right
+  double p_follows = 0.0;        ///< that it has this course, if quantity and place are right
   struct Windows {
     Statement says;
     double size = 0.0;
   };
   std::optional<Windows> windows =
-      {};  ///< the best ones of the same quantity and place; also where another course is likelier
-  std::vector<StatedCourse> course = {};  ///< of each record; empty where the grammar has no course for the quantity
+      {};  ///< the best windows of the same quantity and place, even if another course is likelier
+  std::vector<StatedCourse> course = {};  ///< for each record; empty if the grammar has no course for the quantity
 };
 
 struct Posterior {
-  double nothing = std::numeric_limits<double>::quiet_NaN();  ///< probability that nothing is wrong; NaN: not weighed
-  double power = 1.0;                                         ///< that evidence counts with between statements
+  double nothing = std::numeric_limits<double>::quiet_NaN();  ///< probability that nothing is wrong; NaN: not computed
+  double power = 1.0;                                         ///< exponent of the evidence between statements
   std::vector<Stated>
-      stated;  ///< by falling probability, each quantity and place once; those of a hundredth and more, and the first few
+      stated;  ///< by falling probability, each quantity and place once; those of at least 0.01, and the first few
 };
 
-/// Power that evidence counts with where the best explanation explains so much [nats], its law being off by a share of what it does (StatementOptions::law_error).
+/// Exponent of the evidence, if the best explanation explains `explained` [nats] and its law is wrong by a share
+/// law_error of its effect.
 [[nodiscard]] double temper(double explained, double law_error);
-/// Squares that laws leave, beside those of noise: their mean, of an exponential prior with the mean 2 law_error² E and of what is left over [n, with the standard deviation
-/// sqrt(2 n) of noise]. @param explained  E [nats]. @param left  squares of whitened readings less the best explanation. @param n  how many of these
+/// Mean squares that wrong laws leave in addition to noise, from an exponential prior with mean 2 law_error² E and from
+/// the rest (n values, with the standard deviation sqrt(2 n) of noise).
+/// @param explained  E [nats]. @param left  squares of whitened readings minus the best explanation. @param n  number of
+/// readings
 [[nodiscard]] double law_squares(double explained, double law_error, double left, double n);
 
-/// @param residual, nuisance  as StatementEvidence has them
+/// @param residual, nuisance  as in StatementEvidence
 [[nodiscard]] Posterior posterior(const StatementSpace& space, const Eigen::VectorXd& residual,
                                   const Eigen::MatrixXd& nuisance, const StatementOptions& options = {});
 
-/// What is to be said of readings beside a fit of some claims: the space about the machine as fitted, and the readings that its free numbers may take up.
+/// Statements in addition to a fit of some claims: their space about the fitted machine, and the readings that free
+/// numbers may absorb.
 class StatedBeside {
  public:
-  /// @param fitter  settled at the fit, with its noise; outlives it
-  /// @throws SolveError  where the fit's state has no solution
+  /// @param fitter  settled at the fit, with its noise; must outlive this
+  /// @throws SolveError  if the fit's state has no solution
   StatedBeside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit);
   [[nodiscard]] Posterior posterior(const StatementOptions& options) const;
-  /// Squares that a fit leaves of the readings, as StatementOptions::left has them.
+  /// Squares of the readings that a fit leaves, as for StatementOptions::left.
   [[nodiscard]] double left(const Fit& fit) const;
 
  private:
@@ -68,7 +73,8 @@ class StatedBeside {
   Eigen::MatrixXd nuisance_;
 };
 
-/// Statements of several posteriors, each quantity and place once, with the greatest of its probabilities; the first one says whether nothing is wrong.
+/// Statements of several posteriors, each quantity and place once with its largest probability; the probability of
+/// nothing is that of the first.
 [[nodiscard]] Posterior joined(const std::vector<Posterior>& posteriors);
 
 }  // namespace driftwright::diagnosis

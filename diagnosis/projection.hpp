@@ -1,5 +1,5 @@
 #pragma once
-// Least squares with priors: what free numbers would take of a residual, and the evidence that is left.
+// Least squares with priors: the part of a residual that free numbers explain, and the evidence of the rest.
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -10,13 +10,13 @@ namespace driftwright::diagnosis {
 struct Projection {
   Eigen::MatrixXd slopes;              ///< J [n_readings x n_free]
   Eigen::LLT<Eigen::MatrixXd> factor;  ///< of J'J + S⁻²
-  Eigen::VectorXd rest;                ///< y minus what the free numbers would take of it
+  Eigen::VectorXd rest;                ///< y minus the part that the free numbers explain
   double log_evidence = 0.0;           ///< of y, without the constant -n/2 log 2π
 
   Projection(Eigen::MatrixXd j, const Eigen::VectorXd& sd, const Eigen::VectorXd& y);
-  /// A column, or several, minus what the free numbers would take of them.
+  /// One or several columns minus the part that the free numbers explain.
   [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const;
-  /// Squares of a column that are left.
+  /// Squares of the rest of a column.
   [[nodiscard]] double square(const Eigen::VectorXd& s) const;
 };
 

@@ -36,15 +36,14 @@ Eigen::MatrixXd left_of_laws(const Question& question, const Eigen::MatrixXd& in
   return left;
 }
 
-/// z² from which on an expected gain z²/2 slope - cost reaches 0.
+/// The z² from which on an expected gain z²/2 slope - cost is above 0.
 double square_of_size(double slope, double cost) {
-  if (slope < -1e-9)
-    return kNeverDecided;  // what it brings falls with its size, as beside a law that does the same and more
+  if (slope < -1e-9) return kNeverDecided;  // its gain falls with its size, as with a law that does the same and more
   if (cost <= 0.0) return 0.0;
   return slope > 1e-12 ? 2.0 * cost / slope : kNeverDecided;
 }
 
-/// The z² from which on each law is told from each other one; on the diagonal, from nothing.
+/// The z² from which on each law is distinguished from each other one; on the diagonal, from nothing.
 struct Sizes {
   const Question& question;
   const Eigen::MatrixXd& left;

@@ -12,13 +12,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHole = 5.0;  // usual steps
-constexpr double kRare = 0.1;  // share of the steps up to which long ones are holes: beyond, they are the logger's pace
-constexpr std::size_t kStepsOfPace = 5;  // whose median is the pace before, and behind
-constexpr double kLeap = 40.0;           // usual changes from reading to reading
-constexpr double kLeapOfRange = 0.3;     // of what all other readings span
+constexpr double kHole = 5.0;            // usual steps
+constexpr double kRare = 0.1;            // share of steps up to which long ones are holes; more are the logger's interval
+constexpr std::size_t kStepsOfPace = 5;  // steps whose median is the interval before, and after
+constexpr double kLeap = 40.0;           // in usual changes between readings
+constexpr double kLeapOfRange = 0.3;     // share of the range of all other readings
 
-/// The usual step of a logger: of one that writes in bursts, such as a homing's readings and then nothing until the next one, that from burst to burst.
+/// The usual step of a logger. For one that writes in bursts, such as readings of a homing and nothing until the next,
+/// the time between bursts.
 double usual_of(const std::vector<double>& steps) {
   double usual_s = upper_median(steps);
   for (;;) {
@@ -29,7 +30,7 @@ double usual_of(const std::vector<double>& steps) {
   }
 }
 
-/// The usual step about the one that ends at a row: a logger may change its pace. @param usual_s  of the whole record
+/// The usual step near the one that ends at a row: a logger may change its interval. @param usual_s  of the whole record
 double usual_about(const std::vector<double>& times_s, std::size_t row, double usual_s) {
   const auto of = [&](std::size_t first, std::size_t last) {  // steps that end at rows first to last
     std::vector<double> steps;
@@ -81,7 +82,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
 
 Record without_spikes(Record record, std::vector<DataFinding>& findings) {
   for (Channel& c : record.channels) {
-    // what is switched may be on for one row alone
+    // A switched quantity may be on for a single row.
     const bool is_reading = c.unit == "degC" || c.unit == "K" || !scenarios::is_of_column(c.unit);
     if (!is_reading) continue;
     std::vector<std::size_t> known;
@@ -93,9 +94,9 @@ Record without_spikes(Record record, std::vector<DataFinding>& findings) {
     for (std::size_t k = 1; k < known.size(); ++k) changes.push_back(std::abs(c.values[known[k]] - c.values[known[k - 1]]));
     for (std::size_t i : known) sorted.push_back(c.values[i]);
     std::sort(sorted.begin(), sorted.end());
-    const std::size_t few = 1 + sorted.size() / 50;  // spikes themselves do not count
+    const std::size_t few = 1 + sorted.size() / 50;  // so that spikes themselves do not count
     const double range = sorted[sorted.size() - 1 - few] - sorted[few],
-                 usual = std::max(upper_median(changes), quantum_of(c.values));  // one step of the instrument is no leap
+                 usual = std::max(upper_median(changes), quantum_of(c.values));  // one step of the instrument is no jump
     const double leap = std::max(kLeap * usual, kLeapOfRange * range);
     if (!(leap > 0.0)) continue;
     int n = 0;

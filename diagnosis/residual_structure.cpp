@@ -14,7 +14,7 @@ double nan() {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Over times at which both have a value.
+/// Over the times at which both have a value.
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double n = 0.0, mean_a = 0.0, mean_b = 0.0;
   const auto both = [&](Eigen::Index i) { return !std::isnan(a[i]) && !std::isnan(b[i]); };
@@ -35,7 +35,7 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     bb += db * db;
     ab += da * db;
   }
-  // a record of rounded readings that do not change leaves rounding errors of its mean
+  // A record of constant rounded readings has only rounding errors of its mean.
   const double rounding = 1e-24 * n;
   if (!(aa > rounding * (1.0 + mean_a * mean_a)) || !(bb > rounding * (1.0 + mean_b * mean_b))) return nan();
   return ab / std::sqrt(aa * bb);
@@ -43,7 +43,7 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 struct Quantity {
   std::string name;
-  Eigen::VectorXd value;  ///< per time; NaN where not known
+  Eigen::VectorXd value;  ///< per time; NaN if unknown
 };
 
 std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
@@ -66,7 +66,7 @@ std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
   return list;
 }
 
-/// Behind a first-order lag, settled at the first value, which holds until the next.
+/// After a first-order lag that starts at the first value; each value holds until the next.
 Eigen::VectorXd lagged(const std::vector<double>& time_s, const Eigen::VectorXd& q, double lag_s, bool from_zero) {
   Eigen::VectorXd y(q.size());
   y[0] = from_zero ? 0.0 : q[0];
@@ -120,8 +120,8 @@ ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::Vector
   }
 
   for (const Quantity& q : recorded(run, 0.0)) {
-    if (q.value.hasNaN()) continue;  // changes and rates: what follows them is no step response
-    // the machine has not turned before, but it has stood in its ambient and its sun
+    if (q.value.hasNaN()) continue;  // changes and rates: a response to them is no step response
+    // The machine has not turned before, but it was in its ambient and its sun.
     const bool from_zero = q.name == "speed" || q.name == "speed^2";
     for (int k = 0;; ++k) {
       const double lag_s = kShortestConstant_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);

@@ -20,7 +20,8 @@ bool releases(const std::string& effect) {
   return is_one_of(effect, {"heat_source", "heat_window", "friction_law"});
 }
 bool exchanges(const std::string& effect) {
-  return is_one_of(effect, {"contact", "convection", "exchange_window", "forced_convection", "link", "natural_convection", "radiation"});
+  return is_one_of(
+      effect, {"contact", "convection", "exchange_window", "forced_convection", "link", "natural_convection", "radiation"});
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ std::vector<std::size_t> open_rivals(const std::vector<Rival>& rivals) {
   if (!is_kind_open && odds.place >= kSure) return {};
   const std::vector<double> shares = shares_of(rivals);
   std::vector<std::size_t> order;
-  double told = 0.0;  // by the claim, and by what says the same
+  double told = 0.0;  // share of the claim, and of those with the same meaning
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     if (i == 0 || rivals[i].says_the_same) {
       told += shares[i];

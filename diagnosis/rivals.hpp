@@ -1,12 +1,15 @@
 #pragma once
-// How the odds are shared between a claim and others that were fitted in its place: over kinds, and over the places of one kind.
+// Odds of a claim against the others that were fitted in its place: of its kind, and of its place within the kind.
 //
-//     p_i = Z_i / sum Z_j,   Z: evidence of the hypothesis with i in the claim's place, prices paid
-//     odds of the kind = sum of p over the claims of its effect, wherever they sit, and those that say the same of the same bodies;
-//     odds of the place = share of these that sit where the claim does
+// p_i = Z_i / sum Z_j,   Z: evidence of the hypothesis with i in the claim's place, after costs
+//     odds of the kind = sum of p over the claims of its effect, at any place, and those that mean the same there;
+//     odds of the place = share of these that have the claim's place
 //
-// Two claims of one kind at two bodies leave open where it is, and not what it is. A claim that says the same in other words, as heat in a window that lasts to the
-// end and heat from a time on, takes nothing away from either; heat for two minutes and a film that is less for two minutes are two things, of which one is true.
+// Two claims of one kind at two bodies leave the place open, but not the kind. A claim with the same meaning in other
+// words, such as heat in a window that lasts to the end and heat from a time on, does not reduce the odds of either. Heat
+// for two minutes and a film that is weaker for two minutes are different claims, of which only one is true.
+// end and heat from a time on, takes nothing away from either; heat for two minutes and a film that is less for two
+// minutes are two things, of which one is true.
 
 #include <string>
 #include <vector>
@@ -16,24 +19,25 @@ namespace driftwright::diagnosis {
 struct Rival {
   std::string effect, where;
   double log_evidence = 0.0;
-  bool says_the_same = false;  ///< as the first one, in other words
+  bool says_the_same = false;  ///< the same meaning as the first one, in other words
 };
 
-/// Whether one of two kinds is of heat that is released and the other of an exchange: these are no two words for one thing, even where no reading tells them apart.
+/// Whether one kind releases heat and the other changes an exchange: these never mean the same, even if no reading can
+/// distinguish them.
 [[nodiscard]] bool are_apart(const std::string& effect, const std::string& other);
 
 struct Odds {
   double kind = 1.0, place = 1.0;
 };
 
-inline constexpr double kSure = 0.9;  ///< of the odds: from there on a kind, and a place, counts as told
+inline constexpr double kSure = 0.9;  ///< odds from which a kind, or a place, counts as certain
 
-/// @param rivals  the claim itself first, at least that
+/// @param rivals  at least the claim itself, which comes first
 [[nodiscard]] Odds odds_of(const std::vector<Rival>& rivals);
-/// Share of each in all.
+/// The share of each in all.
 [[nodiscard]] std::vector<double> shares_of(const std::vector<Rival>& rivals);
-/// Those beside which the claim is not told, the likeliest first: where its kind is not sure the fewest of all that hold kSure of the odds with it; where only its place
-/// is not, the fewest of its kind that do. Empty: kind and place are sure.
+/// The rivals that leave the claim open, the likeliest first. If its kind is uncertain: the fewest that have kSure of the
+/// odds together with it; if only its place is: the fewest of its kind that do. Empty: kind and place are certain.
 [[nodiscard]] std::vector<std::size_t> open_rivals(const std::vector<Rival>& rivals);
 
 }  // namespace driftwright::diagnosis

@@ -7,13 +7,13 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kAmbient_K = 0.3;
-constexpr double kLargestStep = 0.05;  // of a logarithm, for differences: a quarter of what it is known to, but never more
+constexpr double kLargestStep = 0.05;  // largest step of a logarithm for differences; usually a quarter of its prior
 
 double step_of(double known_to) {
   return std::min(0.25 * known_to, kLargestStep);
 }
 
-/// How well heat capacity, conductivity or expansion of a body is known.
+/// The prior of a body's heat capacity, conductivity or expansion.
 double known_of_body(const Twin& twin, const std::string& property, const std::string& body) {
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
     const effects::Effect& e = twin.as_written()[i];

@@ -8,11 +8,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kLeastOfSpeed = 0.05;  // of the time in which the spindle turns, on either side of a step of speed
+constexpr double kLeastOfSpeed = 0.05;  // least share of the turning time on either side of a step of speed
 constexpr std::size_t kMostSpeedSteps = 6;
-constexpr double kLeastRatio = 1.1;  // of two speeds: nearer ones are one that was measured twice
+constexpr double kLeastRatio = 1.1;  // least ratio of two speeds; closer ones are one speed measured twice
 
-/// What a part is made of: what scatters and may be wrong about it.
+/// The material of a part: numbers that scatter and may be wrong.
 effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPart<Eigen::MatrixXd>& part) {
   const scenarios::MachineModel& model = twin.augmented().model;
   effects::DoubtScene::Material m;
@@ -23,7 +23,7 @@ effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPa
   for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
     if (!(part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0)) continue;
     const std::size_t d = o - model.sensors.size();
-    // A sensitivity is a number of its own, but for a region that bends the mesh as well: that is one expansion.
+    // A sensitivity is a separate number, except for a region that also bends the mesh: both are one expansion.
     const bool bends =
         m.body.kind == effects::BodyKind::kRegion && (d >= model.displacements.size() || model.displacements[d].points);
     if (bends) {
@@ -35,7 +35,7 @@ effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPa
   return m;
 }
 
-/// The most that a heat grows by what is recorded beside speed and feeds.
+/// The largest increase of a heat by recorded quantities other than speed and feeds.
 double most_of_record_W(const effects::HeatInput& heat, const std::vector<MeasuredRun>& runs, const TwinState& own) {
   const double at_rest_W = heat.power_W(effects::Inputs{});
   double most_W = 0.0;
@@ -50,7 +50,7 @@ double most_of_record_W(const effects::HeatInput& heat, const std::vector<Measur
   return most_W;
 }
 
-/// What changes in every record beside the drive, or is a cutting power there.
+/// The quantities that every record has besides the drive and that change, or are a cutting power.
 std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRun>& runs, const TwinState& own) {
   std::vector<effects::DoubtScene::Column> columns;
   const auto add = [&](const std::string& name, const std::string& unit, const auto& values_of) {
@@ -105,7 +105,8 @@ double usual_row_s(const std::vector<double>& time_s) {
   return *middle;
 }
 
-/// Between two speeds that it turns at, with some of the time on either side; of many, those that lie furthest apart.
+/// Speeds between two speeds of the records, with enough time on either side; of many, those between the speeds furthest
+/// apart.
 std::vector<double> speed_steps_rpm(const std::vector<MeasuredRun>& runs) {
   std::map<double, double> time_s;  // by speed
   double turning_s = 0.0;
@@ -116,7 +117,7 @@ std::vector<double> speed_steps_rpm(const std::vector<MeasuredRun>& runs) {
       turning_s += section.duration_s;
     }
   }
-  std::vector<std::pair<double, double>> gaps;  // ratio of the two speeds, what lies between them
+  std::vector<std::pair<double, double>> gaps;  // ratio of the two speeds, and the speed between them
   double slower_s = 0.0, slower_rpm = 0.0;
   for (const auto& [rpm, of_speed_s] : time_s) {
     if (std::min(slower_s, turning_s - slower_s) > kLeastOfSpeed * turning_s && rpm > kLeastRatio * slower_rpm)
@@ -171,11 +172,11 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   }
   s.turns = turning_s > 0.0;
   s.speed_steps_rpm = speed_steps_rpm(runs);
-  if (s.turns) {  // a round number near the mean speed: where laws of speed are stated
+  if (s.turns) {  // a round number near the mean speed, at which laws of speed are stated
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
   }
-  for (const MeasuredRun& run : runs) {  // of what the machine feels as written
+  for (const MeasuredRun& run : runs) {  // of the real drive, as written
     for (const auto& section : effects::true_cyclogram(effects::drive_change(s.own, run.name), run.cyclogram).sections)
       s.top_rpm = std::max(s.top_rpm, section.drive.speed_rpm);
   }

@@ -9,8 +9,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kTurnsOfWidth = 3;       // of heavy tails: then the size stays
-constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
+constexpr int kTurnsOfWidth = 3;       // iterations for the width of heavy tails; then the size is constant
+constexpr double kLeastGrowth = 0.01;  // of a size relative to its trial, with which other numbers grow
 
 }  // namespace
 
@@ -58,7 +58,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
   {
     Twin::Workspace workspace(fitter.twin());
     (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
-    about = fitter.kept_runs(known, workspace, false);  // what a law makes of a reading is no slope
+    about = fitter.kept_runs(known, workspace, false);  // an effect on a reading has no slope
   }
   struct Space {
     Twin::Workspace workspace;
@@ -141,7 +141,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     of_each[i] = {signature.candidate, signature.variant, g.gain, g.fall, start_at(v, signature.shape, g.x)};
   }
   std::vector<Score> list;
-  for (const Score& s : of_each) {  // those of one law follow each other
+  for (const Score& s : of_each) {  // those of one law are consecutive
     if (!list.empty() && list.back().candidate == s.candidate && list.back().variant == s.variant) {
       if (s.gain > list.back().gain) list.back() = s;
     } else if (s.start.size() > 0) {

@@ -1,19 +1,20 @@
 #pragma once
-// Makes the columns of a statement space: what each quantity, at each place, does to the readings as each course asks for it. Of the room alone.
+// Builds the columns of a statement space: the effect of each quantity at each place with each course. Internal to this
+// room.
 
 #include "diagnosis/scene.hpp"
 #include "diagnosis/statement.hpp"
 
 namespace driftwright::diagnosis {
 
-/// A course in time, of any quantity that takes one.
+/// A course in time, for any quantity that has one.
 struct TimedCourse {
   std::string follows, law;
   std::vector<Eigen::RowVectorXd> at_row, in_interval;  ///< by run
-  bool rests = false;                                   ///< nothing while the machine has not been started
+  bool rests = false;                                   ///< zero while the machine has not been started
 };
 
-inline constexpr double kUsualLogarithm = 0.7;  ///< of a factor's logarithm: what is typical of one that is wrong
+inline constexpr double kUsualLogarithm = 0.7;  ///< typical logarithm of a wrong factor
 
 class StatementBuilder {
  public:
@@ -31,13 +32,13 @@ class StatementBuilder {
   };
   using Loads = std::vector<LinearOperator::Load>;
   double swing(const std::string& name) const;
-  /// Course of a function of the drive.
+  /// The course of a function of the drive.
   TimedCourse of_drive(std::string follows, std::string law, const std::function<double(const Drive&)>& u) const;
   void make_courses();  ///< statement_courses.cpp
   static double value_at(const TimeSeries& series, double t_s);
   void add(Statement says, std::vector<Acting> acts);
   Acting respond(const std::shared_ptr<const Loads>& loads, const TimedCourse& course) const;
-  /// A channel alone. @param course  of the rows by run
+  /// Acts on a channel directly. @param course  over the rows, by run
   static Acting alone(const std::string& channel, const std::vector<Row>& course);
   std::vector<Eigen::Index> edges(std::size_t r) const;
   void add_cells(Statement says, std::vector<Acting> acts, bool lasts = false);
@@ -45,13 +46,14 @@ class StatementBuilder {
 
   // of the machine (statement_machine.cpp)
   void heats();
-  /// All own heat, and all exchange with the ambient: states of running.
+  /// All own heat, and all exchange with the ambient, as states of running.
   void all_alike();
-  /// Another size, exponent or growth with temperature of the heat that a body has.
+  /// Another size, exponent or growth with temperature of a body's heat.
   void own_laws(const Body& body, const Statement& says, const std::shared_ptr<const Loads>& loads);
   void exchanges();
-  /// What two bodies exchange by a third one that nobody wrote, to first order: a body between them, with a way of its own to the ambient (1 W/K each way: a third of it is seen between any
-  /// two of the three); the air of a guard, which their loss warms over the ambient by a resistance [K/W].
+  /// Exchange of two bodies through an unknown third one, to first order: a body between them with its own way to the
+  /// ambient (1 W/K each way; a third of it is seen between any two of the three); or the air within a guard, which their
+  /// loss warms over the ambient by a resistance [K/W].
   void by_a_third(const Statement& of_both, const Body& a, const Body& b, double loss_a_W_K, double loss_b_W_K);
   void conductivities();
   void capacities();
@@ -68,14 +70,14 @@ class StatementBuilder {
     return rows;
   }
   void readings();
-  /// Thermometers that are wrong together, by one number: what one of them does alone, in all at once.
+  /// Thermometers that are wrong together by the same number: the effect of one of them alone, applied to all at once.
   void instruments_in_common();
 
-  // of what is about it (statement_surroundings.cpp)
+  // of the surroundings (statement_surroundings.cpp)
   void surroundings();
-  /// What an effect does to all channels, by the twin itself. @param size  that it has: columns are of one of that
+  /// The effect of an effect on all channels, by the twin itself. @param size  its size, to scale the columns to one unit
   std::vector<Acting> exactly(const effects::Effect& effect, double size) const;
-  /// The same of another state.
+  /// The same for another state.
   std::vector<Acting> exactly(const TwinState& other, double size) const;
 
   StatementSpace& space_;
@@ -86,7 +88,7 @@ class StatementBuilder {
   TwinState state_;
   std::vector<Channel> channels_;
   std::vector<TimedCourse> courses_;
-  std::size_t n_drives_ = 0;  ///< of the courses, the constant among them
+  std::size_t n_drives_ = 0;  ///< number of courses of the drive, including the constant
   bool settled_ = false;
 };
 

@@ -12,12 +12,12 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNothingLeft = 1e-9;  // of a column's squares: the numbers known roughly have all of it
-constexpr double kSeen = 1e-6;         // squares of a direction of the nuisance that noise does not hide
+constexpr double kNothingLeft = 1e-9;  // share of a column's squares, below which roughly known numbers can fully replace it
+constexpr double kSeen = 1e-6;         // squares of a direction of the nuisance above noise
 constexpr Eigen::Index kPieces = 12;   // steps of an unknown course in a record
 constexpr int kMostWindows = 12;
-constexpr Eigen::Index kEdgesTried = 16;  // rows that an edge may lie at, in the two cells about it
-constexpr std::size_t kFewRecords = 5;    // of more, choices of no order are left out
+constexpr Eigen::Index kEdgesTried = 16;  // trial rows of an edge, in its two cells
+constexpr std::size_t kFewRecords = 5;    // with more records, unordered choices are left out
 
 double log_mean(const std::vector<double>& terms) {
   const double most = *std::max_element(terms.begin(), terms.end());
@@ -30,7 +30,7 @@ Eigen::Index n_pieces_of(Eigen::Index n_cells) {
   return std::min(n_cells, kPieces);
 }
 
-/// Cells to steps that last: a random walk's, n_cells x n_pieces.
+/// Maps steps that last, a random walk, to cells: n_cells x n_pieces.
 Eigen::MatrixXd walk(Eigen::Index n_cells) {
   const Eigen::Index n = n_pieces_of(n_cells);
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(n_cells, n);
@@ -171,7 +171,7 @@ std::vector<Scored> StatementEvidence::scored(const std::vector<Item>& set) cons
 
 void StatementEvidence::score_columns(const Sizes& on, std::vector<Scored>& list) const {
   const bool is_set = on.size.size() > 0;
-  std::vector<Eigen::MatrixXd> c(of_run_.size());  // what the set has in common with each column of a run
+  std::vector<Eigen::MatrixXd> c(of_run_.size());  // products of the set with each column of a run
   for (std::size_t r = 0; is_set && r < of_run_.size(); ++r)
     c[r] = on.columns.x.middleRows(space_.rows[r].first, space_.rows[r].n).transpose() * of_run_[r].x;
   const Eigen::MatrixXd set_nuisance = share_.asDiagonal() * on.columns.nuisance;
@@ -361,7 +361,7 @@ double StatementEvidence::of_rows(std::size_t k, const Sizes& on, Scored& scored
     for (Eigen::Index row : rows_about(scored.end)) edges.push_back(row);
   }
   const auto n = static_cast<Eigen::Index>(edges.size());
-  TakenColumns steps{.x = Eigen::MatrixXd::Zero(residual_.x.rows(), n), .nuisance = {}};  // each from its row on
+  TakenColumns steps{.x = Eigen::MatrixXd::Zero(residual_.x.rows(), n), .nuisance = {}};  // one step from each row on
   Scored tried = scored;
   for (Eigen::Index i = 0; i < n; ++i) {
     tried.rows = StatedRows{scored.run, edges[static_cast<std::size_t>(i)], n_rows};
@@ -459,8 +459,8 @@ void StatementEvidence::score_windows(std::size_t k, const Sizes& on, const Eige
   }
 }
 
-/// Windows of one size, one after the other: each in the place that is likeliest beside those before. What each costs for having been chosen is
-/// what the best place has over the mean of all.
+/// Windows of one size, one after the other: each at the place with the largest evidence given those before. The cost of
+/// each choice is the ratio of the best place to the mean of all.
 void StatementEvidence::score_several(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
                                       std::vector<Scored>& list) const {
   const Cells& cells = cells_[k];
@@ -497,7 +497,7 @@ void StatementEvidence::score_several(std::size_t k, const Eigen::MatrixXd& g, c
     const double whole = stage - paid - windows * std::log(2.0);
     in.segment(first, end - first).setOnes();
     paid += most - stage;
-    if (windows == 1) continue;  // kWindow is that
+    if (windows == 1) continue;  // that is kWindow
     if (whole > best) {
       best = whole;
       s.cells.assign(in.data(), in.data() + in.size());
@@ -551,7 +551,7 @@ void StatementEvidence::score_unknown(std::size_t k, const Eigen::MatrixXd& g, c
   }
 }
 
-/// All records, one alone, up to one or from one on; of a few any others, too.
+/// All records, one alone, the first ones or the last ones; with few records also any others.
 void StatementEvidence::set_records() {
   const std::size_t n = space_.rows.size();
   if (n == 1) {
@@ -588,7 +588,7 @@ void StatementEvidence::set_records() {
   for (auto& in : far) records_.push_back({std::move(in), std::log(some * rare / static_cast<double>(far.size()))});
 }
 
-/// Uniform on each level: quantity, place, what it follows, shape; records.
+/// Uniform on each level: quantity, place, course, shape, records.
 void StatementEvidence::set_priors() {
   std::map<StatedQuantity, std::map<std::vector<std::string>, std::map<std::string, std::set<std::string>>>> tree;
   for (const StatementColumn& c : space_.columns) tree[c.says.quantity][c.says.place][c.says.follows].insert(c.says.law);

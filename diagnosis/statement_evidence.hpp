@@ -3,9 +3,11 @@
 //
 //     log E(set) = -1/2 log det(1 + W X'X W) + 1/2 b'(X'X + W⁻²)⁻¹ b,   b = X'r,   products by (1 + A A')⁻¹
 //
-// X: columns of the set; W: widths of their sizes' normal priors; r: what was measured less the prediction; A: a sigma of each number that is known roughly, which is so marginalised. A size's
-// prior is a mixture of normal ones over widths that are log-uniform: heavy tails. Of a statement that may hold at many times the evidence is the mean over the times.
-// The prior is a description length: uniform over quantities, places of a quantity, what it follows there, its laws, and which records, so that more places or laws buy nothing.
+// X: columns of the set; W: widths of their sizes' normal priors; r: measured minus predicted; A: one standard deviation
+// of each roughly known number, which is marginalised in this way. A size's prior is a mixture of normal distributions
+// with log-uniform widths: heavy tails. For a statement that may hold at many times, the evidence is the mean over the
+// times. The prior is a description length: uniform over quantities, places of a quantity, courses there, their laws, and
+// records, so that more places or laws give no advantage.
 
 #include <limits>
 #include <map>
@@ -16,59 +18,61 @@
 namespace driftwright::diagnosis {
 
 struct StatementOptions {
-  double nothing = 0.5;  ///< probability that nothing is wrong, before any reading: even odds
+  double nothing = 0.5;  ///< prior probability that nothing is wrong: even odds
   double one_more =
-      0.25;  ///< of a set of one statement more, over the set: three faulty machines in four are wrong in one way
+      0.25;  ///< prior of a set with one more statement, relative to the set: three faulty machines in four have one fault
   double all_records =
-      0.6;  ///< that something holds in all records, of several; the rest is shared by one alone, those up to one, from one on, and others
-  double rare_records = 0.25;  ///< of that rest, what other choices of records share
-  /// Of what holds in all cells of a place's time: windows one, from a time on (in one record, and in those after it), several of one size.
+      0.6;  ///< prior that a fault is in all of several records; the rest is for one, the first, the last or other records
+  double rare_records = 0.25;  ///< share of other choices of records in that rest
+  /// For cells of time: priors of one window, of a permanent change (in one record, and in those after it), and of
+  /// several windows of one size.
   double once = 0.4, lasting = 0.2, lasting_on = 0.2, several = 0.2;
-  std::vector<double> widths = {
-      0.03, 0.1, 0.3, 1.0,
-      3.0};                ///< of sizes' priors, in the statement's typical size: three decades about what a fault does
-  int most = 3;            ///< statements of a set
-  double explained = 0.0;  ///< what claims that they stand beside explain already [nats]
-  int beam = 6;            ///< sets that are taken further; 12 name the same
-  /// Share of what it does that a law is off by: what a set explains, E nats, then leaves 2 law_error² E squares that no noise makes, and evidence counts 1 / (1 + 2 law_error² E) of
-  /// itself. Of 0, 0.05, 0.07, 0.1 and 0.14 the one whose probabilities came true on simulated machines (docs/theory/diagnosis.md).
+  std::vector<double> widths = {0.03, 0.1, 0.3, 1.0,
+                                3.0};  ///< of sizes' priors, in typical sizes: three decades around a usual fault
+  int most = 3;                        ///< largest number of statements in a set
+  double explained = 0.0;              ///< explained already by the claims of the fit [nats]
+  int beam = 6;                        ///< number of sets that are extended; 12 give the same names
+  /// Share of its effect by which a law is wrong: a set that explains E nats then leaves 2 law_error² E squares that are
+  /// not noise, and evidence is weighed by 1 / (1 + 2 law_error² E). Of 0, 0.05, 0.07, 0.1 and 0.14 this is the value
+  /// with correct probabilities on simulated machines (docs/theory/diagnosis.md).
   double law_error = 0.05;
-  /// Whether what the best explanation leaves over is asked how far laws are off: then evidence between statements counts as that tells.
+  /// Whether the rest of the best explanation is used to estimate the laws' error, which then weighs the evidence between
+  /// statements.
   bool observed = false;
-  double left = std::numeric_limits<double>::infinity();  ///< squares that a full fit leaves, where there is one
+  double left = std::numeric_limits<double>::infinity();  ///< squares that a full fit leaves, if there is one
 };
 
-/// What time a statement is given: always, or in cells.
+/// The time of a statement: given, or in cells.
 enum class When {
-  kGiven,         ///< a column's own
-  kWindow,        ///< one, in one record
+  kGiven,         ///< as in its column
+  kWindow,        ///< one window in one record
   kLasting,       ///< from a time on, in one record
-  kLastingOn,     ///< and in the records after it
-  kWindows,       ///< several of one size, in any records
+  kLastingOn,     ///< the same, and in the records after it
+  kWindows,       ///< several windows of one size, in any records
   kUnknown,       ///< a random walk, in one record
-  kUnknownInAll,  ///< in all
+  kUnknownInAll,  ///< a random walk in all records
 };
 
-/// A statement with its evidence on top of a set.
+/// A statement with its evidence in addition to a set.
 struct Scored {
   std::size_t of = 0;  ///< index of the column; the first cells follow the last column
   When when = When::kGiven;
-  std::size_t run = 0;                  ///< of what is in one
-  std::size_t records = 0;              ///< of columns: which choice of records
-  Eigen::Index first = 0, end = 0;      ///< cells of the run: the likeliest ones
-  std::optional<StatedRows> rows = {};  ///< of these cells, where a row more or less counts
-  std::vector<double> cells = {};       ///< of several windows: 1 where one is
+  std::size_t run = 0;                  ///< for those in one record
+  std::size_t records = 0;              ///< for columns: index of the choice of records
+  Eigen::Index first = 0, end = 0;      ///< cells of the run, the likeliest ones
+  std::optional<StatedRows> rows = {};  ///< exact rows of these cells, if single rows matter
+  std::vector<double> cells = {};       ///< for several windows: 1 in a window
   int n_windows = 0;
-  double width = 1.0;  ///< the likeliest
+  double width = 1.0;  ///< the likeliest width
   double log_prior = 0.0, log_evidence = 0.0;
 };
 
-/// Columns, and what the numbers known roughly have of them.
+/// Columns, and their components along the roughly known numbers.
 struct TakenColumns {
   Eigen::MatrixXd x, nuisance;
 };
 
-/// A statement that was taken into a set.
+/// A statement that belongs to a set.
 struct Item {
   Statement says;
   Chosen chosen;  ///< by units
@@ -78,39 +82,39 @@ struct Item {
 
 class StatementEvidence {
  public:
-  /// @param space     outlives it
-  /// @param residual  whitened, as the space condenses it
-  /// @param nuisance  the same of a sigma of each number that is known roughly, n_rows x n_numbers
+  /// @param space     must outlive this
+  /// @param residual  whitened, condensed as in the space
+  /// @param nuisance  the same for one standard deviation of each roughly known number, n_rows x n_numbers
   StatementEvidence(const StatementSpace& space, const StatementOptions& options, const Eigen::VectorXd& residual,
                     const Eigen::MatrixXd& nuisance);
 
-  /// Every statement on top of a set; log_prior and log_evidence are its own.
+  /// Every statement in addition to a set; log_prior and log_evidence are those of the statement alone.
   [[nodiscard]] std::vector<Scored> scored(const std::vector<Item>& set) const;
   [[nodiscard]] Item item(const Scored& scored) const;
-  /// A course of any shape in all records, alone, of a statement's quantity at its place; none: the grammar has none.
+  /// A course of any shape in all records, alone, for a statement's quantity at its place; none if the grammar has none.
   [[nodiscard]] std::optional<Scored> any_course(const Statement& says) const;
   [[nodiscard]] Statement said(const Scored& scored) const;
 
-  /// Sizes of a set's columns by their units, and their covariance.
+  /// Sizes of a set's columns in their units, and their covariance.
   struct Sizes {
     TakenColumns columns;
     Eigen::VectorXd size;
     Eigen::MatrixXd covariance;
   };
   [[nodiscard]] Sizes sizes(const std::vector<Item>& set) const;
-  /// Squares that a set leaves of the residual.
+  /// Squares of the residual that a set leaves.
   [[nodiscard]] double left(const std::vector<Item>& set) const;
   [[nodiscard]] Eigen::Index n_rows() const { return residual_.x.rows(); }
-  /// A choice by units times sizes. @param size  of its item's columns
+  /// Multiplies a choice in units by sizes. @param size  of its item's columns
   void scale(Chosen& chosen, const Scored& scored, const Eigen::VectorXd& size) const;
 
  private:
   struct Cells {
     Eigen::MatrixXd nuisance, squares;
     Eigen::VectorXd along;
-    std::vector<Eigen::Index> first;  ///< of each run, and their number
+    std::vector<Eigen::Index> first;  ///< of each run, and the total number
   };
-  struct OfRun {  ///< all columns in one run; what the nuisance takes of them is taken off once the records are chosen
+  struct OfRun {  ///< all columns in one run; the nuisance is projected out once the records are chosen
     Eigen::MatrixXd x, nuisance;
     Eigen::VectorXd squares, along;
   };
@@ -130,8 +134,9 @@ class StatementEvidence {
   void score_columns(const Sizes& on, std::vector<Scored>& list) const;
   void score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
                      std::vector<Scored>& list) const;
-  /// Evidence of a window whose edges may lie at any rows of the cells about them: the mean. Of what acts on a channel alone, which has no time constant that hides its edges.
-  /// @param scored  the likeliest cells; takes the likeliest rows
+  /// Mean evidence of a window whose edges may be at any row of the neighbouring cells. For actions on a channel
+  /// directly, in which no time constant hides the edges.
+  /// @param scored  the likeliest cells; receives the likeliest rows
   [[nodiscard]] double of_rows(std::size_t k, const Sizes& on, Scored& scored) const;
   void score_several(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
   void score_unknown(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
@@ -146,7 +151,7 @@ class StatementEvidence {
   std::vector<OfRun> of_run_;
   std::vector<Cells> cells_;
   std::vector<Records> records_;
-  std::vector<double> prior_;  ///< of columns, records aside
+  std::vector<double> prior_;  ///< of columns, without the records
   std::vector<CellsPrior> prior_cells_;
 };
 

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kRunBefore_s[] = {600.0, 2400.0, 9600.0};
 constexpr double kBetween_s[] = {0.0, 600.0, 2400.0};
-constexpr double kGuard_s = 600.0;  // in which shut-in air follows, where it does slowly
+constexpr double kGuard_s = 600.0;  // time constant of enclosed air, if it follows slowly
 constexpr double kBodyLags_s[] = {0.0, 300.0, 1200.0, 3600.0, 14400.0};
 
-/// A law, and the surface or joint that it is of.
+/// A law, with the surface or joint that it belongs to.
 std::string law_at(const Statement& s, const std::string& law) {
   return s.at.empty() ? law : law.empty() ? "at " + s.at : law + ", at " + s.at;
 }
@@ -111,7 +111,7 @@ void StatementBuilder::own_laws(const Body& body, const Statement& says, const s
   take("temperature of " + body.name, "growth of its heat with its temperature", [&](std::size_t r) -> Row {
     const Row t = machine_[r].temperature(body);
     if (t.size() == 0) return Row::Zero(own[r].size());
-    return 0.1 * (t.head(t.size() - 1).array() - t[0]);  // a tenth for each K
+    return 0.1 * (t.head(t.size() - 1).array() - t[0]);  // a tenth per K
   });
 }
 
@@ -148,8 +148,8 @@ void StatementBuilder::exchanges() {
     for (std::size_t j = i + 1; j <= bodies.size(); ++j) {
       const Body other = j < bodies.size() ? bodies[j] : effects::ambient_node();
       const bool solid = bodies[i].kind == effects::BodyKind::kRegion && other.kind == effects::BodyKind::kRegion;
-      if (solid) continue;                                                                             // joints say that
-      if (other == effects::ambient_node() && bodies[i].kind == effects::BodyKind::kRegion) continue;  // and surfaces that
+      if (solid) continue;                                                                             // covered by joints
+      if (other == effects::ambient_node() && bodies[i].kind == effects::BodyKind::kRegion) continue;  // covered by surfaces
       auto loads = std::make_shared<Loads>();
       for (const LinearOperator& m : machine_) loads->push_back(m.conductance(bodies[i], other));
       if (loads->front().size() == 0) continue;
@@ -211,7 +211,8 @@ void StatementBuilder::by_a_third(const Statement& of_both, const Body& a, const
       return;
   }
   Statement says = of_both;
-  /// @param temperature  of the third one, from those of a, b and the ambient. @param heat  from its temperature, and those of a and b, to a and b
+  /// @param temperature  of the third body, from those of a, b and the ambient. @param heat  into a and b, from its
+  /// temperature and those of a and b
   const auto say = [&](double lag_s, const auto& temperature, const auto& heat) {
     auto loads = std::make_shared<Loads>();
     for (const LinearOperator& m : machine_) {

@@ -6,10 +6,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kCells = 48;       // of a record, of windows and unknown courses
+constexpr Eigen::Index kCells = 48;       // per record, for windows and unknown courses
 constexpr Eigen::Index kMostRows = 4000;  // of all columns
 
-/// Rows of a block of the comparison's condensed ones, `together` of them summed over the root of their number.
+/// The rows of a block of the comparison's condensed ones; `together` of them are summed and divided by the root of their
+/// number.
 template <class In, class Out>
 Eigen::Index gather(const In& rows, Eigen::Index together, Out&& out) {
   Eigen::Index k = 0;
@@ -186,7 +187,7 @@ Eigen::RowVectorXd StatementSpace::course_of(const Chosen& chosen, const Acting&
   const auto& edge = cells[chosen.index].runs[run].edge;
   if (chosen.rows && chosen.rows->run == run) {
     const auto& [of, first, end] = *chosen.rows;
-    const double size = amount.maxCoeff() + amount.minCoeff();  // one number where it is, nothing elsewhere
+    const double size = amount.maxCoeff() + amount.minCoeff();  // one value within the window, zero elsewhere
     course.segment(first, end - first) = size * acting.course[run].segment(first, end - first);
     return course;
   }

@@ -9,13 +9,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kAmbient_K = 2.0;  // typical size of an ambient that is wrong
+constexpr double kAmbient_K = 2.0;  // typical error of an ambient
 constexpr double kSpeedFactors[] = {0.5, 0.8, 0.95, 1.05, 1.25, 2.0};
 constexpr double kClocks_s[] = {-3600.0, -1500.0, -720.0, -360.0, -180.0, -60.0,  -20.0,
                                 20.0,    60.0,    180.0,  360.0,  720.0,  1500.0, 3600.0};
 
-constexpr double kSet_s = 60.0;         // of a clock that is set in a record
-constexpr double kLeastLate_s = 180.0;  // of an ambient's record: it changes slowly
+constexpr double kSet_s = 60.0;         // typical shift of a clock that is set during a record
+constexpr double kLeastLate_s = 180.0;  // least delay of an ambient's record, which changes slowly
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void StatementBuilder::surroundings() {
   const scenarios::Start start = fitter_.twin().augmented().model.start;
   const bool starts_in_air = start == scenarios::Start::kAmbient || start == scenarios::Start::kSteady;
   for (std::size_t i = 0; i < courses_.size(); ++i) {
-    if (i > 0 && i + 1 < courses_.size()) continue;  // constant, growing: no ambient knows of a drive
+    if (i > 0 && i + 1 < courses_.size()) continue;  // no course of the drive: only constant and growing
     Statement s = ambient;
     s.follows = courses_[i].follows;
     s.law = courses_[i].law;
@@ -75,7 +75,7 @@ void StatementBuilder::surroundings() {
         std::find_if(other.begin(), other.end(), [](const effects::Effect& e) { return e.kind->key == "stratification"; });
     if (written == other.end()) {
       other.push_back(ambient_effect("stratification", "gradient", 1.0));
-    } else {  // about the level that it has
+    } else {  // about its present level
       written->set("gradient", (*written)["gradient"] + 1.0);
     }
     add(s, exactly(other, 1.0));

@@ -31,10 +31,10 @@ std::string what_and_where(const Statement& s) {
   return place;
 }
 
-/// What it follows; empty where that is said already.
+/// Its course; empty if the other words contain it.
 std::string course_of(const Statement& s) {
   if (s.follows == "expansion") return "";
-  if (s.quantity == StatedQuantity::kClock && s.follows == "constant") return "";  // the size says it
+  if (s.quantity == StatedQuantity::kClock && s.follows == "constant") return "";  // the size is enough
   if (s.follows == "lagged") return s.law;
   if (s.follows == "running") return "while the spindle turns";
   if (s.follows == "since start" || s.follows == "since stop") return fmt::format("after each {}", s.follows.substr(6));

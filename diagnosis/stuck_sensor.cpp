@@ -10,16 +10,16 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr std::size_t kStuckRows = 30;   // equal readings of a channel without steps
-constexpr std::size_t kJudgedRows = 20;  // equal readings that the other channels are asked about
-constexpr std::size_t kFewestRows = 20;  // outside the stretch, to learn from
-constexpr double kManySteps = 5.0;       // that it should have moved by
-constexpr double kJumpSteps = 2.5;       // by which a sensor that was stuck comes back
-constexpr double kBeyondMisses = 3.0;    // times what the neighbour misses elsewhere
-constexpr double kExtrapolation = 2.0;   // times the channel's own range elsewhere: more was not learnt
+constexpr std::size_t kStuckRows = 30;   // equal readings of a channel with fine resolution
+constexpr std::size_t kJudgedRows = 20;  // equal readings after which the other channels decide
+constexpr std::size_t kFewestRows = 20;  // least rows outside the stretch, to fit on
+constexpr double kManySteps = 5.0;       // steps that it should have moved
+constexpr double kJumpSteps = 2.5;       // steps by which a stuck sensor must jump when it recovers
+constexpr double kBeyondMisses = 3.0;    // ratio to the neighbour's errors elsewhere
+constexpr double kExtrapolation = 2.0;   // ratio to the channel's own range elsewhere; a larger movement cannot be learned
 constexpr double kLags_s[] = {900.0, 3600.0};
 
-/// Rows of equal readings, as long as they go; rows without reading do not end them.
+/// Runs of equal readings; rows without a reading do not end them.
 std::vector<StuckStretch> equal_runs(const std::vector<double>& values, std::size_t fewest) {
   std::vector<StuckStretch> runs;
   std::size_t first = 0, last = 0, n = 0;
@@ -53,7 +53,7 @@ std::vector<double> lagged(const std::vector<double>& time_s, const std::vector<
   return out;
 }
 
-/// Rows x (1, neighbour, neighbour behind each lag).
+/// Rows x (1, neighbour, neighbour after each lag).
 Eigen::MatrixXd features(const Record& record, const Channel& neighbour) {
   const auto n = static_cast<Eigen::Index>(record.n_samples());
   Eigen::MatrixXd x(n, 4);
@@ -66,7 +66,7 @@ Eigen::MatrixXd features(const Record& record, const Channel& neighbour) {
   return x;
 }
 
-/// Largest minus smallest of what a fit to some rows says about others, minus the readings there if they count.
+/// Range of the predictions of a fit to some rows for other rows, after subtracting the readings there if requested.
 std::optional<double> range_of(const Eigen::MatrixXd& x, const std::vector<double>& y,
                                const std::vector<std::size_t>& learnt, const std::vector<std::size_t>& asked,
                                bool minus_readings) {
@@ -81,7 +81,7 @@ std::optional<double> range_of(const Eigen::MatrixXd& x, const std::vector<doubl
     xx += row * row.transpose();
     xy += row * y[i];
   }
-  xx.diagonal() *= 1.0 + 1e-6;  // lags that say the same
+  xx.diagonal() *= 1.0 + 1e-6;  // for lags with equal values
   xx.diagonal().array() += 1e-12;
   const Eigen::VectorXd slope = xx.ldlt().solve(xy);
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -97,7 +97,8 @@ struct Judgement {
   double moves = 0.0, misses = std::numeric_limits<double>::infinity();
 };
 
-/// How far a neighbour says the channel moved in a stretch, and how far it is off in stretches elsewhere that it did not learn from.
+/// The movement of the channel in a stretch as predicted by a neighbour, and the prediction's error in stretches
+/// elsewhere that it was not fitted to.
 Judgement judged_by(const Record& record, const Channel& neighbour, const Channel& channel, const StuckStretch& stretch) {
   const Eigen::MatrixXd x = features(record, neighbour);
   std::vector<std::size_t> inside, outside;
@@ -109,7 +110,7 @@ Judgement judged_by(const Record& record, const Channel& neighbour, const Channe
   const auto moves = range_of(x, channel.values, outside, inside, false);
   if (!moves) return j;
   const std::size_t length = std::min(inside.size(), outside.size() / 3);
-  const bool at_the_end = outside.back() < stretch.first;  // then nothing behind it has been learnt from
+  const bool at_the_end = outside.back() < stretch.first;  // then no row after it was used for the fit
   double worst = 0.0;
   int n = 0;
   for (std::size_t from = 0; length > 0 && from + length <= outside.size(); from += std::max<std::size_t>(1, length / 2)) {
@@ -134,7 +135,7 @@ Judgement judged_by(const Record& record, const Channel& neighbour, const Channe
 }  // namespace
 
 double quantum_of(const std::vector<double>& values) {
-  constexpr double kFinest = 0.01, kRounding = 5.1e-4;  // three decimals are what records have
+  constexpr double kFinest = 0.01, kRounding = 5.1e-4;  // records have three decimals
   std::map<double, int> distinct;
   int n = 0;
   for (double v : values) {
@@ -189,7 +190,7 @@ std::vector<StuckStretch> stuck_stretches(const Record& record, const Channel& c
     }
     const auto next = std::find_if(elsewhere.begin() + static_cast<std::ptrdiff_t>(stretch.last), elsewhere.end(),
                                    [](double v) { return !std::isnan(v); });
-    const bool comes_back = next != elsewhere.end();  // then to where the machine is by now; one at rest leaves step by step
+    const bool comes_back = next != elsewhere.end();  // if so, by a jump; a sensor at rest moves step by step
     if (comes_back && std::abs(*next - channel.values[stretch.last]) < kJumpSteps * quantum) continue;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (double v : elsewhere) {

@@ -19,18 +19,17 @@ namespace {
 using effects::make_effect;
 using effects::Place;
 
-constexpr double kExpectedHeat_W = 20.0;  // a missing source is about so strong: how finely the basis must know it
+constexpr double kExpectedHeat_W = 20.0;  // typical missing source; it sets the accuracy of the basis
 constexpr double kExpectedFilm_W_m2K = 10.0;
-constexpr double kTolerance_K =
-    0.1;                        // with everything that may be wrong stepping at once, which is ten times what a run does
-constexpr double kWider = 2.0;  // coefficients and powers may be wrong by this and more
-constexpr double kNoWayOut_1_s = 1e-14;  // what keeps a node that nothing reaches from having no steady state
+constexpr double kTolerance_K = 0.1;     // with steps of everything that may be wrong at once, ten times the error of a run
+constexpr double kWider = 2.0;           // factor on coefficients and powers that the basis covers
+constexpr double kNoWayOut_1_s = 1e-14;  // lets an isolated node have a steady state
 
 bool is_outer(const std::string& surface) {
   return surface.find('@') == std::string::npos;
 }
 
-/// Effects that do nothing, but for what they tell the basis to expect: a place each.
+/// Effects without action, one per place, that only tell the basis what to expect.
 std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatBalance& own, double expected_W) {
   std::vector<effects::Effect> list;
   std::vector<effects::Body> bodies;
@@ -99,7 +98,8 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
   const double expected_W = power_W > 0.0 ? std::min(kExpectedHeat_W, 0.25 * power_W) : kExpectedHeat_W;
   for (effects::Effect& e : places(mesh, own, expected_W)) list.push_back(std::move(e));
 
-  // What the basis is asked for: the measured cyclograms, ambients as warm as recorded, everything wrong by a factor.
+  // The conditions that the basis must cover: the measured cyclograms, the recorded ambients, and everything wrong by a
+  // factor.
   scenarios::Scenario asked = scenario;
   asked.machine = a.model;
   for (const MeasuredRun& r : runs) {
@@ -137,7 +137,7 @@ Twin::Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& mac
     if (!(capacity_J_K > 0.0)) continue;
     const std::string name = effects::mean_output(part.body);
     if (std::find(outputs_.name.begin(), outputs_.name.end(), name) != outputs_.name.end())
-      continue;  // an effect asks for it
+      continue;  // only if an effect requires it
     outputs_.name.push_back(name);
     outputs_.unit.emplace_back("K");
     outputs_.state.conservativeResize(Eigen::NoChange, outputs_.state.cols() + 1);
@@ -247,7 +247,7 @@ void Twin::set_air(const effects::HeatBalance& balance, solver::ReducedSystem& s
   if (assembled.gradient_K_m == 0.0) return;
   const AugmentedModel::Air now = air_of(balance);
   const double share =
-      now.gradient_K_m / assembled.gradient_K_m;  // assembled + level: what air makes that is as warm as recorded at z = 0
+      now.gradient_K_m / assembled.gradient_K_m;  // assembled + level: heats air to the recorded temperature at z = 0
   for (std::size_t e = 0; e < machine_.system.exchanges.size(); ++e) {
     const auto& of = machine_.system.exchanges[e];
     if (of.offset.size() == 0 || of.medium.size() > 0) continue;
@@ -277,10 +277,10 @@ void Twin::set_laws(effects::HeatBalance balance, Workspace& workspace) const {
 
 namespace {
 
-constexpr int kMostSteps = 100;     // to a state of rest, where laws follow temperatures
-constexpr double kAtRest_K = 1e-7;  // a step this small ends there
+constexpr int kMostSteps = 100;     // to a steady state with laws of temperatures
+constexpr double kAtRest_K = 1e-7;  // a smaller step is converged
 
-/// A law as it stands at a state.
+/// Sets a law to its constant value at a state.
 void hold(solver::BoundLaw& law, const solver::ReducedSystem& system, const Eigen::VectorXd& z, double ambient_K) {
   if (!law.looks_at_state()) return;
   law.frozen_K.clear();
@@ -289,8 +289,9 @@ void hold(solver::BoundLaw& law, const solver::ReducedSystem& system, const Eige
   law.probes.clear();
 }
 
-/// State at standstill in an ambient. Laws that follow temperatures are held where the last step led to, until they lead there again.
-/// @param guess  where to begin, where some do. @throws SolveError  where the steps do not end
+/// The state at standstill in an ambient. Laws of temperatures are held at the result of the last step, until they no
+/// longer change.
+/// @param guess  start value, if there are such laws. @throws SolveError  if the steps do not converge
 Eigen::VectorXd at_rest(const solver::ReducedSystem& system, const effects::Inputs& standstill, Eigen::Index n_added,
                         const Eigen::VectorXd& guess) {
   Eigen::VectorXd z = guess;
@@ -304,7 +305,7 @@ Eigen::VectorXd at_rest(const solver::ReducedSystem& system, const effects::Inpu
     const Eigen::VectorXd next = k.llt().solve(held.load(standstill));
     const double moved_K = (next - z).cwiseAbs().maxCoeff();
     if (!std::isfinite(moved_K)) break;
-    z = step < kMostSteps / 4 ? next : Eigen::VectorXd(0.5 * (z + next));  // there and back again: half as far
+    z = step < kMostSteps / 4 ? next : Eigen::VectorXd(0.5 * (z + next));  // half the step, against oscillation
     if (moved_K < kAtRest_K || !system.looks_at_state()) return z;
   }
   throw SolveError("the machine has no state of rest to start from");
@@ -318,11 +319,11 @@ Eigen::VectorXd Twin::start(const TimeSeries& ambient, const Workspace& workspac
   const double ambient_at_start_K = ambient.at(0.0);
   const bool is_steady = augmented_.model.start == scenarios::Start::kSteady && system.thermostats.empty();
   if (augmented_.model.start == scenarios::Start::kAmbient) start = ambient_at_start_K * machine_.system.ones;
-  if (augmented_.model.start == scenarios::Start::kSteady)  // with thermostats as written, moved with the ambient
+  if (augmented_.model.start == scenarios::Start::kSteady)  // with thermostats as written, shifted with the ambient
     start += (ambient_at_start_K - scenarios::felt_ambient_at_start_K(augmented_.model)) * machine_.system.ones;
   if (!is_steady) return solver::with_places(start, machine_.system, workspace.added_);
   const effects::Inputs standstill{.drive = {},
-                                   .ambient_K = ambient_at_start_K};  // before the run: what happened in it acts not yet
+                                   .ambient_K = ambient_at_start_K};  // before the run: its events do not act yet
   return at_rest(system, standstill, static_cast<Eigen::Index>(workspace.added_.nodes.size()),
                  solver::with_places(start, machine_.system, workspace.added_));
 }
@@ -343,7 +344,7 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
   d.start = start(d.ambient, workspace);
   if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty())
     d.start = after(before, d.ambient.at(0.0), d.start, workspace);
-  if (run.start_K.size() > 0)  // what the first readings say is said of t = 0
+  if (run.start_K.size() > 0)  // the first readings hold for t = 0
     d.start += solver::with_places(warmer_bodies() * run.start_K, machine_.system, workspace.added_);
   return d;
 }

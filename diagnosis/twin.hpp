@@ -1,5 +1,5 @@
 #pragma once
-// A reduced machine that answers for any state of doubt: one basis for all of them.
+// A reduced machine that is valid for any possible fault: one basis for all of them.
 
 #include <memory>
 
@@ -12,14 +12,15 @@
 
 namespace driftwright::diagnosis {
 
-/// The scenario's machine with the places that a diagnosis may add something at: heat in each region, node and surface, films where there are
-/// none, a medium along each body, a way from each node to the ambient, stratified air. Its reduced model holds for laws at all of them. Bodies and
-/// paths between them that a state has beside these are added to the reduced system as they come (solver/added_places.hpp).
+/// The scenario's machine with all places at which a diagnosis may add something: heat in each region, node and surface,
+/// films where there are none, a medium along each body, a path from each node to the ambient, stratified air. Its
+/// reduced model is valid for laws at all of them. Further bodies and paths between them are added to the reduced system
+/// when a state has them (solver/added_places.hpp).
 struct AugmentedModel {
   scenarios::MachineModel model;
   scenarios::ReductionPlan plan;
   std::size_t n_own_effects = 0;  ///< the scenario's, first in the list
-  /// Air of the ambient as the reduced machine was assembled with it: level_K less than its gradient times the height over z = 0.
+  /// The air in the assembled reduced machine: level_K minus its gradient times the height over z = 0.
   struct Air {
     double gradient_K_m = 0.0, level_K = 0.0;
   } air = {};
@@ -28,12 +29,12 @@ struct AugmentedModel {
 [[nodiscard]] AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& mesh,
                                      const std::vector<MeasuredRun>& runs);
 
-/// Predicts readings. Const and shared by threads; each brings a Workspace.
+/// Predicts readings. Const and shared by threads; each thread needs a Workspace.
 class Twin {
  public:
   Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& machine, solver::TransientOptions tolerances);
 
-  /// Systems and decompositions that one thread changes and keeps.
+  /// Systems and decompositions of one thread.
   class Workspace {
    public:
     explicit Workspace(const Twin& twin);
@@ -45,39 +46,39 @@ class Twin {
       return *propagator_;
     }
     solver::ReducedSystem system_;
-    solver::ModelFactors factors_;  ///< of conductivities and capacities that system_ has
-    std::vector<double> offsets_;   ///< of its exchanges: air and media
-    solver::AddedPlaces added_;     ///< what it has beyond the machine's
+    solver::ModelFactors factors_;  ///< factors on conductivities and capacities in system_
+    std::vector<double> offsets_;   ///< of its exchanges, for air and media
+    solver::AddedPlaces added_;     ///< the places that it has beyond the machine's
     std::unique_ptr<solver::Propagator> propagator_;
   };
 
-  /// The scenario as it stands.
+  /// The scenario as written.
   [[nodiscard]] const TwinState& as_written() const { return as_written_; }
   [[nodiscard]] std::size_t n_own_effects() const { return as_written_.size(); }
   /// Reduced states of the machine at a run's grid, size x n_grid.
-  /// @throws SolveError  where a state has no solution
+  /// @throws SolveError  if a state has no solution
   [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                        const solver::KeptRun* near = nullptr) const;
-  /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the mean temperatures
-  /// of its regions and nodes.
-  /// @param near  unless null, kept_run() of a state close by: what that answers is enough
-  /// @throws SolveError  where a state has no solution
+  /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the
+  /// mean temperatures of its regions and nodes.
+  /// @param near  unless null, kept_run() of a close state, whose accuracy is then sufficient
+  /// @throws SolveError  if a state has no solution
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                         const solver::KeptRun* near = nullptr) const;
-  /// What states near this one are answered from; null where there is nothing of that sort.
-  /// @param for_slopes  what answers to first order will do
+  /// Data from which states near this one are computed; null if that is not possible.
+  /// @param for_slopes  first-order accuracy is sufficient
   [[nodiscard]] std::shared_ptr<const solver::KeptRun> kept_run(const TwinState& state, const MeasuredRun& run,
                                                                 Workspace& workspace, bool for_slopes = true) const;
-  /// What its instruments say of them at the run's rows, n_outputs x n_times.
+  /// The readings of these outputs at the run's rows, n_outputs x n_times, with the instruments' effects.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 
-  /// A state's machine in a run with its laws bound: what a little more heat would do to it.
+  /// The machine of a state in a run with its laws bound, for the effect of a little more heat.
   struct Bound {
-    const solver::ReducedSystem& system;  ///< the workspace's, until that is used again
-    Cyclogram cyclogram;                  ///< the true ones
+    const solver::ReducedSystem& system;  ///< the workspace's; valid until its next use
+    Cyclogram cyclogram;                  ///< the true one
     TimeSeries ambient;
-    Eigen::MatrixXd outputs;  ///< what outputs() have of the reduced state, size x n_outputs, by this state's expansion
-    Eigen::VectorXd start;    ///< reduced state at the run's beginning, places that this state adds behind it
+    Eigen::MatrixXd outputs;  ///< rows of outputs() on the reduced state, size x n_outputs, with this state's expansion
+    Eigen::VectorXd start;    ///< reduced state at the run's beginning, followed by places that this state adds
   };
   [[nodiscard]] Bound bound(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
 
@@ -85,25 +86,26 @@ class Twin {
   [[nodiscard]] double reference_K() const { return machine_.system.reference_K; }
   [[nodiscard]] const scenarios::ReducedMachine& machine() const { return machine_; }
   [[nodiscard]] const AugmentedModel& augmented() const { return augmented_; }
-  /// States of each part of the machine 1 K warmer than the rest, size x n_parts; in a reduced model as near as its basis comes.
+  /// States with each part of the machine 1 K warmer than the rest, size x n_parts; in a reduced model as close as its
+  /// basis allows.
   [[nodiscard]] Eigen::MatrixXd warmer_bodies() const;
-  /// What a state does to heat, radiation as films.
+  /// A state's heat balance, with radiation as films.
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
-  /// What a part of the machine is.
+  /// The kind of body that a part of the machine is.
   [[nodiscard]] effects::Body body_of(const std::string& part) const;
-  /// Names of the bodies that a surface bounds, or that a joint joins; its own name where the mesh does not tell.
+  /// Names of the bodies at a surface, or joined by a joint; its own name if the mesh does not say.
   [[nodiscard]] std::vector<std::string> bodies_at(const std::string& surface_or_joint) const;
 
  private:
-  /// Factors of a state over those as written, on conductivity and heat capacity of each part.
+  /// Factors of a state relative to the scenario, on conductivity and heat capacity of each part.
   [[nodiscard]] solver::ModelFactors material_factors(const TwinState& state) const;
-  /// And on what each part's expansion has of each of the model's own outputs; 0 x 0 for ones.
+  /// The same on each part's contribution to the model's own outputs by expansion; 0 x 0 if all are one.
   [[nodiscard]] Eigen::MatrixXd expansion_factors(const TwinState& state) const;
   void set_places(const effects::HeatBalance& balance, Workspace& workspace) const;
   void set_matrices(const TwinState& state, Workspace& workspace) const;
   void set_laws(effects::HeatBalance balance, Workspace& workspace) const;
   void set_air(const effects::HeatBalance& balance, solver::ReducedSystem& system) const;
-  /// What drives a state in a run: its system in the workspace, what it is told, where it starts.
+  /// The drive of a state in a run; its system is in the workspace.
   struct Driven {
     Cyclogram cyclogram;
     TimeSeries ambient;
@@ -111,7 +113,7 @@ class Twin {
   };
   [[nodiscard]] Driven drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
   [[nodiscard]] Eigen::VectorXd start(const TimeSeries& ambient, const Workspace& workspace) const;
-  /// The state at the end of what drove the machine before a run, in one ambient.
+  /// The state after the drive before a run, in a constant ambient.
   [[nodiscard]] Eigen::VectorXd after(const Cyclogram& before, double ambient_K, const Eigen::VectorXd& start,
                                       Workspace& workspace) const;
   [[nodiscard]] Eigen::MatrixXd all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,

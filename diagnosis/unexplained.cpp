@@ -9,24 +9,26 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kStandsOut = 7.0;  // sigmas of one channel's leftover
+constexpr double kStandsOut = 7.0;  // sigmas of one channel's rest
 constexpr double kStandsOutTogether = 6.0;
 constexpr double kJump =
-    27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
-// What integrators, thermostats that switch a step late and reduced models leave of a record of their own making.
+    27.0;  // squares that a step at some row may remove by chance: exp(-13.5) times about a thousand rows
+// Errors of integrators, of thermostats that switch one step late, and of reduced models for a record that they made
+// themselves.
 constexpr double kLeast_K = 0.012, kLeast_m = 3e-8, kLeast_rad = 3e-7;
-constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
-constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
-constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
-constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
-constexpr double kLikelyStated = 0.5;         // probability: likelier than not
+constexpr double kRough = 3.0;                // rest divided by noise: no effect can repair such a model
+constexpr double kModelErrorTime_s = 1200.0;  // correlation time of the model's errors
+constexpr double kNoiseCanBeWider = 1.5;      // ratio to the noise at high frequencies
+constexpr double kWorthNaming = 0.35;         // share of the noise; less is not useful
+constexpr double kLikelyStated = 0.5;         // probability
 
 Unexplained::Channel channel_of(const Leftover& l) {
   const char* unit = l.unit == "K" ? "K" : l.unit == "m" ? "um" : "urad";
   return {.name = l.channel, .unit = unit, .rms = (l.unit == "K" ? 1.0 : 1e6) * l.rms, .times_noise = l.sigmas()};
 }
 
-/// Noise without the benefit of smooth curves: what an AR(1) of some minutes could explain is not called unexplained.
+/// Noise estimated without smooth curves: anything that an AR(1) of some minutes could explain does not count as
+/// unexplained.
 std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& fit,
                                                const std::map<std::string, NoiseModel>& noise) {
   std::map<std::string, std::vector<NoiseSeries>> series;

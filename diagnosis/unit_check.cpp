@@ -11,13 +11,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kWithin = 5.0;         // of a thousand
+constexpr double kWithin = 5.0;         // factor around a thousand
 constexpr double kFollowsTwin = 0.6;    // correlation of readings with the twin
-constexpr double kTurned = 0.3;         // of the readings: what minus the twin leaves of them
-constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
+constexpr double kTurned = 0.3;         // share of the readings that minus the twin leaves
+constexpr double kLeastMoved_m = 1e-6;  // of the twin; below, nothing can be decided
 
 struct Pairs {
-  Eigen::ArrayXd read, model;  // of rows that have a reading
+  Eigen::ArrayXd read, model;  // of rows with a reading
 };
 Pairs pairs_of(const MeasuredChannel& channel, const Eigen::MatrixXd& prediction) {
   Pairs p;
@@ -40,7 +40,7 @@ double rms(const Eigen::ArrayXd& x) {
 std::optional<std::string> temperature_finding(const MeasuredChannel& c, const Pairs& p, double reference_C) {
   const Eigen::ArrayXd read_C = p.read + (c.recorded_unit == "degC" ? reference_C : 0.0);
   const Eigen::ArrayXd model_C = p.model + reference_C;
-  // Kelvin counted from zero under a header that wants differences to the reference.
+  // Kelvin counted from zero, under a header that means differences to the reference.
   const double as_read_K = rms(c.recorded_unit == "degC" ? read_C - model_C : p.read - p.model);
   for (const TemperatureScale& s : kForeignScales) {
     if (c.recorded_unit == "K" && s.per_K != 1.0) continue;  // rises may be large
@@ -55,7 +55,8 @@ std::optional<std::string> temperature_finding(const MeasuredChannel& c, const P
   return std::nullopt;
 }
 
-/// Whether the temperatures follow the twin: a machine that was warm at the start cools where the twin warms, and its displacements go back without
+/// Whether the temperatures follow the twin: a machine that was warm at the start cools while the twin warms, and its
+/// displacements decrease with the correct sign.
 /// being turned.
 bool temperatures_follow(const MeasuredRun& run, const Eigen::MatrixXd& prediction) {
   int n_following = 0, n_other = 0;
@@ -69,7 +70,7 @@ bool temperatures_follow(const MeasuredRun& run, const Eigen::MatrixXd& predicti
   return n_following > n_other;
 }
 
-/// @param may_be_turned  whether a course that runs against the twin's can be no other thing
+/// @param may_be_turned  whether a course opposite to the twin's can only mean a wrong sign
 std::optional<std::string> displacement_finding(const MeasuredChannel& c, const Pairs& p, bool may_be_turned) {
   const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
   const double read_m = rms(read), model_m = rms(model);

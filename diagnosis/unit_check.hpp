@@ -1,5 +1,6 @@
 #pragma once
-// Numbers that are right and a header that is not: degF or kelvin under degC, mm under um; displacements of the other sign.
+// Detects correct numbers under a wrong header: degF or kelvin under degC, mm under um; and displacements with the wrong
+// sign.
 
 #include <string>
 
@@ -7,11 +8,11 @@
 
 namespace driftwright::diagnosis {
 
-/// Takes channels out of the runs whose numbers are in another unit than their header says, each with a finding, by the twin as it is
-/// written. Temperatures: as foreign_temperature() (base/), against the twin's own course. Displacements: a thousand times as much as the twin
-/// has or a thousandth, within a factor of 5, and following it (|correlation| > 0.6); or minus the twin's course to three tenths of their own, where
-/// the temperatures follow the twin.
-/// @throws InputError  where no channel of a run is left
+/// Removes channels whose numbers have another unit than their header says, each with a finding, by the twin as written.
+/// Temperatures: as foreign_temperature() (base/), against the twin's course. Displacements: a thousand times or a
+/// thousandth of the twin's, within a factor of 5, and correlated with it (|correlation| > 0.6); or equal to minus the
+/// twin's course to within three tenths, if the temperatures follow the twin.
+/// @throws InputError  if no channel of a run is left
 void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin);
 
 }  // namespace driftwright::diagnosis

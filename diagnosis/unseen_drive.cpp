@@ -9,10 +9,10 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kHalvings = 4;
-constexpr double kOpenDrive = 0.5;        // of what the drive can do: one standard deviation
-constexpr double kKnownAmbient_K = 0.01;  // an ambient that strays no further is known
+constexpr double kOpenDrive = 0.5;        // standard deviation, as a share of the drive's whole range
+constexpr double kKnownAmbient_K = 0.01;  // a smaller deviation of the ambient is ignored
 
-/// Of all that a run shows, each quantity of the drive at its most.
+/// Each quantity of the drive at its maximum in the run.
 Drive most_of(const Cyclogram& cyclogram) {
   Drive most;
   for (const Cyclogram::Section& s : cyclogram.sections) {
@@ -23,7 +23,7 @@ Drive most_of(const Cyclogram& cyclogram) {
   return most;
 }
 
-/// A column that has another value in a part of a run.
+/// Sets a column to another value in a part of a run.
 void set_column(Cyclogram::Column& c, const Hole& part, double value) {
   TimeSeries rows;
   const auto add = [&](double time_s, double v) {
@@ -42,16 +42,16 @@ void set_column(Cyclogram::Column& c, const Hole& part, double value) {
   c.rows = std::move(rows);
 }
 
-/// Whether rows go on in a part of a hole, in which the speed alone is missing.
+/// Whether a part of a hole has rows, in which only the speed is missing.
 bool has_rows(const MeasuredRun& run, const Hole& part) {
   return std::any_of(run.time_s.begin(), run.time_s.end(),
                      [&](double t_s) { return t_s > part.begin_s && t_s < part.end_s; });
 }
 
-/// The cyclogram with what nobody saw in a part of a hole at its most, or at its least.
+/// The cyclogram with the unknown quantities of a part of a hole at their maximum, or at their minimum.
 Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_most) {
   const Cyclogram& cyclogram = run.cyclogram;
-  const bool speed_alone = has_rows(run, part);  // they say all else
+  const bool speed_alone = has_rows(run, part);  // the rows contain all else
   const Drive drive = is_most ? most_of(cyclogram) : Drive{};
   Cyclogram other = split_at(cyclogram, {part.begin_s, part.end_s});
   double at_s = 0.0;
@@ -72,10 +72,11 @@ Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_mos
   return other;
 }
 
-/// How well the ambient of a hole is known [K]: the root mean square of how far the recorded one strays, in stretches as long as the hole, from the line between
-/// their ends; where none is as long, its standard deviation. Stretches that touch a hole do not count.
+/// The uncertainty of the ambient in a hole [K]: root mean square deviation of the recorded one, in stretches as long as
+/// the hole, from the line between their ends; if no stretch is as long, its standard deviation. Stretches that touch a
+/// hole do not count.
 double unseen_ambient_K(const MeasuredRun& run, const Hole& hole) {
-  constexpr int kLooks = 16;  // within a stretch
+  constexpr int kLooks = 16;  // points within a stretch
   const TimeSeries& ambient = run.ambient;
   const double length_s = hole.end_s - hole.begin_s, last_s = run.time_s.back();
   if (!(length_s > 0.0)) return 0.0;
@@ -104,7 +105,7 @@ double unseen_ambient_K(const MeasuredRun& run, const Hole& hole) {
   return n > 0.0 ? std::sqrt(std::max(0.0, squares / n - std::pow(sum / n, 2))) : 0.0;
 }
 
-/// The ambient, by so much higher in a part of a hole.
+/// The ambient, warmer by this amount in a part of a hole.
 TimeSeries warmer_in(const TimeSeries& ambient, const Hole& part, double by_K) {
   const double edge_s = 0.01 * (part.end_s - part.begin_s);
   TimeSeries other;

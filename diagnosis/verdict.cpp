@@ -10,17 +10,17 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSureCause = 20.0;  // nats: no smaller rest hides it
+constexpr double kSureCause = 20.0;  // nats, with which no smaller rest matters
 constexpr int kSomeSearches = 2;
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
 constexpr double kOpenWidth = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
-    3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
-constexpr std::ptrdiff_t kMostPlaces = 4;  // that are named one by one
-constexpr double kRestOfCause = 0.35;      // of what the causes explain: more left, and they are not what is wrong
+    3;  // blind cases with one or two faults move at most one number; models with fewer bodies than the truth a dozen
+constexpr std::ptrdiff_t kMostPlaces = 4;  // most places that are listed by name
+constexpr double kRestOfCause = 0.35;      // share of what the causes explain: if more is left, they are not the fault
 
-/// A place, of many the first ones and how many there are.
+/// A place; for many places the first ones and their number.
 std::string place_words(const std::string& where) {
   const auto n = std::count(where.begin(), where.end(), ',') + 1;
   if (n <= kMostPlaces) return where;
@@ -32,7 +32,7 @@ std::string place_words(const std::string& where) {
 std::string words(const Cause& c) {
   std::vector<std::string> numbers;
   for (const Estimate& p : c.parameters) {
-    if (p.name == "at_speed") continue;  // the law says it
+    if (p.name == "at_speed") continue;  // the law contains it
     numbers.push_back(
         fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
   }
@@ -40,7 +40,7 @@ std::string words(const Cause& c) {
                      fmt::join(numbers, ", "));
 }
 
-/// The scenario's numbers that were fitted furthest from what it says, in sigmas; empty: none has gone far.
+/// The scenario's numbers that moved furthest, in sigmas; empty if none moved far.
 std::string moved_words(const Diagnosis& d) {
   std::vector<const Estimate*> far;
   for (const Estimate& e : d.calibrated) {
@@ -62,13 +62,13 @@ std::string in_words(const Unexplained::Channel& c) {
   return fmt::format("in the {} {}", quantity_word(c.unit), c.name);
 }
 
-/// A statement that the catalogue has no name for, in words.
+/// A statement without a name in the catalogue, in words.
 std::string statement_words(const Diagnosis& d) {
   const Stated& s = d.statements.stated[*d.unexplained->statement];
   return fmt::format("{} (probability {:.0f} %)", words(s.says), 100.0 * s.probability);
 }
 
-/// What is left beside the causes, in a sentence.
+/// The rest that the causes leave, in a sentence.
 std::string rest_words(const Diagnosis& d) {
   const Unexplained& u = *d.unexplained;
   if (u.statement) return fmt::format("Beside it something is missing that has no name: {}", statement_words(d));
@@ -76,12 +76,12 @@ std::string rest_words(const Diagnosis& d) {
                      in_words(u.channels.front()));
 }
 
-/// Numbers of the machine that have gone too far; offsets of single records' ambient are no numbers of it.
+/// The number of machine numbers that moved too far; offsets of single records' ambient do not count.
 std::ptrdiff_t n_moved(const Diagnosis& d) {
   return std::count_if(d.moved.begin(), d.moved.end(), [&](std::size_t i) { return d.scatter[i].in.empty(); });
 }
 
-/// With those that a search found as causes: another size of what the scenario has.
+/// The same including causes that are another size of an effect in the scenario.
 std::ptrdiff_t n_far(const Diagnosis& d) {
   return n_moved(d) + std::count_if(d.search.findings.begin(), d.search.findings.end(), [&](const Finding& f) {
            const Candidate& c = d.search.candidates[f.claim.candidate];
@@ -90,7 +90,8 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
          });
 }
 
-/// Whether a claim that stands beside a stronger one was found in none of several searches without a part of the rows: it is what the stronger one leaves of these rows.
+/// Whether a claim beside a stronger one was found in none of several searches without a part of the rows: then it is
+/// only an error of the stronger one in these rows.
 bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
   if (held.n_searched < kSomeSearches || held.n_again[claim] > 0) return false;
   return std::any_of(d.search.findings.begin(), d.search.findings.end(),
@@ -116,7 +117,7 @@ std::string reason_of(const Diagnosis& d) {
   const bool is_many = d.verdict == Verdict::kSuspected && is_wrong_all_over(d);
   for (std::size_t i = 0; i < d.causes.size(); ++i) {
     const Cause& c = d.causes[i];
-    if (is_many && i >= d.search.findings.size()) break;  // numbers that moved are counted
+    if (is_many && i >= d.search.findings.size()) break;  // numbers that moved are counted instead
     std::string text = words(c);
     if (c.standing == Standing::kSuspected && !is_many)
       text = fmt::format("suspected{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, text);
@@ -132,7 +133,7 @@ std::string reason_of(const Diagnosis& d) {
     parts.push_back(text);
   }
   std::string text = fmt::format("{}", fmt::join(parts, "; and "));
-  if (text.starts_with("suspected")) text[0] = 'S';  // effects are written as their keys are
+  if (text.starts_with("suspected")) text[0] = 'S';  // effects are written as their keys
   if (is_many) {
     text = fmt::format(
         "{} of the scenario's {} uncertain numbers had to go beyond {:.1f} sigmas of what is known of them: it is wrong in "
@@ -176,7 +177,7 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
-/// Whether nothing but its sign is known of how large a cause is.
+/// Whether only the sign of a cause's size is known.
 bool is_size_open(const Cause& cause) {
   if (cause.parameters.empty()) return false;
   const Estimate& size = cause.parameters.front();
@@ -208,7 +209,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
 }
 
 Verdict verdict_of(const Diagnosis& d) {
-  if (is_wrong_all_over(d)) return Verdict::kSuspected;  // whatever is left beside so many numbers, none of it is one cause
+  if (is_wrong_all_over(d)) return Verdict::kSuspected;  // with so many wrong numbers, no rest is a single cause
   if (is_more_left(d)) return Verdict::kUnexplained;
   const auto is_any = [&](Standing s) {
     return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });

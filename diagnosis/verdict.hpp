@@ -1,17 +1,18 @@
 #pragma once
-// From causes, kept-out rows and what is left to a verdict, and the verdict in words.
+// Derives a verdict from causes, kept-out rows and the rest, and expresses it in words.
 
 #include "diagnosis/gain.hpp"
 
 namespace driftwright::diagnosis {
 
-/// How surely each claim is a cause: sets their standing, doubt and whether they are written.
+/// Sets the standing and doubt of each claim, and whether it is written.
 void give_standing(Diagnosis& d, const HeldOut& held);
-/// Whether so many of the scenario's numbers had to go too far that no few causes are what is wrong: a model of another make, or numbers that are known less well than it says.
+/// Whether so many of the scenario's numbers moved too far that the fault is not a few causes: the model differs as a
+/// whole, or its numbers are less certain than the scenario says.
 [[nodiscard]] bool is_wrong_all_over(const Diagnosis& d);
-/// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
+/// Whether more is left than the causes explain, so that none of them is the fault.
 [[nodiscard]] bool is_more_left(const Diagnosis& d);
-/// Of causes whose standing is known and of what is left beside them.
+/// The verdict from causes with known standing and what they leave.
 [[nodiscard]] Verdict verdict_of(const Diagnosis& d);
 [[nodiscard]] std::string reason_of(const Diagnosis& d);
 

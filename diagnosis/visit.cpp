@@ -8,11 +8,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kBehindTheEnd = 1.01;          // of the record: it does not go
-constexpr double kLeast = 1e-4, kTrial = 0.1;   // of the capacity of the body that it comes to
-constexpr double kTimeSd = 1.5;                 // of the logarithm of how fast it follows
-constexpr double kFollows[] = {0.3, 1.0, 3.0};  // of the window that was seen: time constants tried first
-constexpr double kStays[] = {1.0, 3.0};         // of that window: how long it is there
+constexpr double kBehindTheEnd = 1.01;          // times the record's length: it does not leave
+constexpr double kLeast = 1e-4, kTrial = 0.1;   // relative to the capacity of the body that it comes to
+constexpr double kTimeSd = 1.5;                 // standard deviation of the logarithm of its time constant
+constexpr double kFollows[] = {0.3, 1.0, 3.0};  // in units of the detected window: time constants to try first
+constexpr double kStays[] = {1.0, 3.0};         // in units of that window: lengths of its stay
 constexpr double kShortestVisit_s = 1.0;
 
 TimeSeries& rows(std::span<effects::Effect> added) {

@@ -1,6 +1,6 @@
 #pragma once
-// A body as warm as the ambient that comes to another one, and may go again: a pallet, a workpiece, a cup of water. What its coming takes up looks like a window of
-// heat that fades.
+// A body at ambient temperature that comes to another one, and may leave again: a pallet, a workpiece, a cup of water.
+// Its heat uptake looks like a window of heat that fades.
 
 #include <optional>
 
@@ -8,9 +8,10 @@
 
 namespace driftwright::diagnosis {
 
-/// The visits that a happening may be: a body that comes when its first window begins and stays until the record ends, and one that goes again, each by its capacity
-/// and by how fast it follows.
-/// @returns  none where it is no heat in a body and no exchange of one with the ambient, where it repeats, or has windows in several runs
+/// The possible visits of a happening: a body that comes at the begin of its first window and stays until the record
+/// ends, and one that leaves again, each with its capacity and its time constant.
+/// @returns  none if it is neither heat in a body nor an exchange of one with the ambient, if it repeats, or if it has
+/// windows in several runs
 [[nodiscard]] std::vector<Event> visits_of(const effects::DoubtScene& scene, const Happening& happening);
 
 }  // namespace driftwright::diagnosis

@@ -9,9 +9,9 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kWarm_K = 4.0;
-constexpr double kTogether = 0.7;       // correlation of two bodies' starts
-constexpr double kFirstRow_K = 0.5;     // of a first reading: noise, and bodies that are not of one temperature
-constexpr double kKnownStart_K = 0.02;  // a start known better is known
+constexpr double kTogether = 0.7;       // correlation of the starts of two bodies
+constexpr double kFirstRow_K = 0.5;     // standard deviation of a first reading: noise, and uneven temperatures of bodies
+constexpr double kKnownStart_K = 0.02;  // a start known better than this counts as known
 
 struct First {
   std::vector<int> outputs;

@@ -5,16 +5,17 @@
 
 namespace driftwright::effects::ambient {
 
-constexpr double kShortest_min = 0.1;  // of another ambient for a while
-constexpr double kStep_s = 1e-3;       // that a jump of the ambient takes
-// 1 sigma of how late an ambient's record is, by its clock and by its thermometer, and how late at the most; how the air follows a machine.
+constexpr double kShortest_min = 0.1;  // shortest duration of a changed ambient
+constexpr double kStep_s = 1e-3;       // duration of a jump of the ambient
+// Delay of an ambient's record by its clock and by its thermometer (1 sigma), and the largest delay; lag of the air that the
+// machine warms.
 constexpr double kUsuallyLate_min = 15.0, kUsualLag_min = 10.0, kMostLate_min = 120.0, kMostLag_min = 80.0,
                  kUsuallyBehind_min = 30.0, kMostBehind_min = 240.0;
-// Nats: an ambient that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
-// have seen, unless it hangs where the machine does not stand.
+// Rarity in nats: a recorded ambient is usually wrong by a constant, which the scatter of 0.3 K covers. Its thermometer
+// would have seen a step or a slow change, unless it is at another place than the machine.
 constexpr double kSeenByItsThermometer = 2.0;
 
-/// Adds offset + ramp (t - from) from a time on, until another one.
+/// Adds offset + ramp (t - from) from one time until another.
 TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_s, double from_s, double until_s,
                       double end_s) {
   std::vector<double> knots = ambient.time_s;
@@ -81,7 +82,7 @@ Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, 
           .trial = trial};
 }
 
-/// A gate that stands open on the machine's side of the shop, the sun on it.
+/// An open gate on the machine's side of the shop, or sun on the machine.
 Doubt for_a_while(const DoubtScene::Run& run) {
   Doubt d = doubt("another one for a while", run.name, doubted("offset", "K", 2.0, 0.3), 0.5);
   d.numbers.push_back(doubted_time("begin", run.length_s,
@@ -99,13 +100,15 @@ Doubt for_a_while(const DoubtScene::Run& run) {
   return d;
 }
 
-/// Its logger has a clock of its own, its thermometer a case of its own, and it stands near the machine or far from it.
+/// Doubts about the ambient's thermometer: its logger has a separate clock, it has a lag, and it is close to or far from the
+/// machine.
 void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
   DoubtedNumber late = doubted("late", "min", kUsuallyLate_min, 0.5);
   late.low = -kMostLate_min;
   late.high = kMostLate_min;
   add_in_some_runs(s, doubt("recorded late or early", "", late, 3.0), list);
-  // far beyond the way to the next turn of the weather or the heating no slope leads: a clock of winter time, of the next zone
+  // slopes lead only to the next change of weather or heating; larger delays are tried directly: a clock in winter time or
+  // in the next zone
   for (const double hours : {-2.0, -1.0, 1.0, 2.0}) list.push_back(doubt("recorded late or early", "", late, 60.0 * hours));
   DoubtedNumber lag = doubted("lag", "min", kUsualLag_min, 0.5);
   lag.low = 0.0;
@@ -128,7 +131,7 @@ void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
-  // what grew during the only record there is need not grow in the next one
+  // a change that grew in the only record need not continue in the next one
   const std::string ramped = s.runs.size() == 1 ? s.runs.front().name : "";
   std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", ramped, ramp(), 0.2)};
   const bool is_recorded = std::all_of(s.runs.begin(), s.runs.end(), [](const auto& run) { return run.has_ambient; });

@@ -8,9 +8,9 @@
 namespace driftwright::effects {
 namespace {
 
-// Of a lag, behind the start of a section: a straight line between two of them is off by 1 % of the change at the most.
+// Knots after the start of a section, in lags: a straight line between two of them is off by at most 1 % of the change.
 constexpr double kBehindAChange[] = {0.2, 0.45, 0.75, 1.1, 1.5, 2.0, 2.7, 3.7, 5.0};
-constexpr double kSmallest = 0.01;  // way to the settled share that is followed so closely
+constexpr double kSmallest = 0.01;  // distance from the settled share up to which knots are added
 
 }  // namespace
 
@@ -33,7 +33,7 @@ TimeSeries of_slow_thermometer(const TimeSeries& recorded, double lag_s) {
   const auto bend_between = [&](double t_s, double from_s, double until_s) {
     if (t_s > from_s && t_s < until_s) knots.push_back(t_s);
   };
-  for (std::size_t i = 0; i + 1 < recorded.time_s.size(); ++i) {  // where rows are far apart the slope changes between them
+  for (std::size_t i = 0; i + 1 < recorded.time_s.size(); ++i) {  // between distant rows the slope changes
     const double from_s = recorded.time_s[i], until_s = recorded.time_s[i + 1];
     if (!(until_s - from_s > half_s)) continue;
     bend_between(from_s + half_s, from_s, until_s);

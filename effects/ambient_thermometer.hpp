@@ -1,18 +1,21 @@
 #pragma once
-// How the true ambient goes where its thermometer or that one's logger errs in time, and how air follows a machine that warms it.
+// The true ambient temperature when its thermometer or logger is late or slow, and when the machine warms the air around it.
 
 #include "base/cyclogram.hpp"
 
 namespace driftwright::effects {
 
-/// The ambient that was recorded so much later (< 0: earlier) than it was: T(t) = recorded(t + late). The first or the last value stands in beyond the ends.
+/// The true ambient when it was recorded `late_s` too late (< 0: too early): T(t) = recorded(t + late). Beyond the ends the
+/// first or last value applies.
 [[nodiscard]] TimeSeries of_late_clock(const TimeSeries& recorded, double late_s);
 
-/// The ambient that a thermometer follows with one time constant: T = recorded + lag d(recorded)/dt, the slope taken over half of the lag.
+/// The true ambient when its thermometer follows with a time constant: T = recorded + lag d(recorded)/dt, with the slope
+/// taken over half of the lag.
 /// @param lag_s  >= 0
 [[nodiscard]] TimeSeries of_slow_thermometer(const TimeSeries& recorded, double lag_s);
 
-/// An ambient that is off by size n / at_speed with a first-order lag, from nothing at the start of the cyclogram.
+/// The ambient with an added rise of size n / at_speed, which follows with a first-order lag and is zero at the start of the
+/// cyclogram.
 /// @param lag_s  > 0
 [[nodiscard]] TimeSeries warmed_with_speed(const TimeSeries& recorded, const Cyclogram& cyclogram, double size_K,
                                            double at_speed_rpm, double lag_s);

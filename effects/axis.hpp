@@ -1,10 +1,11 @@
 #pragma once
-// Effects of an axis' motion.
+// The parameter `axis` that all effects of an axis' motion share.
 
 #include "effects/effect.hpp"
 
 namespace driftwright::effects {
 
+/// The key `axis` of such an effect.
 [[nodiscard]] inline Choice axis_choice() {
   return {"axis", {"x", "y", "z"}, {}, "axis whose feed drives it"};
 }

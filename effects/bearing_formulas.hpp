@@ -14,7 +14,7 @@ namespace driftwright::effects {
 /// @param mean_diameter_mm  (bore + outer diameter) / 2 > 0
 /// @throws RangeError  outside these ranges
 /// Source: Palmgren, Grundlagen der Waelzlagertechnik, 1957; Harris, Rolling Bearing Analysis, eqs 14.4, 14.5.
-/// The two branches meet with a step of 0.8 %.
+/// The two branches differ by 0.8 % where they meet.
 [[nodiscard]] double palmgren_viscous_torque_Nmm(double f0, double nu_mm2_s, double speed_rpm, double mean_diameter_mm);
 
 /// Load-dependent friction torque after Palmgren [N mm]: M1 = f1 P1 d_m.
@@ -33,8 +33,8 @@ namespace driftwright::effects {
 /// @param nu_40_mm2_s, nu_100_mm2_s  nu_40 > nu_100 >= 0.3
 /// @param temperature_K              233.15 to 453.15 (-40 degC to 180 degC)
 /// @throws RangeError  outside these ranges
-/// Source: Ubbelohde 1935 after Walther 1931; DIN 51563. ASTM D341 writes 0.7 in place of 0.8: for ISO VG 10 to 100 that moves
-/// values between the two points by less than 0.7 % and those at 20 degC by less than 1.8 %.
+/// Source: Ubbelohde 1935 after Walther 1931; DIN 51563. ASTM D341 writes 0.7 in place of 0.8: for ISO VG 10 to 100 that
+/// moves values between the two points by less than 0.7 % and those at 20 degC by less than 1.8 %.
 [[nodiscard]] double walther_viscosity_mm2_s(double nu_40_mm2_s, double nu_100_mm2_s, double temperature_K);
 
 /// Preload of a bearing pair that the warmer inner ring tightens [N], never below zero: without preload the rings part.

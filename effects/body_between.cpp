@@ -9,13 +9,14 @@ namespace driftwright::effects {
 namespace {
 
 constexpr std::size_t kFewBodies =
-    6;                          // of up to so many any two that a third one joins; of more those that are joined themselves
-constexpr double kTrial = 0.1;  // of a typical conductance
-constexpr double kCapacitySd = 1.5;  // of the logarithm
-constexpr double kRatioSd = 1.0;     // of that of the conductance to the second body over that to the first
-constexpr double kAmbientSd = 1.5, kUsualToAmbient = 0.3;  // the same of its own way to the ambient
-constexpr double kRare = 4.0;  // nats; with little capacity it is a path from the one to the other, which is the simpler one
-constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
+    6;  // with up to this many bodies also any two that a third one joins; with more only those that are joined directly
+constexpr double kTrial = 0.1;       // of a typical conductance
+constexpr double kCapacitySd = 1.5;  // 1 sigma of the logarithm of its capacity
+constexpr double kRatioSd = 1.0;     // 1 sigma of ln(conductance to the second body / conductance to the first)
+constexpr double kAmbientSd = 1.5, kUsualToAmbient = 0.3;  // the same for its link to the ambient
+// Nats; with little capacity it equals a path between the two bodies, which is the simpler cause.
+constexpr double kRare = 4.0;
+constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, as shares of the longest record
 
 DoubtedNumber logarithmic(const char* name, const char* unit, double prior_sd, double nominal) {
   DoubtedNumber number = doubted(name, unit, prior_sd, 0.1, nominal);
@@ -23,7 +24,7 @@ DoubtedNumber logarithmic(const char* name, const char* unit, double prior_sd, d
   return number;
 }
 
-/// @param a, b  what its heat comes from and goes to
+/// @param a, b  the bodies that its heat comes from and goes to
 Doubt between(const DoubtScene& s, const DoubtScene::Material& a, const DoubtScene::Material& b) {
   const double typical_W_K = s.typical_conductance_W_K();
   const double capacity_J_K = std::min(a.capacity_J_K, b.capacity_J_K);

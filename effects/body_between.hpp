@@ -1,11 +1,12 @@
 #pragma once
-// A body that lies between two others and that the scenario lacks: oil that both share, a cover that hangs between them, a clamped part.
+// A body between two others that the scenario lacks: oil that both share, a cover between them, a clamped part.
 
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 
-/// One for each two bodies that a path joins, in small networks also those that a third body joins: a node with a link to each of them, and the same with a way of its own to the ambient.
+/// One doubt for each two bodies with a direct path between them; in small networks also for two bodies that a third one
+/// joins. Each adds a node with a link to both bodies; a second variant also links the node to the ambient.
 [[nodiscard]] std::vector<Doubt> bodies_between(const DoubtScene& scene);
 
 }  // namespace driftwright::effects

@@ -5,10 +5,11 @@
 
 namespace driftwright::effects::body_link {
 
-constexpr std::size_t kFewBodies = 12;  // up to so many, any two may be joined; beyond, those that a third one joins already
-constexpr double kTrial = 0.1;          // of a typical conductance
+// With up to this many bodies any two may be joined; with more, those that a third one already joins.
+constexpr std::size_t kFewBodies = 12;
+constexpr double kTrial = 0.1;  // of a typical conductance
 constexpr double kUsualRunOn_min = 5.0;
-constexpr double kRare = 1.0;  // nats: rather than a path that is always there
+constexpr double kRare = 1.0;  // nats: less likely than a path that always exists
 
 bool goes_with_spindle(const Effect& e) {
   return e.words.at("runs") == "while_spindle_turns";
@@ -37,13 +38,14 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("runs_on", "this key is allowed only for what goes with the spindle: `runs: while_spindle_turns`");
 }
 
-/// Air that films lie in. Regions meet it by their surfaces' films, which are doubted as such.
+/// True for air that films exchange heat with. Regions exchange heat with it by films of their surfaces, which have their
+/// own doubts.
 bool is_air_of_films(const DoubtScene& s, const Body& body) {
   return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(),
                      [&](const Exchange& e) { return e.body.kind == BodyKind::kSurface && node(e.surrounding) == body; });
 }
 
-/// A fan that goes with the spindle, and may go on for a while when that has stopped.
+/// A fan that runs with the spindle, and perhaps for a while after it has stopped.
 void doubt_fan(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
   const double typical_W_K = s.typical_conductance_W_K();
   Doubt fan{.finding = "forced_convection",
@@ -82,8 +84,8 @@ Doubt carried(const DoubtScene& s, const Body& from, const Body& to) {
   return d;
 }
 
-/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions; one between any two nodes that is there while the
-/// spindle turns; and fans.
+/// Paths between two bodies that are not joined: nodes with each other, with the ambient, and with regions; paths between
+/// any two nodes that exist while the spindle turns; and fans.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K();
   std::vector<Doubt> list;
@@ -110,7 +112,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       if (!is_node && is_air_of_films(s, to)) continue;
       if (is_small || have_common_neighbour(s, from, to)) add(from, to);
     }
-    // A region loses its heat to the ambient by films.
+    // A region loses heat to the ambient by films.
     if (is_node && !are_joined(s, from, ambient_node())) add(from, ambient_node());
     if (is_node && s.starts_and_stops) doubt_fan(s, from, list);
   }

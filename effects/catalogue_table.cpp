@@ -25,7 +25,7 @@ std::string described(const Parameter& p) {
   return fmt::format("{}{} = {:g}: {}", p.name, unit, shown, p.meaning);
 }
 
-/// All keys beside type and place; those that are compulsory in bold.
+/// All keys except type and place; compulsory ones in bold.
 std::string keys_of(const EffectKind& kind) {
   std::vector<std::string> keys;
   for (const Parameter& p : kind.parameters) keys.push_back(described(p));

@@ -9,21 +9,23 @@
 namespace driftwright::effects::changed_law {
 
 constexpr double kOfSolids =
-    2.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
-constexpr double kLess = -0.4;         // of the logarithm of an exchange, at which that is tried
-constexpr double kShortest_min = 0.5;  // while
-constexpr double kStirred = 0.75;      // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
+    2.0;                        // nats: a joint of solid bodies does not change within a record, unless someone works on it
+constexpr double kLess = -0.4;  // first trial of the logarithm of an exchange's factor
+constexpr double kShortest_min = 0.5;  // shortest duration
+constexpr double kStirred = 0.75;      // exponent of speed: a film on a turning part, between laminar 0.5 and turbulent 0.8
 constexpr double kLeastDifference_K = 0.05, kAtDifference_K = 10.0;
-constexpr double kFree = 0.25, kMostOfDifference = 1.5;           // free convection of a plate; what is hot radiates, too
-constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
+// Exponent of free convection on a plate; the largest, because hot bodies also radiate.
+constexpr double kFree = 0.25, kMostOfDifference = 1.5;
+constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // limits of the exponent of speed, all laws together
 
-/// Whether it acts at that time; before a record, where time is negative, only what has neither beginning nor end.
+/// True if it acts at that time. Before a record, where time is negative, only effects without begin and end act.
 bool acts(const Effect& e, const Inputs& u) {
   if (e.in.empty() && e.from_s == 0.0 && e.until_s == kNever_s) return true;
   return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
 }
 
-/// @param other  at the other end of an exchange; nullptr: of a heat, or of an exchange with a medium or across a joint
+/// @param other  body at the other end of an exchange; nullptr for a heat, or for an exchange with a medium or across a
+///               joint
 void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
   const double growth = e["growth"], growth_exponent = e["growth_exponent"];
@@ -33,7 +35,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const double of_difference = e["difference_exponent"], at_difference_K = e["at_difference"];
   const bool thins = decay_1_K != 0.0, follows_difference = of_difference != 0.0 && other;
   const auto over = e.references.find("over");
-  const bool is_over = thins && over != e.references.end();  // another body's temperature, not a stated one
+  const bool is_over = thins && over != e.references.end();  // another body's temperature, not a given one
   if (thins) law.probes.push_back(body);
   if (is_over) law.probes.push_back(over->second);
   if (follows_difference) {
@@ -44,7 +46,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
     Inputs own;
     const Inputs* inputs = &u;
     const std::size_t n_probes = u.probe_K.size() - (thins ? 1 : 0) - (is_over ? 1 : 0) - (follows_difference ? 2 : 0);
-    if (thins || follows_difference) {  // the last probes are this one's
+    if (thins || follows_difference) {  // the last probes belong to this effect
       own = u;
       own.probe_K.resize(n_probes);
       inputs = &own;
@@ -56,7 +58,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
       at_bend.drive.speed_rpm = beyond_rpm;
       const double there = value(at_bend);
       const double bent = there + growth_beyond * (as_written - there);
-      as_written = bent * as_written < 0.0 ? 0.0 : bent;  // it falls to nothing, and turns no heat into cold
+      as_written = bent * as_written < 0.0 ? 0.0 : bent;  // it decreases to zero, but never turns heat into cooling
     }
     if (u.drive.speed_rpm > 0.0 && u.drive.speed_rpm < below_rpm) as_written *= factor_below;
     const double n = u.drive.speed_rpm / n0_rpm;
@@ -76,7 +78,7 @@ std::string of_medium(const std::string& exchange) {
   return "medium of " + exchange;
 }
 
-/// A medium that is warmer than written brings so much more heat with the same exchange.
+/// The additional heat that a warmer medium brings with the same exchange.
 HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
   Law heat = x.coefficient;
   heat.value = [coefficient = x.coefficient.value, warmer_K = e["warmer"], e](const Inputs& u) {
@@ -103,22 +105,23 @@ Effect changed(const std::string& law) {
   return make_effect("changed_law", Place::kLaw, law);
 }
 
-/// Whether a heat follows from a recorded power or column, whatever the spindle does: it has a gain of its own, and no exponent of speed.
+/// True if a heat follows from a recorded power or column, independent of the spindle: it has its own gain, and no exponent
+/// of speed.
 bool is_of_record(const DoubtScene& s, const HeatInput& heat) {
   return std::any_of(s.own.begin(), s.own.end(), [&](const Effect& e) {
     return heat.name.starts_with(e.name()) && (e.kind->key == "recorded_drive" || e.kind->key == "cutting_heat");
   });
 }
 
-/// Whether a heat stands for a medium that is warmer than its exchange says.
+/// True if a heat represents a medium that is warmer than its exchange says.
 bool is_of_medium(const DoubtScene& s, const HeatInput& heat) {
   return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(),
                      [&](const Exchange& x) { return heat.name == of_medium(x.name); });
 }
 
-/// Another heat, growth with speed or decay of what heats a body.
+/// Another size, growth with speed or decay of the heats of a body.
 void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
-  std::vector<Effect> of_all, of_known;  // laws of the body; those that follow from the drive alone
+  std::vector<Effect> of_all, of_known;  // heats of the body; those that depend on the drive alone
   double written_W = 0.0, low_W = 0.0, high_W = 0.0;
   const auto power_W = [&](const HeatInput& h, double rpm) {
     return h.power_W(
@@ -173,7 +176,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     friction.grid = {{0.0}, {0.4}, {-0.4}};
     list.push_back(friction);
   }
-  if (written > 0.05) {  // a film that starves, a motor beyond its base speed, a seal that lifts off
+  if (written > 0.05) {  // a film that starves, a motor above its base speed, a seal that lifts off
     Doubt bends = friction;
     bends.law = "heat that grows by another share beyond a speed; 0: it levels off";
     bends.at_speed_rpm = 0.0;
@@ -189,7 +192,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     for (const double of_top : {0.25, 0.4, 0.55, 0.7, 0.85}) bends.grid.push_back({(of_top - 0.6) * s.top_rpm});
     list.push_back(std::move(bends));
   }
-  for (const double rpm : s.speed_steps_rpm) {  // a gear stage, a winding that is switched, a pump that is geared
+  for (const double rpm : s.speed_steps_rpm) {  // a gear stage, a switched winding, a geared pump
     Doubt stage = friction;
     stage.law = fmt::format("heat by another factor below {:.0f} rpm", rpm);
     stage.at_speed_rpm = 0.0;
@@ -209,8 +212,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   std::vector<Body> neighbours;
   std::copy_if(s.bodies.begin(), s.bodies.end(), std::back_inserter(neighbours),
                [&](const Body& other) { return !(other == body) && are_joined(s, body, other); });
-  for (const Body& other :
-       neighbours) {  // preload that grows, or is lost, as the inner ring becomes warmer than the housing
+  for (const Body& other : neighbours) {  // preload that grows, or is lost, when the inner ring is warmer than the housing
     Doubt preload = friction;
     preload.law = fmt::format("heat that falls as its body becomes warmer than {}; < 0: it grows", other.name);
     preload.rarity = std::log(static_cast<double>(neighbours.size()));
@@ -222,7 +224,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   }
 }
 
-/// Whether air or a medium takes part, which a door, a fan or a valve changes from one minute to the next.
+/// True if air or a medium takes part, which a door, a fan or a valve changes within minutes.
 bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
   if (exchange.surrounding == kAmbientName || exchange.medium_K || exchange.body.kind == BodyKind::kSurface) return true;
   return std::any_of(s.own.begin(), s.own.end(), [&](const Effect& e) {
@@ -230,7 +232,8 @@ bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
   });
 }
 
-/// A fan that is off, a circuit that passes less, a cover that lies on: less of an exchange for a while. More of one is an `exchange_window`.
+/// Less of an exchange for a while: a fan that is off, a circuit with less flow, a cover. More of one is an
+/// `exchange_window`.
 void add_less_for_a_while(const DoubtScene& s, const Doubt& other, std::vector<Doubt>& list) {
   for (const DoubtScene::Run& run : s.runs) {
     Doubt less = other;
@@ -255,7 +258,7 @@ void add_less_for_a_while(const DoubtScene& s, const Doubt& other, std::vector<D
   }
 }
 
-/// Another coefficient of an exchange: in all records, in one or from one on, or in one from a time on.
+/// Another coefficient of an exchange: in all records, in one or from one on, or in one record from a time on.
 void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_growth = finding == "forced_convection";
   const std::string what = is_growth                                  ? "another growth of the film"
@@ -280,7 +283,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   if (is_of_air(s, exchange)) add_less_for_a_while(s, other, list);
 }
 
-/// Whether what turns heats one of the two: a bearing, whose film carries heat the better the faster it turns.
+/// True if the heat of a turning part enters one of the two: a bearing, whose film conducts better at higher speed.
 bool has_heat_of_speed(const DoubtScene& s, const Exchange& exchange) {
   return std::any_of(s.balance.heats.begin(), s.balance.heats.end(), [&](const HeatInput& h) {
     if (!(h.body == exchange.body) && h.body.name != exchange.surrounding) return false;
@@ -292,8 +295,9 @@ bool has_heat_of_speed(const DoubtScene& s, const Exchange& exchange) {
   });
 }
 
-/// Air that a turning part stirs, the film in a bearing that it runs on: an exchange that grows with speed where it is written as constant, beside what it is at
-/// standstill, or, of air, by a power of the speed while it turns. Films of surfaces have `forced_convection`.
+/// Air stirred by a turning part, or the film in a bearing: an exchange written as constant that grows with speed. The
+/// growth is added to its value at standstill, or, for air, is a power of the speed while it turns. Films of surfaces have
+/// `forced_convection`.
 void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_of_air_there = is_of_air(s, exchange);
   if (!s.turns || exchange.body.kind == BodyKind::kSurface || exchange.per == Per::kArea ||
@@ -331,7 +335,8 @@ void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchan
   list.push_back(std::move(grows));
 }
 
-/// A fit that tightens as its inner part becomes warmer than its outer one: an exchange of two bodies that follows their difference where it is written as constant.
+/// A fit that tightens when its inner part is warmer than its outer one: an exchange of two bodies written as constant that
+/// depends on their difference.
 void doubt_fit(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   if (is_of_air(s, exchange) || exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty() ||
       exchange.coefficient(Inputs{.drive = {.speed_rpm = s.typical_rpm}}) != exchange.coefficient(Inputs{}))
@@ -351,7 +356,8 @@ void doubt_fit(const DoubtScene& s, const std::string& finding, const Exchange& 
   if (!is_listed) list.push_back(std::move(tightens));
 }
 
-/// Free convection, radiation: what a lumped body loses to the ambient grows with the difference of their temperatures where it is written as constant.
+/// Free convection or radiation: an exchange of a lumped body with the ambient, written as constant, that grows with the
+/// temperature difference.
 void doubt_free(const Exchange& exchange, std::vector<Doubt>& list) {
   if (exchange.surrounding != kAmbientName || exchange.medium_K || exchange.per == Per::kArea ||
       exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty())

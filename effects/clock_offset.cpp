@@ -39,7 +39,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                     .numbers = {doubted("offset", "min", 5.0, 0.5)},
                     .trial = 1.0},
                    list);
-  for (const DoubtScene::Run& run : s.runs) {  // a logger that was set right, or that stood still for a moment
+  for (const DoubtScene::Run& run : s.runs) {  // a logger whose clock was corrected, or that paused
     Effect jump = make_effect("clock_offset", Place::kClock, "clock");
     jump.in = run.name;
     list.push_back({.finding = "clock_offset",

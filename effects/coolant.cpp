@@ -5,11 +5,11 @@
 
 namespace driftwright::effects::coolant {
 
-constexpr double kAmple_L_min = 100.0;               // of a circuit that is doubted: its flow takes no part in what it does
-constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
-constexpr double kSetPoint_K = 2.0;                  // 1 sigma of what somebody turns a chiller by
+constexpr double kAmple_L_min = 100.0;               // flow of a doubted circuit: so large that it does not limit the heat
+constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // largest difference of its medium from the reference
+constexpr double kSetPoint_K = 2.0;                  // 1 sigma of a changed set point of a chiller
 
-/// Medium that enters at its temperature and runs along a wall of one temperature takes so much for each K between the two.
+/// Heat per kelvin between a medium at its inlet temperature and a wall of uniform temperature along which it flows.
 double passage_at(const Effect& e, double flow_L_min) {
   const double stream_W_K = flow_L_min / 60.0 * e["medium_heat_capacity"];  // L/s times J/(L K)
   return -stream_W_K * std::expm1(-e["passage_conductance"] / stream_W_K);
@@ -59,7 +59,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-/// A circuit that is written: its chiller set otherwise, or its flow another one, in some records or from a time on.
+/// A circuit in the scenario with another set point or another flow, in some records or from a time on.
 void doubt_circuit(const DoubtScene& s, const Effect& circuit, std::vector<Doubt>& list) {
   const double written_C = circuit["set_point"] - kZeroCelsius_K;
   DoubtedNumber set_point = doubted("set_point", "degC", kSetPoint_K, 0.1 * kSetPoint_K, written_C);
@@ -84,8 +84,8 @@ void doubt_circuit(const DoubtScene& s, const Effect& circuit, std::vector<Doubt
   add_changes(s, other, list);
 }
 
-/// Circuits that the scenario lacks: one that takes away a constant heat, and one whose medium is held at a temperature, always or while the spindle turns; and
-/// changes of those it has.
+/// Circuits that the scenario lacks: one that removes a constant heat, and one with a medium at a fixed temperature, always
+/// or while the spindle turns; and changes of those in the scenario.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
   std::vector<Doubt> list;

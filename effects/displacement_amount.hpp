@@ -1,5 +1,5 @@
 #pragma once
-// Amounts that effects add to a displacement channel, in um, or to a tilt, in urad.
+// Amounts that effects add to a displacement [um] or to a tilt [urad].
 
 #include "effects/doubt.hpp"
 
@@ -12,15 +12,15 @@ namespace driftwright::effects {
                                    {"tilt", "urad", -1e5, 1e5, kNotGiven, "or: " + meaning + " of a tilt"}});
   return further;
 }
-/// In m or rad.
+/// The amount of an effect [m or rad].
 [[nodiscard]] inline double amount_of(const Effect& effect, const std::string& name) {
   return 1e-6 * (effect.has("tilt") ? effect["tilt"] : effect[name]);
 }
-/// The parameter that a displacement or a tilt wants.
+/// The name of the parameter to use for a displacement or a tilt.
 [[nodiscard]] inline std::string amount_key(const DoubtScene::Displacement& of, const std::string& name) {
   return of.is_tilt ? "tilt" : name;
 }
-/// A doubted amount in um or urad, 15 of them 1 sigma, reported by its name.
+/// The amount as a number for a diagnosis, in um or urad, with a prior of 15 (1 sigma), reported under `name`.
 [[nodiscard]] inline DoubtedNumber doubted_amount(const DoubtScene::Displacement& of, const std::string& name) {
   DoubtedNumber n = doubted(name, of.unit(), 15.0, 1.0);
   n.set = [key = amount_key(of, name)](std::span<Effect> added, double value) {
@@ -28,6 +28,7 @@ namespace driftwright::effects {
   };
   return n;
 }
+/// @throws InputError  unless exactly one of `name` and `tilt` is given
 inline void check_amount(const Effect& effect, const ConfigMap& in, const std::string& name) {
   if (effect.has(name) == effect.has("tilt")) {
     in.fail(name, "exactly one of the two is required: `" + name + "` of a displacement (um) or `tilt` of a tilt (urad)");

@@ -10,10 +10,11 @@
 namespace driftwright::effects::displacement_path {
 
 constexpr double kSensitivitySd_um_K = 5.0;  // 1 sigma; 1 m of steel on one side: 11.5 um/K
-constexpr double kShareSd = 0.1;             // of what an indicator that stands askew reads of another axis
-constexpr double kBentSd_um = 15.0;          // the same of what a recorded force or pressure bends
+constexpr double kShareSd = 0.1;             // share of another axis that a misaligned indicator reads
+constexpr double kBentSd_um = 15.0;          // 1 sigma of the bending by a recorded force or pressure
 
-/// What a column says at each time, in its unit, from each row on; of a channel of the drive what the sections say. Nothing where there is no such column.
+/// The value of a column at each time, in its unit, from each row on; for a channel of the drive that of the sections. Zero
+/// without such a column.
 Eigen::RowVectorXd column_at(const std::string& name, const Readings& r) {
   Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(r.n_times());
   if (const Cyclogram::Column* column = r.cyclogram.column(name)) {
@@ -31,7 +32,8 @@ Eigen::RowVectorXd column_at(const std::string& name, const Readings& r) {
   return row;
 }
 
-/// Temperature over the reference at each time [K]: of the body that is named, of the ambient, or of a recorded column; or what a column says.
+/// The followed quantity at each time: temperature above the reference [K] of the named body, the ambient, or a recorded
+/// column; or a column's value.
 Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
   const auto over_time = [&](const auto& value) {
     Eigen::RowVectorXd row(r.n_times());
@@ -93,8 +95,8 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("column", "this must be a column of temperatures, but it is one of the drive; write its effect as `gain`");
 }
 
-/// At once, where the displacement does not follow it yet, and with a lag.
-/// @param path  what its size is set in by `size`
+/// Adds a path without lag, if the displacement does not follow it yet, and one with a lag.
+/// @param path  its parameter `size` contains the size
 void add_paths(const DoubtScene::Displacement& d, const Effect& path, const DoubtedNumber& size, const std::string& follows,
                bool at_once, std::vector<Doubt>& list) {
   Doubt doubt{.finding = "displacement_path",
@@ -114,14 +116,14 @@ void add_paths(const DoubtScene::Displacement& d, const Effect& path, const Doub
   list.push_back(std::move(doubt));
 }
 
-/// Displacements of sensitivities, which others may read a share of.
+/// Displacements defined by sensitivities; others may read a share of them.
 std::set<std::string> of_sensitivities(const DoubtScene& s) {
   std::set<std::string> names;
   for (const DoubtScene::Material& m : s.materials) names.insert(m.sensitivities.begin(), m.sensitivities.end());
   return names;
 }
 
-/// An indicator that stands askew.
+/// A misaligned indicator.
 void add_shares(const DoubtScene& s, const DoubtScene::Displacement& d, std::vector<Doubt>& list) {
   if (d.is_tilt) return;
   const std::set<std::string> others = of_sensitivities(s);
@@ -154,7 +156,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       add_paths(d, of_body, per_K, body.name, at_once, list);
     };
     for (const DoubtScene::Material& m : s.materials) {
-      if (!m.stores || m.expands) continue;  // what bends the mesh is there already, at every place of it
+      if (!m.stores || m.expands) continue;  // a body that deforms the mesh already acts everywhere
       const auto& known = m.sensitivities;
       add(m.body, std::find(known.begin(), known.end(), d.name) == known.end());
     }
@@ -166,7 +168,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       if (column.is_temperature()) {
         of_column.set("zero", s.reference_K);
         add_paths(d, of_column, per_K, column.header, true, list);
-      } else {  // a force that bends, a clamp, a pressure
+      } else {  // a bending force, a clamp, a pressure
         const double sd = kBentSd_um / column.span;
         add_paths(d, of_column, doubted("gain", fmt::format("{} per {}", d.unit(), column.unit), sd, 0.05 * sd),
                   column.header, true, list);

@@ -1,5 +1,5 @@
 #pragma once
-// What the record of a drive and of the ambient gets wrong: the machine feels the true ones. Each effect brings its own changes.
+// Errors of the recorded drive and ambient: the machine feels the true values. Each effect adds its own changes.
 
 #include <functional>
 #include <vector>
@@ -8,25 +8,28 @@
 
 namespace driftwright::effects {
 
-/// Changes in their order.
+/// Changes in the order in which they are applied.
 struct DriveChange {
   std::vector<std::function<Cyclogram(const Cyclogram&)>> drive;
-  /// Of the ambient temperature [K] during a cyclogram.
+  /// Changes of the ambient temperature [K] during a cyclogram.
   std::vector<std::function<TimeSeries(const TimeSeries&, const Cyclogram& felt)>> ambient;
-  /// Times for which something goes on behind a stop [s]: they are among the changes of the drive (effects/run_on.hpp).
+  /// Times [s] for which something continues after a stop of the spindle; the changes of the drive contain them
+  /// (effects/run_on.hpp).
   std::vector<double> run_on_s;
-  /// What the machine did before a cyclogram that it felt, one after the other.
+  /// What the machine did before a cyclogram, one entry after the other.
   std::vector<std::function<Cyclogram(const Cyclogram& felt)>> before;
 };
 
-/// The drive that the machine felt while another one was recorded.
+/// The drive that the machine felt, computed from the recorded one.
 [[nodiscard]] Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded);
 
-/// The ambient that the machine felt. @param ambient  recorded, minus the reference temperature [K]; @param felt  the true cyclogram
+/// The ambient that the machine felt. @param ambient recorded, minus the reference temperature [K]; @param felt the true
+/// cyclogram
 [[nodiscard]] TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& felt);
 
-/// What drove the machine between its start and t = 0 of a cyclogram, in an ambient as at t = 0. It has no name and its clock
-/// ends at zero, so that what happens in one cyclogram alone or at a time of it does not act in it; no sections: nothing did, as of most.
+/// What drove the machine between its start and t = 0 of a cyclogram, with the ambient of t = 0. It has no name, and its
+/// clock ends at zero, so that effects limited to one cyclogram or a time do not act in it. Without sections (usual):
+/// nothing.
 /// @param felt  the true cyclogram
 [[nodiscard]] Cyclogram driven_before(const DriveChange& change, const Cyclogram& felt);
 

@@ -23,7 +23,7 @@ const char* body_key(BodyKind kind) {
   return "";
 }
 
-/// There is one of them in a shop or a machine.
+/// True for places of which a shop or a machine has only one.
 bool has_no_name(Place place) {
   return place == Place::kAmbient || place == Place::kClock || place == Place::kSpindle;
 }
@@ -35,7 +35,7 @@ std::size_t index_of(const EffectKind& kind, const std::string& parameter) {
   throw std::logic_error("effect " + kind.key + " has no parameter " + parameter);
 }
 
-/// The laws of one effect act when it does.
+/// Limits the laws of one effect to the time in which it acts.
 void keep_time(const Effect& effect, HeatBalance& balance) {
   const bool begins = effect.from_s > 0.0, ends = effect.until_s < kNever_s;
   if (begins) balance.change_times_s.push_back(effect.from_s);
@@ -257,7 +257,7 @@ HeatBalance heat_balance(const std::vector<Effect>& effects) {
 
 DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run) {
   DriveChange change;
-  for (const bool of_machine : {false, true}) {  // what follows the drive looks at the true one
+  for (const bool of_machine : {false, true}) {  // laws that follow the drive use the true one
     for (const Effect& effect : effects) {
       if (!effect.kind->change_drive || !effect.acts_in(run) || (effect.kind->contribute != nullptr) != of_machine) continue;
       effect.kind->change_drive(effect, change);

@@ -36,7 +36,7 @@ const char* meaning_of(Place place) {
   return "";
 }
 
-/// Nothing for the ambient, the clock and the spindle: each is there once and has no key.
+/// Nothing for the ambient, the clock and the spindle: there is only one of each, without a key.
 void add_place(const EffectKind& kind, schema::Map& map) {
   std::vector<std::string> keys;
   for (Place place : kind.places) {

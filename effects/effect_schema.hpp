@@ -1,11 +1,11 @@
 #pragma once
-// What an entry of a scenario's list `effects` may hold, as the catalogue has it.
+// The keys of an entry of a scenario's list `effects`, generated from the catalogue.
 
 #include "base/schema.hpp"
 
 namespace driftwright::effects {
 
-/// One map for each kind, chosen by `type`. read_effect() reads by it.
+/// One map for each kind, chosen by `type`. read_effect() uses them.
 [[nodiscard]] const std::vector<schema::Map>& effect_schemas();
 
 }  // namespace driftwright::effects

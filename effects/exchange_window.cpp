@@ -2,7 +2,7 @@
 
 namespace driftwright::effects::exchange_window {
 
-/// A region or node takes a conductance of its own, a surface or joint one per area.
+/// A region or node has a conductance in total, a surface or joint one per area.
 bool is_total(const Effect& e) {
   return e.place_kind == Place::kNode || e.place_kind == Place::kRegion;
 }
@@ -27,7 +27,8 @@ void check(const Effect& e, const ConfigMap& in) {
   check_windows(e, in);
 }
 
-/// A surface that more air reaches for a while. Where and when a region or node may have one, its readings say (diagnosis/naming.hpp).
+/// A surface that more air reaches for a while. For a region or node, diagnosis/naming.hpp finds place and time from the
+/// readings.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Run& run : s.runs) {

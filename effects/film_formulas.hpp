@@ -29,8 +29,8 @@ struct Air {
 ///
 ///     Nu = max(0.96, 0.54 Ra^(1/4), 0.15 Ra^(1/3))
 ///
-/// The branches pass into each other where they cross (Ra = 4.7e6) and not at 1e7, where they differ by 6 %: a law that jumps
-/// has no steady state there. Below Ra = 10 the measured limit of Nu stands in for conduction into still air.
+/// The formula changes branch where the two curves cross (Ra = 4.7e6), not at 1e7 as published, where they differ by 6 %: a
+/// law that jumps has no steady state there. Below Ra = 10 the measured limit of Nu replaces conduction into still air.
 /// @param rayleigh  on area / perimeter; 0 <= Ra <= 1e11
 /// @throws RangeError  outside
 /// Source: McAdams, Heat Transmission, 1954, with the length of Goldstein, Sparrow & Jones, Int. J. Heat Mass Transfer 16
@@ -58,7 +58,7 @@ enum class Orientation { kVertical, kUp, kDown, kHorizontalCylinder };
 ///
 ///     Ra = g |T - T_air| L^3 / (T_film nu alpha),  g = 9.80665 m/s^2
 ///
-/// @param looks     where the surface looks to; a plate that looks up and is colder than the air is stable
+/// @param looks     direction that the surface faces; a plate that faces up and is colder than the air is stable
 /// @param length_m  height of a vertical plate, area / perimeter of a horizontal one, diameter of a cylinder; > 0
 /// @throws RangeError  when a temperature of the film lies outside 200 K to 500 K, or Ra outside the formula's range
 [[nodiscard]] double natural_convection_htc_W_m2K(Orientation looks, double length_m, double surface_K, double air_K);
@@ -68,7 +68,7 @@ enum class Orientation { kVertical, kUp, kDown, kHorizontalCylinder };
 ///     Nu = 0.133 Re^(2/3) Pr^(1/3),  Re = u d / nu,  u = pi d n
 ///
 /// Air at 20 degC: nu = 15.9e-6 m^2/s, k = 0.026 W/(m K), Pr = 0.71. Valid for Re < 4.3e5; zero at standstill, where
-/// free convection rules. @throws RangeError  for a diameter <= 0, a negative speed or Re >= 4.3e5
+/// free convection dominates. @throws RangeError  for a diameter <= 0, a negative speed or Re >= 4.3e5
 /// Source: Becker, Int. J. Heat Mass Transfer 6 (1963) 1053-1062.
 [[nodiscard]] double rotating_cylinder_htc_W_m2K(double diameter_m, double speed_rpm);
 
@@ -77,11 +77,11 @@ enum class Orientation { kVertical, kUp, kDown, kHorizontalCylinder };
 /// @throws RangeError  outside these ranges
 [[nodiscard]] double taylor_number(double diameter_m, double gap_m, double speed_rpm, double viscosity_m2_s);
 
-/// Nusselt number of the heat from wall to wall of such a gap on twice the gap: 2 is conduction alone.
+/// Nusselt number of the heat from wall to wall of such a gap, based on twice the gap; 2 means conduction alone.
 ///
 ///     Nu = 2 for Ta < 1700;  0.128 Ta^0.367 to 1e4;  0.409 Ta^0.241 to 1e7
 ///
-/// Taken as max(2, min(0.128 Ta^0.367, 0.409 Ta^0.241)), which differs from it by 2 % at most and does not jump.
+/// Computed as max(2, min(0.128 Ta^0.367, 0.409 Ta^0.241)), which differs from the source by at most 2 % and has no jump.
 /// @param taylor  0 <= Ta <= 1e7.  @throws RangeError  outside
 /// Source: Becker & Kaye, J. Heat Transfer 84 (1962) 97-105, without axial flow; narrow gaps (their geometry factor is 1).
 [[nodiscard]] double nusselt_gap(double taylor);

@@ -19,7 +19,7 @@ bool grows(const Exchange& film, double rpm) {
          film.coefficient(Inputs{.drive = {.speed_rpm = rpm}}) > film.coefficient(Inputs{});
 }
 
-/// Surfaces on which no film grows with speed.
+/// Surfaces without a film that grows with speed.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& name : s.surfaces) {
@@ -40,7 +40,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                     .trial = 4.0,
                     .at_speed_rpm = s.typical_rpm});
     list.back().numbers[0].low = 0.0;
-    if (!has_film) continue;  // two unknown films at once: its exponent is the law's
+    if (!has_film) continue;  // else two films are unknown at once; the exponent is then that of the law
     list.back().numbers.push_back(doubted("exponent", "1", 0.2, 0.05, 0.75));
     list.back().numbers[1].low = 0.3;
     list.back().numbers[1].high = 1.5;

@@ -9,14 +9,14 @@
 
 namespace driftwright::effects::guard {
 
-constexpr std::size_t kEveryChoice = 6;  // of up to so many bodies any two and more may stand behind one
-constexpr std::size_t kMostBodies = 12;  // of up to so many any two
-// Of the resistance of its bodies' own exchange with the ambient at the typical speed: what that of the guard is thought to be.
+constexpr std::size_t kEveryChoice = 6;  // with up to this many bodies, any two or more may be inside one guard
+constexpr std::size_t kMostBodies = 12;  // with up to this many bodies, any two
+// Resistance of the guard, relative to that of its bodies' own exchange with the ambient at the typical speed.
 constexpr double kSd = 1.0, kTrial = 0.1, kLeast = 1e-4, kMost = 50.0;
-constexpr double kCapacitySd = 1.5;            // of the logarithm
-constexpr double kUsual_min = 10.0;            // in which the air and the sheets follow
-constexpr double kTried[] = {-1.5, 0.0, 1.0};  // of the logarithm of that time
-constexpr double kRare = 1.0;                  // nats, beside which bodies it stands around: rather than a path of one body
+constexpr double kCapacitySd = 1.5;            // 1 sigma of the logarithm of its capacity
+constexpr double kUsual_min = 10.0;            // usual time constant of the air and the sheets
+constexpr double kTried[] = {-1.5, 0.0, 1.0};  // tried first, of the logarithm of that time
+constexpr double kRare = 1.0;                  // nats, for the choice of bodies: less likely than a path of one body
 
 bool is_meant(const Exchange& x, const Body& body) {
   return x.body == body && x.surrounding == kAmbientName && !x.medium_K;
@@ -27,7 +27,7 @@ void change_paths(const Effect& e, HeatBalance& balance) {
   for (Exchange& x : balance.exchanges) {
     if (!is_meant(x, e.body())) continue;
     x.surrounding = air;
-    for (Body& probe : x.coefficient.probes) {  // free convection looks at the air that it flows to
+    for (Body& probe : x.coefficient.probes) {  // free convection uses the air that it flows to
       if (probe == ambient_node()) probe = node(air);
     }
   }
@@ -42,7 +42,7 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard must be another node than the body in it");
 }
 
-/// What a body exchanges with the ambient at the typical speed [W/K].
+/// Conductance between a body and the ambient at the typical speed [W/K].
 double to_ambient_W_K(const DoubtScene& s, const Body& body) {
   double sum_W_K = 0.0;
   for (const Exchange& x : s.balance.exchanges) {
@@ -54,7 +54,7 @@ double to_ambient_W_K(const DoubtScene& s, const Body& body) {
   return sum_W_K;
 }
 
-/// @param air  its name
+/// @param air  name of its air
 Doubt around(const std::vector<Body>& bodies, const std::string& air, double sum_W_K) {
   const double usual_K_W = 1.0 / sum_W_K;
   Doubt d{.finding = "hidden_body",
@@ -76,7 +76,7 @@ Doubt around(const std::vector<Body>& bodies, const std::string& air, double sum
   d.numbers[0].low = 0.0;
   d.numbers[0].high = kMost * usual_K_W;
   d.numbers[0].set = [least_K_W = kLeast * usual_K_W](std::span<Effect> added, double resistance_K_W) {
-    added[1].set("conductance", 1.0 / std::max(resistance_K_W, least_K_W));  // a way to the ambient there is
+    added[1].set("conductance", 1.0 / std::max(resistance_K_W, least_K_W));  // there is always some way to the ambient
   };
   d.numbers[1].is_log = true;
   d.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("capacity", value); };
@@ -86,7 +86,8 @@ Doubt around(const std::vector<Body>& bodies, const std::string& air, double sum
   return d;
 }
 
-/// Which of n bodies stand behind one guard: of a few every choice of two and more; of more all, all but one, and, of not too many, any two.
+/// The choices of bodies inside one guard, out of n: for few bodies every choice of two or more; else all, all but one, and,
+/// for not too many, any two.
 std::vector<std::vector<std::size_t>> choices_of(std::size_t n) {
   std::vector<std::vector<std::size_t>> list;
   const auto add = [&](const auto& is_in) {
@@ -110,8 +111,8 @@ std::vector<std::vector<std::size_t>> choices_of(std::size_t n) {
   return list;
 }
 
-/// A guard that the scenario lacks, around bodies that lose heat to the ambient. Its size is the resistance of the way from its air to the ambient: none, and there
-/// is no guard.
+/// A guard that the scenario lacks, around bodies that lose heat to the ambient. Its size is the resistance from its air to
+/// the ambient; zero means no guard.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Body> bodies;
   std::vector<double> each_W_K;

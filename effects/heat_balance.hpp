@@ -1,6 +1,6 @@
 #pragma once
-// What effects say about heat, in words of the machine (regions, surfaces, joints, lumped nodes), before any mesh or matrix.
-// The solver turns each entry into a matrix or a load.
+// The heat balance of a machine in its own terms (regions, surfaces, joints, lumped nodes), before any mesh or matrix.
+// Effects write it; the solver turns each entry into a matrix or a load.
 
 #include <functional>
 #include <optional>
@@ -16,7 +16,8 @@ namespace driftwright::effects {
 
 enum class BodyKind { kRegion, kSurface, kNode, kJoint };
 
-/// What heat enters, leaves, crosses, or is looked at: a region, a surface, a lumped node or a joint. A joint has no temperature of its own.
+/// A part of the machine that heat enters, leaves or crosses, or whose temperature is used. A joint has no temperature of
+/// its own.
 struct Body {
   BodyKind kind = BodyKind::kRegion;
   std::string name;
@@ -40,20 +41,20 @@ inline constexpr const char* kAmbientName = "ambient";
   return node(kAmbientName);
 }
 
-/// What a law may look at.
+/// The quantities that a law may depend on.
 struct Inputs {
   Drive drive;
   double ambient_K = 0.0;            ///< ambient temperature minus the reference temperature
-  double time_s = 0.0;               ///< within the stretch of time at hand; see HeatBalance::change_times_s
-  std::vector<double> probe_K = {};  ///< temperatures [K] of the law's probes, absolute, in their order
-  std::string_view run = {};         ///< name of the cyclogram that is run; "" where it has none
+  double time_s = 0.0;               ///< within the current stretch of time; see HeatBalance::change_times_s
+  std::vector<double> probe_K = {};  ///< absolute temperatures [K] of the law's probes, in their order
+  std::string_view run = {};         ///< name of the simulated cyclogram; "" if it has none
 };
 
 /// A coefficient or a power that follows the drive and, if it has probes, mean temperatures of the machine.
 struct Law {
   std::function<double(const Inputs&)> value;
-  std::vector<Body> probes;  ///< whose mean temperature the law looks at
-  std::string thermostat;    ///< zero while this thermostat is off; "" for none
+  std::vector<Body> probes;  ///< the bodies whose mean temperatures the law uses
+  std::string thermostat;    ///< the law is zero while this thermostat is off; "" for none
 
   Law() = default;
   template <class F>
@@ -70,22 +71,22 @@ struct HeatInput {
   Law power_W;
 };
 
-/// What a coefficient of exchange counts for.
+/// What the coefficient of an exchange refers to.
 enum class Per {
   kArea,   ///< [W/(m^2 K)], at every point of a surface or joint
   kTotal,  ///< [W/K], spread evenly over a body
 };
 
-/// Heat that crosses between a body and one other temperature, or between the sides of a joint: a film, a link, a contact, or radiation taken as
-/// a film. Out of the body flows q = coefficient (T - T_other), T local; across a joint from side a to side b, T_other that of side b.
+/// Heat that flows between a body and one other temperature, or between the sides of a joint: a film, a link, a contact, or
+/// radiation approximated by a film. The flow out of the body is q = coefficient (T - T_other), T local; at a joint it flows
+/// from side a to side b, whose temperature is T_other.
 struct Exchange {
   std::string name;
   Body body;  ///< a surface, region or node; or the joint
   Law coefficient;
   Per per = Per::kArea;
-  std::string surrounding =
-      kAmbientName;                     ///< the other temperature: the ambient or a lumped node; of no meaning for a joint
-  std::optional<double> medium_K = {};  ///< instead of a surrounding: a medium of this absolute temperature
+  std::string surrounding = kAmbientName;  ///< the other temperature: the ambient or a lumped node; unused for a joint
+  std::optional<double> medium_K = {};     ///< replaces the surrounding: a medium of this absolute temperature
 
   [[nodiscard]] bool is_same_place(const Exchange& other) const {
     const bool same_end = body.kind == BodyKind::kJoint ||
@@ -113,7 +114,7 @@ struct Exchange {
   return {.name = std::move(name), .body = joint(std::move(across)), .coefficient = std::move(conductance_W_m2K)};
 }
 
-/// Grey radiation to a surrounding that encloses the body: q = emissivity σ (T^4 - T_surrounding^4) per area, T local.
+/// Grey radiation to surroundings that enclose the body: q = emissivity σ (T^4 - T_surrounding^4) per area, T local.
 struct Radiation {
   std::string name;
   std::string surface;
@@ -127,18 +128,19 @@ struct LumpedNode {
   double capacity_J_K = 0.0;
 };
 
-/// A surface or a node whose temperature is prescribed. Where two surfaces meet, the first of the list rules.
+/// A surface or a node with a prescribed temperature. Where two surfaces share nodes, the first in the list applies.
 struct FixedTemperature {
   std::string name;
   Body body;
   TimeSeries temperature_K;      ///< absolute; a single knot for a constant
-  bool follows_ambient = false;  ///< then temperature_K is not looked at
+  bool follows_ambient = false;  ///< then temperature_K is ignored
 };
 
-/// Ambient air that is warmer above than below: T(z) = T_ambient + gradient (z - level), for every film and radiation to the ambient.
+/// Ambient air whose temperature changes with height: T(z) = T_ambient + gradient (z - level), for every film and radiation
+/// to the ambient.
 struct Stratification {
   double gradient_K_m = 0.0;
-  double level_m = 0.0;  ///< height of the ambient thermometer; Z is up
+  double level_m = 0.0;  ///< height of the ambient thermometer; Z points up
 };
 
 /// A switch with hysteresis: on when the probe rises above on_above_K, off when it falls below off_below_K.
@@ -146,21 +148,23 @@ struct Thermostat {
   std::string name;
   Body probe;
   double on_above_K = 0.0;   ///< absolute
-  double off_below_K = 0.0;  ///< < on_above_K; it starts off unless the probe starts above on_above_K
+  double off_below_K = 0.0;  ///< < on_above_K; initially off unless the probe starts above on_above_K
 };
 
+/// All heats, exchanges and conditions of a machine.
 struct HeatBalance {
   std::vector<HeatInput> heats;
-  std::vector<Exchange> exchanges;  ///< per area first, then totals, then joints
+  std::vector<Exchange> exchanges;  ///< sorted: first per area, then totals, then joints
   std::vector<Radiation> radiations;
   std::vector<LumpedNode> nodes;
   std::vector<FixedTemperature> fixed;
   std::vector<Stratification> stratifications;
   std::vector<Thermostat> thermostats;
-  /// Times [s] at which laws may jump by themselves (a draught begins). Between two of them a law does not change with time.
+  /// Times [s] at which laws may jump without a change of the drive (a draught begins). Between two of them a law does not
+  /// depend on time.
   std::vector<double> change_times_s;
 
-  /// Joins another balance; change times need not be sorted.
+  /// Appends another balance; change times need not be sorted.
   void append(HeatBalance other);
   /// Calls work(name, law) for each heat and each exchange.
   template <class Work>
@@ -175,8 +179,8 @@ struct HeatBalance {
   }
 };
 
-/// Each radiation as a film whose coefficient follows the mean temperatures of both sides, emissivity σ (T² + T_s²) (T + T_s): what a reduced
-/// model holds.
+/// Replaces each radiation by a film whose coefficient follows the mean temperatures of both sides, emissivity σ (T² + T_s²)
+/// (T + T_s), because a reduced model can contain only films.
 [[nodiscard]] HeatBalance with_radiation_as_films(HeatBalance balance);
 
 }  // namespace driftwright::effects

@@ -10,19 +10,20 @@ namespace driftwright::effects::heat_source {
 
 constexpr double kMostPeriods = 10000.0;
 constexpr double kUsualRunOn_min = 10.0;
-constexpr double kUsualOfStop_min = 5.0;  // a changer, clamping, a resistor that has taken what braking gave back
-constexpr double kFewestWaves = 4.0;      // two or three are what any bend of a model that is wrong looks like
-constexpr double kMostWaves = 14.0;       // in the longest record; shorter ones a machine hardly shows
-constexpr int kStepsOfFading = 48;        // of an eighth of its time each: then e^-6 is left, which is left out
-constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;  // of its time; of the longest record
-constexpr double kLongestFading =
-    1.0 / 3.0;  // of that: what fades more slowly is not seen to end, and takes what every slow bend of a model leaves
+constexpr double kUsualOfStop_min = 5.0;  // a tool changer, clamping, a braking resistor
+constexpr double kFewestWaves = 4.0;      // in a record; two or three look like any bend of a wrong model
+constexpr double kMostWaves = 14.0;       // in the longest record; a machine hardly responds to shorter ones
+constexpr int kStepsOfFading = 48;        // steps of an eighth of the time constant each; the rest of e^-6 is neglected
+// Step as a share of the time constant; usual time constant as a share of the longest record.
+constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;
+// Of the longest record: slower fading does not end within it, and would fit every slow bend of a wrong model.
+constexpr double kLongestFading = 1.0 / 3.0;
 
 bool runs_at_rest(const Effect& e) {
   return e.words.at("runs") == "while_spindle_stands";
 }
 
-/// Behind a stop, for which something goes on.
+/// Time after a stop for which the heat continues.
 double behind_stop_s(const Effect& e) {
   for (const char* key : {"runs_on", "lasts"}) {
     if (e.has(key)) return 60.0 * e[key];
@@ -50,7 +51,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   if (e.has("fades")) {
     const double step_s = 60.0 * e["fades"] * kStepOfFading, from_s = e.from_s;
     balance.heats.push_back({e.name(), e.body(), [=](const Inputs& u) {
-                               const double k = std::floor((u.time_s - from_s) / step_s);  // a step's mean
+                               const double k = std::floor((u.time_s - from_s) / step_s);  // mean over a step
                                const double left =
                                    std::exp(-k * kStepOfFading) * -std::expm1(-kStepOfFading) / kStepOfFading;
                                return k >= 0.0 && k < kStepsOfFading ? steady(u) * left : 0.0;
@@ -63,7 +64,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
     return;
   }
   const double period_s = e["period"], delay_s = e["delay"], mean_W = e["mean"], step_s = period_s / kStepsAPeriod;
-  const auto wave = [=, from_s = e.from_s](const Inputs& u) {  // that in the middle of its step, wherever in it one asks
+  const auto wave = [=, from_s = e.from_s](const Inputs& u) {  // value in the middle of its step, for any time in it
     const double middle_s = from_s + (std::floor((u.time_s - from_s) / step_s) + 0.5) * step_s;
     return mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (middle_s - delay_s) / period_s);
   };
@@ -97,7 +98,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-/// x of period and delay to try: waves that fit into the longest record 4, 5, ... times, sines and cosines.
+/// x of period and delay to try: waves that fit 4, 5, ... times into the longest record, sines and cosines.
 std::vector<std::vector<double>> waves(double longest_min, double nominal_min) {
   std::vector<std::vector<double>> grid;
   for (double n = kFewestWaves; n <= kMostWaves; n += 1.0) {
@@ -106,7 +107,7 @@ std::vector<std::vector<double>> waves(double longest_min, double nominal_min) {
   return grid;
 }
 
-/// A number of the first effect in another unit than the parameter's.
+/// A number of the first effect in a unit other than the parameter's.
 DoubtedNumber in_minutes(DoubtedNumber n) {
   n.set = [key = n.name](std::span<Effect> added, double value) { added[0].set(key, 60.0 * value); };
   return n;
@@ -125,7 +126,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .numbers = {power()},
                       .trial = trial_W});
       list.back().numbers[0].low =
-          0.0;  // heat that is taken away is a coolant's; what is written too large is the law written
+          0.0;  // removed heat is a coolant's; a written heat that is too large is a doubt of its law
       return list.back();
     };
     add("constant heat", {});
@@ -150,10 +151,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       of_stops.law = fmt::format(
           "heat for some minutes after each stop, by the square of the speed before it, at {:.0f} rpm", s.typical_rpm);
       of_stops.added[0].set("at_speed", s.typical_rpm);
-      of_stops.added[0].set("exponent", 2.0);  // what turned has given back
+      of_stops.added[0].set("exponent", 2.0);  // heat from braking
       of_stops.at_speed_rpm = s.typical_rpm;
       list.push_back(std::move(of_stops));
-      Doubt standby = while_turning;  // drives, pumps, until the control switches them off
+      Doubt standby = while_turning;  // drives or pumps, until the control switches them off
       standby.law += " and some minutes more";
       standby.added[0].set("runs_on", kUsualRunOn_min);
       standby.numbers.push_back(doubted_run_on(kUsualRunOn_min));
@@ -161,7 +162,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       list.push_back(std::move(standby));
     }
 
-    if (s.turns) {  // new grease that runs in, a bearing that was mounted tight
+    if (s.turns) {  // new grease that runs in, a bearing mounted too tight
       Doubt fading = while_turning;
       fading.law = fmt::format("heat in proportion to speed that fades, at {:.0f} rpm", s.typical_rpm);
       fading.added = {make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})};
@@ -174,7 +175,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       fades.high = kLongestFading * longest_min;
       fading.added[0].set("fades", fades.nominal);
       fading.numbers.push_back(fades);
-      fading.grid = {{-0.7}, {0.6}};  // of the logarithm of its time
+      fading.grid = {{-0.7}, {0.6}};  // of the logarithm of its time constant
       fading.at_speed_rpm = s.typical_rpm;
       list.push_back(fading);
       if (s.runs.size() > 1) {
@@ -194,7 +195,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         later.added[0].in = s.runs[run].name;
         later.numbers = {power(), doubted_time("from", s.runs[run].length_s,
                                                [](std::span<Effect> added, double value) { added[0].from_s = value; })};
-        if (with_speed) later.numbers[0].low = 0.0;  // else a blower that was switched on, a heater that gave up
+        if (with_speed) later.numbers[0].low = 0.0;  // otherwise a blower that was switched on, a heater that failed
         later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
         later.grid = time_grid(s.runs[run].length_s, 8);
         add_with_lasting(s, run, later, since);

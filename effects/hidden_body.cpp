@@ -7,20 +7,22 @@
 
 namespace driftwright::effects::hidden_body {
 
-constexpr const char *kSuffix = "_hidden", *kIn = " in ";  // of a body's node, and of one that is there in one record alone
-constexpr double kCapacitySd = 1.5;                        // of the logarithm: from a fifth to five times its body's
-constexpr double kTrial = 0.1;                             // of a typical conductance
-constexpr double kRare =
-    4.0;  // nats; with little capacity a body between is a path to the ambient, which is the simpler one
-constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
-constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of its body
-constexpr double kTimeSd = 2.0;                         // of the logarithm
-constexpr double kTypicalTime = 0.1;                    // of the longest record
+// Names of a body's node, and of one that exists in one record only.
+constexpr const char *kSuffix = "_hidden", *kIn = " in ";
+constexpr double kCapacitySd = 1.5;  // 1 sigma of the logarithm: from a fifth to five times its body's capacity
+constexpr double kTrial = 0.1;       // of a typical conductance
+constexpr double kRare = 4.0;  // nats; with little capacity it equals a path to the ambient, which is the simpler cause
+constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, as shares of the longest record
+constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // shares of the capacity of its body
+constexpr double kTimeSd = 2.0;                         // 1 sigma of the logarithm
+constexpr double kTypicalTime = 0.1;                    // as a share of the longest record
 constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
-constexpr double kTakesTheAmbient_s = 60.0;  // time constant of a body that is away: it comes as warm as the ambient
-constexpr double kTrace = 1e-6;              // of that exchange with the ambient, while the body is there
+// Time constant of a body while it is away: it arrives at the temperature of the ambient.
+constexpr double kTakesTheAmbient_s = 60.0;
+constexpr double kTrace = 1e-6;  // share of its exchange with the ambient while it is present
 
-/// A body that is there in one record alone is a node of its own: another record may have one that is like it.
+/// The node of a body; a body that exists in one record only has a separate node, because another record may have a similar
+/// one.
 std::string node_name(const Effect& e) {
   const bool stays = !e.in.empty() && !e.tables.contains(kWindows);
   return e.place + kSuffix + (stays ? kIn + e.in : "");
@@ -45,7 +47,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
       return (in.empty() || u.run == in) && inside(u) > 0.0;
     };
     const double away_W_K = e["capacity"] / kTakesTheAmbient_s;
-    // a way out that is always there: what is left of a machine without exchanges that come and go must settle somewhere
+    // a small permanent exchange: a steady state must exist even if all other exchanges come and go
     const double always_W_K = std::max(to_ambient_W_K, kTrace * away_W_K);
     balance.exchanges.push_back(make_link(
         e.name() + " - " + own, e.body(), [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; }, own));
@@ -64,13 +66,13 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-/// One that is as warm as its body, or that hardly notices it: how much it stores and how fast it follows is what readings tell, and a conductance, which the
-/// priors of paths of heat are about, may be anything.
+/// A hidden body that is almost as warm as its body, or almost isolated. Readings show its capacity and its time constant;
+/// its conductance may have any value, so the priors of heat paths do not apply.
 Doubt following(const DoubtScene::Material& m, double longest_s) {
   DoubtedNumber capacity = doubted("capacity", "J/K", m.capacity_J_K, kFollowTrial * m.capacity_J_K);
   capacity.low = 0.0;
   capacity.set = [least_J_K = kLeast * m.capacity_J_K](std::span<Effect> added, double value) {
-    added[0].set("capacity", std::max(value, least_J_K));  // a body is never without any
+    added[0].set("capacity", std::max(value, least_J_K));  // a body always has some capacity
   };
   DoubtedNumber behind = doubted("time_constant", "min", kTimeSd, 0.1, kTypicalTime * longest_s / 60.0);
   behind.is_log = true;
@@ -88,7 +90,8 @@ Doubt following(const DoubtScene::Material& m, double longest_s) {
   return d;
 }
 
-/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the ambient; and bodies between two others.
+/// A body at each region and node, with its exchange and capacity, and in a second law also its own exchange with the
+/// ambient; and bodies between two others.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K(), longest_s = s.longest_s();
   std::vector<Doubt> list;

@@ -7,7 +7,7 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kSameOfAll = 2.0;  // nats: several instruments are seldom wrong by the same at once
+constexpr double kSameOfAll = 2.0;  // nats: several instruments seldom have the same error at once
 
 }  // namespace
 

@@ -9,10 +9,10 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kFirst_s = 1.0;    // of what begins within a record
-constexpr double kLateTrial = 1.5;  // of that of all records: it acts for a part of the time
+constexpr double kFirst_s = 1.0;    // earliest begin within a record
+constexpr double kLateTrial = 1.5;  // trial relative to that for all records, because it acts only part of the time
 
-/// What it does in one of its records.
+/// The effect in each of its records, separately.
 std::vector<Effect> in_each(const Doubt& doubt) {
   std::vector<Effect> list;
   for (const Effect& e : doubt.added) {

@@ -1,5 +1,6 @@
 #pragma once
-// Causes of more than one record: what begins in one holds in all that follow it; what was mended behind one held in all up to it.
+// Doubts about several records: a cause that begins in one record stays in all later ones; a cause that was repaired after
+// one was in all earlier ones.
 
 #include <fmt/format.h>
 
@@ -9,8 +10,8 @@
 
 namespace driftwright::effects {
 
-/// The effect in each of some runs, an entry each; numbers that a doubt sets by name are set in all of them.
-/// @param end  behind the last one
+/// One entry of the effect for each of the runs first to end - 1. Numbers that a doubt sets by name are set in all of them.
+/// @param end  one past the last run
 [[nodiscard]] inline std::vector<Effect> in_runs(const DoubtScene& scene, std::size_t first, std::size_t end,
                                                  const Effect& effect) {
   std::vector<Effect> list;
@@ -21,14 +22,15 @@ namespace driftwright::effects {
   return list;
 }
 
-/// In a run and in each later one.
+/// The same for a run and all later ones.
 [[nodiscard]] inline std::vector<Effect> in_this_and_later_runs(const DoubtScene& scene, std::size_t run,
                                                                 const Effect& effect) {
   return in_runs(scene, run, scene.runs.size(), effect);
 }
 
-/// A doubt that begins at a time in one run, and the same for all later runs from their start on where there are any: one variant more.
-/// @param doubt  with a single effect, in that run, whose time is set in the first one added alone
+/// Adds a doubt that begins at a time in one run; if there are later runs, also a variant in which it stays in all of them
+/// from their start on.
+/// @param doubt  with a single effect, in that run; its time is set in the first added effect only
 inline void add_with_lasting(const DoubtScene& scene, std::size_t run, const Doubt& doubt, std::vector<Doubt>& list) {
   list.push_back(doubt);
   if (run + 1 >= scene.runs.size()) return;
@@ -38,8 +40,8 @@ inline void add_with_lasting(const DoubtScene& scene, std::size_t run, const Dou
   list.push_back(std::move(lasting));
 }
 
-/// A doubt that holds in all runs, and the same in each of several alone, from each but the first one on and up to each but the last one: what was
-/// changed between two records, or mended.
+/// Adds a doubt that applies in all runs, and variants of it: in each of several runs alone, from each run but the first on,
+/// and up to each run but the last. These describe changes and repairs between two records.
 /// @param doubt  with a single effect whose numbers are set by name
 inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
   list.push_back(doubt);
@@ -61,21 +63,22 @@ inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::v
   }
 }
 
-/// A doubt that begins at a time in one run, in that one alone and in all later ones, each run in turn.
+/// Adds doubts that begin at a time within a run, for each run in turn: in that run alone, and in it and all later ones.
 /// @param doubt   with a single effect whose numbers are set by name, which holds in all runs
-/// @param number  what its time is called
+/// @param number  name of the begin time
 void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::string& number, double rarity,
                         std::vector<Doubt>& list);
-/// What was changed between two records: as add_in_some_runs(), without what holds in all of them.
+/// Adds doubts about changes between two records: as add_in_some_runs(), without the variant for all runs.
 void add_between_records(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list);
-/// And within one: as add_from_a_time_on().
+/// Adds doubts about changes between records and within one: also those of add_from_a_time_on().
 void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list);
 
-/// Whether a doubt can be said of some records alone: it tells of no time within one, and where it holds in some it holds alike in each.
+/// True if a doubt can be limited to some records: it contains no time within a record, and where it applies to some, it is
+/// the same in each.
 [[nodiscard]] bool can_be_of_some_runs(const Doubt& doubt);
-/// The records that it holds in; empty: all.
+/// The records that it applies to; empty: all.
 [[nodiscard]] std::set<std::string> runs_of(const Doubt& doubt);
-/// The same doubt of other records, its numbers alike in each. @param runs  in their order; empty: all
+/// The same doubt for other records, with common numbers. @param runs  in their order; empty: all
 [[nodiscard]] Doubt of_runs(const Doubt& doubt, const std::vector<std::string>& runs);
 
 }  // namespace driftwright::effects

@@ -17,7 +17,7 @@ const std::string& table_of(const Effect& e) {
   return kNone;
 }
 
-/// What the term follows is worth 1 at the stated drive.
+/// The followed quantity, scaled to 1 at the stated drive.
 std::function<double(const Drive&)> law_of(const Effect& e) {
   const std::string& follows = e.words.at("follows");
   if (follows == "running") return [above_rpm = e["above"]](const Drive& d) { return d.speed_rpm > above_rpm ? 1.0 : 0.0; };

@@ -1,5 +1,5 @@
 #pragma once
-// What an effect does to the material of a region, to the capacity of a lumped node, or to how a displacement follows a body.
+// Factors on the material of a region, on the capacity of a lumped node, or on the sensitivity of a displacement to a body.
 
 #include <string>
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace driftwright::effects {
 
-/// Factors on the values of the body's material, whatever their curves, and on the sensitivities of displacements to its temperature.
-/// Several at one body multiply. heat_balance() has applied those of lumped nodes to their capacities already.
+/// Factors on the values of the body's material, also if these are curves, and on the sensitivities of displacements to its
+/// temperature. Several at one body multiply. heat_balance() has already applied those of lumped nodes to their capacities.
 struct MaterialFactor {
   Body body;
   double conductivity = 1.0, heat_capacity = 1.0, expansion = 1.0;
-  std::string displacement =
-      {};  ///< the only one whose sensitivity the expansion is about; "": the material's, and all of them
+  /// The only displacement whose sensitivity `expansion` changes; "": the material's expansion and all sensitivities.
+  std::string displacement = {};
 };
 
-/// What all of them together make of the sensitivity of a displacement to a body's temperature.
+/// The product of all factors on the sensitivity of a displacement to a body's temperature.
 [[nodiscard]] inline double sensitivity_factor(const std::vector<MaterialFactor>& factors, const Body& body,
                                                const std::string& displacement) {
   double product = 1.0;

@@ -6,7 +6,7 @@ namespace driftwright::effects::missing_stop {
 
 constexpr double kShortest_min = 1e-3;
 
-/// Sections that the stop begins or ends in are split.
+/// Splits sections in which the stop begins or ends.
 Cyclogram with_stop(const Cyclogram& recorded, double stop_s, double go_s) {
   Cyclogram felt = split_at(recorded, {stop_s, go_s});
   double start_s = 0.0;
@@ -29,7 +29,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     Effect stop = make_effect("missing_stop", Place::kSpindle, "spindle");
     stop.in = run.name;
     DoubtedNumber length = doubted("length", "min", 15.0, 1.0);
-    length.low = std::max(kShortest_min, run.row_s / 60.0);  // no record tells of a shorter one
+    length.low = std::max(kShortest_min, run.row_s / 60.0);  // a record does not show a shorter one
     list.push_back({.finding = "missing_stop",
                     .where = "spindle",
                     .law = "in " + run.name,

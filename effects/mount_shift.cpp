@@ -6,7 +6,7 @@
 
 namespace driftwright::effects::mount_shift {
 
-constexpr double kUsualLength = 0.25, kShortest_s = 1.0;  // of a record, that a bump lasts
+constexpr double kUsualLength = 0.25, kShortest_s = 1.0;  // duration of a bump: usual share of a record, and shortest
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kShift,
@@ -26,7 +26,7 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.has("until_time") && e["until_time"] <= e["time"]) in.fail("until_time", "`until_time` must be later than `time`");
 }
 
-/// A step that somebody takes back.
+/// A step that someone reverts later.
 Doubt bumped(const Doubt& step, const DoubtScene::Run& run) {
   Doubt bump = step;
   bump.law = "step for a while, in " + run.name;
@@ -59,7 +59,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .grid = time_grid(run.length_s, 40)});
       list.push_back(bumped(list.back(), run));
     }
-    // set up anew between two records
+    // the indicator was set up anew between two records
     Doubt anew{
         .finding = "mount_shift",
         .where = d.name,
@@ -68,7 +68,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         .numbers = {doubted_amount(d, "shift")},
         .trial = 3.0};
     add_between_records(s, anew, list);
-    // a stand that was clamped or glued just before the record began
+    // an indicator stand that was clamped or glued just before the record began
     DoubtedNumber creep{.name = "creep", .unit = "min", .nominal = 60.0, .prior_sd = 1.0, .step = 0.1, .is_log = true};
     Doubt creeping{
         .finding = "mount_shift",

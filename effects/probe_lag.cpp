@@ -6,9 +6,8 @@
 
 namespace driftwright::effects::probe_lag {
 
-constexpr double kFeed_mm_min = 1000.0;  // that lags are stated at where nobody says
-constexpr double kNoProbe =
-    2.0;  // nats: a displacement that no scenario says is probed is read by an indicator, more often than not
+constexpr double kFeed_mm_min = 1000.0;  // default feed at which lags are given
+constexpr double kNoProbe = 2.0;         // nats: a displacement without a stated probe is usually read by an indicator
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kScale, [channel = e.place, by_m = e["lag"] * e["feed"]](Readings& r) {

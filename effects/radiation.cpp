@@ -6,7 +6,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.radiations.push_back({e.name(), e.place, e["emissivity"], e.references.at("surrounding").name});
 }
 
-/// Heat of the sun, a furnace or a cold neighbour on a surface.
+/// Radiation of the sun, a furnace or a cold neighbour on a surface.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
   std::vector<Doubt> list;

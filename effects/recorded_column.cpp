@@ -9,8 +9,8 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kMmMin_per_m_s = 60e3;
-constexpr double kPiece = 0.25, kSettled = 8.0;  // of a lag
-constexpr double kRounding = 1e-9;               // of a row
+constexpr double kPiece = 0.25, kSettled = 8.0;  // in lags
+constexpr double kRounding = 1e-9;               // of a row's interval
 
 struct DriveChannel {
   const char *name, *header;
@@ -33,7 +33,7 @@ std::string signal_name(const std::string& column, double lag_s) {
   return lag_s > 0.0 ? fmt::format("{} with a lag of {} s", column, lag_s) : column;
 }
 
-/// Rows that say something new.
+/// The rows whose value differs from the previous one.
 TimeSeries without_repeats(const TimeSeries& rows) {
   TimeSeries steps;
   for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
@@ -44,7 +44,8 @@ TimeSeries without_repeats(const TimeSeries& rows) {
   return steps;
 }
 
-/// Steps of y, lag y' = c - y for held rows c, y settled at the first one: its mean over pieces of a quarter of the lag at most while it moves.
+/// Steps of y with lag y' = c - y for rows c that are held, y = c at the first: its mean over pieces of at most a quarter of
+/// the lag, while it changes.
 TimeSeries behind(const TimeSeries& rows, double lag_s, double end_s) {
   TimeSeries steps;
   double y = rows.value.front();

@@ -10,11 +10,11 @@
 namespace driftwright::effects::recorded_drive {
 
 constexpr double kMedium_K =
-    kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
-constexpr double kLowestExponent = 0.1, kHighestExponent = 4.0;  // of a column, that are looked for
-constexpr double kClearlyFaster = 1.3;                           // exponent, than in proportion: else it is another gain
-constexpr double kOtherMedium_K = 20.0;                          // than the reference, a stream at most
-constexpr int kFewestLevels = 3;                                 // of a column, that tell an exponent
+    kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature; a heat provides the difference
+constexpr double kLowestExponent = 0.1, kHighestExponent = 4.0;  // of a column, in the search
+constexpr double kClearlyFaster = 1.3;   // exponent that differs clearly from proportional; below this it is another gain
+constexpr double kOtherMedium_K = 20.0;  // largest difference of a stream from the reference
+constexpr int kFewestLevels = 3;         // of a column, to determine an exponent
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto signal = signal_of(e.words.at("column"), e["lag"] * 60.0);
@@ -73,7 +73,7 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
 }
 
-/// In W per unit of a column, as much as an unknown heat at the column's largest swing; a recorded power counts for itself.
+/// Prior in W per unit of a column: an unknown heat at the column's span; for a recorded power the factor 1.
 double gain_sd(const DoubtScene& s, const DoubtScene::Column& column) {
   return column.unit == "W" ? 1.0 : s.unknown_heat_W() / column.span;
 }
@@ -91,8 +91,9 @@ Doubt doubt(const Body& body, const DoubtScene::Column& column, const std::strin
   return d;
 }
 
-/// Heat by another power of a column than the first: of a motor's current the square, its copper's loss.
-/// @param heats_it  by a law of the scenario, which may grow too fast: what is beside it may then be negative, and grows clearly faster
+/// Heat by another power of a column than the first: for a motor current the square, its copper loss.
+/// @param heats_it  the scenario has a law with this column, which may grow too fast: the additional heat may then be
+///                  negative, and grows clearly faster
 Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column, bool heats_it) {
   Doubt d = doubt(body, column, "heat by a power of {}", "gain", "W per " + column.unit, gain_sd(s, column));
   d.law += fmt::format(", its gain stated at {:.6g} {}", column.top, column.unit);
@@ -105,7 +106,7 @@ Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& 
   return d;
 }
 
-/// Coolant or blown air that a valve lets in, or that comes with the cutting: its temperature is its own.
+/// Coolant or blown air from a valve, or together with cutting: it has its own temperature.
 Doubt stream_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column) {
   const double nominal_C = s.reference_K - kZeroCelsius_K;
   Doubt d = doubt(body, column, "stream of a medium that {} opens", "opening", "W/K per " + column.unit,
@@ -119,7 +120,8 @@ Doubt stream_of(const Body& body, const DoubtScene& s, const DoubtScene::Column&
   return d;
 }
 
-/// What follows a record does so by another factor in some records or from a time on: one of a heater's elements fails, a lid no longer shuts.
+/// An effect of a record has another factor in some records or from a time on: one heater element fails, a lid no longer
+/// closes.
 void doubt_changes(const DoubtScene& s, const Effect& e, std::vector<Doubt>& list) {
   const HeatBalance of = heat_balance({e});
   Doubt other{.finding = "recorded_drive",
@@ -143,14 +145,14 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       const bool drives_it = is_one_of(column.drives);
       if (column.unit != "K" && !column.is_temperature() && column.n_levels >= kFewestLevels)
         list.push_back(power_of(body, s, column, is_one_of(column.heats)));
-      if (drives_it) continue;  // another gain of what is written: Doubted::kFactor
+      if (drives_it) continue;  // another gain of a written effect is Doubted::kFactor
       if (column.is_temperature()) {
         list.push_back(
             doubt(body, column, "exchange with a body as warm as {} says", "conductance", "W/K", 0.2 * s.unknown_heat_W()));
         continue;
       }
       list.push_back(doubt(body, column, "heat in proportion to {}", "gain", "W per " + column.unit, gain_sd(s, column)));
-      if (column.unit == "K") list.back().numbers[0].low = -1e300;  // of a difference
+      if (column.unit == "K") list.back().numbers[0].low = -1e300;  // a difference may be negative
       if (column.unit == "K" || body.kind != BodyKind::kNode) continue;
       list.push_back(stream_of(body, s, column));
       if (column.unit == "W") continue;

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of formulas.
+// A range check for formulas.
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kSlowing_s = 60.0;  // a spindle takes seconds to stop, which a record may have as a row or some
+constexpr double kSlowing_s = 60.0;  // a spindle takes seconds to stop, which may appear as one or more rows of a record
 
 std::string signal_name(double run_on_s) {
   return fmt::format("turns, or has stopped from within {} s", run_on_s);

@@ -1,5 +1,5 @@
 #pragma once
-// What goes with the spindle and for a while after it: a fan, a pump on a timer.
+// Things that run with the spindle and for a while after it stops: a fan, a pump on a timer.
 
 #include <functional>
 
@@ -8,18 +8,21 @@
 
 namespace driftwright::effects {
 
-/// Whether the spindle turns, or has stopped less than a time ago, of a drive that with_run_on() was asked for.
+/// A function that is true if the spindle turns or stopped less than run_on_s ago. It needs a drive prepared by
+/// with_run_on().
 [[nodiscard]] std::function<bool(const Drive&)> turns_or_has(double run_on_s);
 
-/// The speed [rpm] from which a spindle that stands has stopped, less than a time ago; else 0: the highest within the minute before. Of such a drive as well.
+/// A function that gives the speed [rpm] before the stop of a spindle that stopped less than run_on_s ago: the highest
+/// within the minute before the stop; else 0. It needs such a drive as well.
 [[nodiscard]] std::function<double(const Drive&)> stopped_from_rpm(double run_on_s);
 
-/// A cyclogram whose sections carry the signal that these look for: split where the time behind a stop is over. As it was for no such time.
+/// The cyclogram with the signal that these functions read, split where the time after a stop ends. Unchanged for run_on_s =
+/// 0.
 [[nodiscard]] Cyclogram with_run_on(Cyclogram recorded, double run_on_s);
 
-/// The same of the drive that is recorded; nothing for no such time.
+/// Adds this to the changes of the drive; does nothing for run_on_s = 0.
 void add_run_on(double run_on_s, DriveChange& change);
-/// The number `runs_on` [min] of a doubt, from a usual one on.
+/// The number `runs_on` [min] of a doubt, with its usual value.
 [[nodiscard]] DoubtedNumber doubted_run_on(double usual_min);
 
 }  // namespace driftwright::effects

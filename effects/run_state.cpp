@@ -5,7 +5,7 @@
 
 namespace driftwright::effects::run_state {
 
-constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
+constexpr std::size_t kFewRuns = 5;  // with up to this many runs every choice is tried
 constexpr double kLongest_min = 1440.0, kLongestLooked_min = 240.0;
 
 bool is_meant(const Effect& e, const Exchange& x) {
@@ -27,7 +27,8 @@ void change_laws(const Effect& e, HeatBalance& balance) {
   }
 }
 
-/// A record that begins with a machine which nobody saw run: as warm as after so long of the record's own mean drive, and a rest.
+/// A record that begins after the machine has run unrecorded: it starts as warm as after some time of the record's mean
+/// drive, and a rest.
 void change_drive(const Effect& e, DriveChange& change) {
   if (e["warmed_up"] == 0.0) return;
   change.before.push_back([run_s = 60.0 * e["warmed_up"], rest_s = 60.0 * e["rested"]](const Cyclogram& felt) {
@@ -36,7 +37,7 @@ void change_drive(const Effect& e, DriveChange& change) {
     before.sections.push_back({run_s, mean_drive({&felt})});
     if (rest_s == 0.0) return before;
     Drive rest;
-    rest.signals = felt.sections.front().drive.signals;  // a bed, a water main: as warm as where the record begins
+    rest.signals = felt.sections.front().drive.signals;  // a bed or a water main is as warm as at the begin of the record
     before.sections.push_back({rest_s, rest});
     return before;
   });
@@ -50,7 +51,7 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("rested", "`rested` is allowed only beside `warmed_up`, which is missing");
 }
 
-/// Runs that may have had a state of their own: of a few, every choice of some of them; of many, each alone and each split in order.
+/// Runs that may have had a different state: of a few, every choice; of many, each alone and each split in order.
 std::vector<std::vector<std::size_t>> choices_of(std::size_t n_runs) {
   std::vector<std::vector<std::size_t>> list;
   if (n_runs > kFewRuns) {
@@ -71,7 +72,7 @@ std::vector<std::vector<std::size_t>> choices_of(std::size_t n_runs) {
   return list;
 }
 
-/// The machine had been run before somebody began to write.
+/// The machine had run before the record began.
 void doubt_start(const DoubtScene& s, std::vector<Doubt>& list) {
   constexpr double kUsual_min = 30.0, kRest_min = 3.0;
   for (const DoubtScene::Run& run : s.runs) {
@@ -87,7 +88,7 @@ void doubt_start(const DoubtScene& s, std::vector<Doubt>& list) {
     d.numbers[1].low = 0.0;
     d.numbers[0].high = d.numbers[1].high = kLongestLooked_min;
     d.grid = {{0.0}, {20.0}};
-    for (const double trial_min : {10.0, 60.0}) {  // what a short run warms is not what a long one does
+    for (const double trial_min : {10.0, 60.0}) {  // a short run warms other parts than a long one
       d.trial = trial_min;
       list.push_back(d);
     }

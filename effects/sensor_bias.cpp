@@ -5,7 +5,7 @@
 
 namespace driftwright::effects::sensor_bias {
 
-constexpr double kUsualFading = 1.0 / 12.0, kLongestFading = 1.0 / 3.0;  // of the longest record
+constexpr double kUsualFading = 1.0 / 12.0, kLongestFading = 1.0 / 3.0;  // as shares of the longest record
 constexpr double kSlope = 0.03;  // 1 sigma of a wrong scale: a thermocouple of another class, a bridge of another resistor
 
 void change_readings(const Effect& e, ReadingChain& chain) {
@@ -30,7 +30,7 @@ Doubt constant_error(const std::string& sensor) {
           .trial = 0.3};
 }
 
-/// An amplifier that warms up, a reference junction that finds its temperature.
+/// An error that fades: an amplifier that warms up, a reference junction that settles.
 Doubt fading_error(const DoubtScene& s, const std::string& sensor) {
   Doubt d = constant_error(sensor);
   d.law = "error that fades from the start of each record on";
@@ -40,10 +40,10 @@ Doubt fading_error(const DoubtScene& s, const std::string& sensor) {
                       .prior_sd = 0.7,
                       .step = 0.05,
                       .is_log = true};
-  fades.high = kLongestFading * s.longest_s() / 60.0;  // what fades more slowly is not seen to end
+  fades.high = kLongestFading * s.longest_s() / 60.0;  // slower fading does not end within the record
   d.added[0].set("fades", fades.nominal);
   d.numbers.push_back(fades);
-  d.grid = {{-1.0}, {0.0}, {1.0}};  // of the logarithm of its time
+  d.grid = {{-1.0}, {0.0}, {1.0}};  // of the logarithm of its time constant
   return d;
 }
 

@@ -5,7 +5,8 @@
 
 namespace driftwright::effects::sensor_place {
 
-// Nats: between two bodies that touch there is a path of heat as well; where the scenario has none, two things would have to be wrong at once.
+// Nats: touching bodies also exchange heat; if the scenario has no path between them, two things would have to be wrong at
+// once.
 constexpr double kTouchWithoutPath = 2.0;
 
 void change_readings(const Effect& e, ReadingChain& chain) {
@@ -24,7 +25,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
             });
 }
 
-/// A label on the wrong cable, of sensors on lumped nodes: it sits on another body altogether, in all records.
+/// A label on the wrong cable, for sensors on lumped nodes: the sensor is on another body in all records.
 Doubt mislabelled(const Effect& place) {
   Doubt d{.finding = "sensor_place",
           .where = place.place,
@@ -38,7 +39,8 @@ Doubt mislabelled(const Effect& place) {
   return d;
 }
 
-/// Each other body has a law of its own, in all records or from one of them on; the ambient has one, too: a thermometer that never touched well, or all of them.
+/// One doubt per other body, in all records or from one of them on; also for the ambient: a thermometer that never had good
+/// contact, or all of them.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
@@ -62,7 +64,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                          .trial = 0.3,
                          .rarity = may_touch ? 0.0 : kTouchWithoutPath};
       list.push_back(always);
-      if (s.starts_and_stops) {  // a stream of air that the machine makes, or oil that comes from another body
+      if (s.starts_and_stops) {  // a stream of air from the machine, or oil from another body
         Doubt flown_at = always;
         flown_at.law =
             fmt::format("reads a share of {} while the spindle turns", body == ambient_node() ? "the air" : body.name);

@@ -28,9 +28,10 @@ Effect loss(const Body& body, std::size_t axis, double at_feed_m_s, double expon
   return e;
 }
 
-/// Heat of a screw, a nut, a guideway, a motor that nobody has written: of all axes alike, of one, and of one that holds a weight while it stands.
+/// Heat of a screw, a nut, a guideway or a motor that the scenario lacks: equal on all axes, on one axis, and on one that
+/// holds a weight at rest.
 std::vector<Doubt> doubts(const DoubtScene& s) {
-  constexpr double kUsualExponent = 1.5;  // between dry friction and a lubricant's drag
+  constexpr double kUsualExponent = 1.5;  // between dry friction and viscous drag
   const auto n_moving = std::count_if(s.top_feed_m_s.begin(), s.top_feed_m_s.end(), [](double v) { return v > 0.0; });
   if (n_moving == 0) return {};
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;

@@ -7,9 +7,9 @@ namespace driftwright::effects::speed_override {
 
 using Windows = std::vector<std::pair<double, double>>;
 
-constexpr double kCapSd = 0.2, kCapTrial = -0.1;  // of a limit's distance from the highest speed, over that
+constexpr double kCapSd = 0.2, kCapTrial = -0.1;  // of (highest speed - limit) / highest speed
 
-/// The speed that the spindle has while another one is recorded.
+/// The true speed of the spindle while another one is recorded.
 struct Turning {
   double factor = 1.0, at_most_rpm = kNotGiven;
   [[nodiscard]] double operator()(double recorded_rpm) const {
@@ -18,7 +18,7 @@ struct Turning {
   }
 };
 
-/// Another speed within the windows; sections that a window begins or ends in are split.
+/// Another speed within the windows; sections in which a window begins or ends are split.
 Cyclogram turned_within(const Cyclogram& recorded, const Windows& windows, const Turning& turning) {
   std::vector<double> edges_s;
   for (const auto& [begin_s, end_s] : windows) edges_s.insert(edges_s.end(), {begin_s, end_s});
@@ -49,7 +49,7 @@ void change_drive(const Effect& e, DriveChange& change) {
   });
 }
 
-/// Another factor or a limit; windows are as everywhere; what repeats must have some.
+/// A factor or a limit is required; windows are checked as everywhere; a repetition requires windows.
 void check(const Effect& e, const ConfigMap& in) {
   if (!e.has("factor") && !e.has("at_most"))
     in.fail("factor", "`factor` or `at_most` is required: how the true speed differs from the recorded one");

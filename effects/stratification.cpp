@@ -2,9 +2,8 @@
 
 namespace driftwright::effects::stratification {
 
-constexpr double kUsual_K_m = 2.0;  // 1 sigma of a gradient that nobody wrote down
-constexpr double kWritten_K_m =
-    5.0;  // and of what a written one is wrong by: under a roof in summer 10 K/m and more are met
+constexpr double kUsual_K_m = 2.0;    // 1 sigma of a gradient that the scenario lacks
+constexpr double kWritten_K_m = 5.0;  // 1 sigma of the error of a written one: under a roof in summer 10 K/m and more occur
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.stratifications.push_back({e["gradient"], e["level"]});
@@ -17,7 +16,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
            .law = "warmer above; the ambient thermometer hangs at a level",
            .added = {make_effect("stratification", Place::kAmbient, kAmbientName, {{"level", 1.0}})},
            .numbers = {doubted("gradient", "K/m", kUsual_K_m, 0.2),
-                       doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
+                       doubted("level", "m", 0.6, 0.1, 1.0)},  // usual height of a thermometer
            .trial = 0.5,
            .grid = {{-0.6}, {0.2}}}};
 }

@@ -78,7 +78,7 @@ Doubt one_window(const DoubtScene::Run& run, Effect window, DoubtedNumber size, 
   };
   std::vector<std::vector<double>> grid;
   for (const auto& at : time_grid(run.length_s, 8)) grid.push_back({at[0], 0.0});
-  // and what lasts to the end: x of the time is counted from the middle, that of the length from an eighth
+  // also windows that last to the end: x of the time counts from the middle, that of the length from an eighth
   for (const auto& at : time_grid(run.length_s, 4))
     grid.push_back({at[0], (0.5 - 0.125) * run.length_s / 60.0 - at[0] / 60.0});
   return {.finding = window.kind->key,

@@ -1,4 +1,4 @@
-// Effects as text: the inverse of read_effect().
+// Writes effects as text: the inverse of read_effect().
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-// The drift second by second, as a program beside a control would follow it: rows "speed_rpm ambient_degC" from standard input, one a second.
+// The drift second by second, as a program beside a control would follow it: rows "speed_rpm ambient_degC" from standard
+// input, one a second.
 //
 //   yes '3000 21.5' | head -n 600 | beside_a_control SCENARIO.yaml
 

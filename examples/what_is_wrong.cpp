@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "    %s %g %s, 95 %%: %g to %g\n", p.name.c_str(), p.value, p.unit.c_str(), p.low, p.high);
     }
     for (const ChannelGain& g : found.gain)
-      if (g.rmse_before == g.rmse_before)  // no number where no row that was kept out could judge
+      if (g.rmse_before == g.rmse_before)  // NaN if no held-out row could judge it
         std::fprintf(stderr, "  %s: %.3g -> %.3g %s\n", g.name.c_str(), g.rmse_before, g.rmse_after, g.unit.c_str());
     std::fputs(found.extended_scenario.c_str(), stdout);
   } catch (const InputError& e) {

@@ -17,7 +17,7 @@ using output::Series;
 using output::Table;
 using output::Value;
 
-/// The pictures show every so manieth sample, and of those between the worst.
+/// Plots show every n-th sample, and of the samples between these the worst.
 constexpr std::size_t kMostPoints = 1500;
 
 Series shown(const std::string& label, const AxisLoopRun& run, const std::vector<double>& values_um, double width) {
@@ -94,7 +94,8 @@ Plot room_plot(const AxisLoop& loop) {
   return plot;
 }
 
-/// The axis at standstill after a correction by ten insertions at once: as fast as they may follow each other, and at the slew.
+/// The axis at rest after a correction by ten insertions at once: as fast as insertions may follow each other, and at the
+/// slew.
 Plot step_plot(const AxisLoop& loop) {
   constexpr int kInsertions = 10, kSamples = 600;
   const double step_um = kInsertions * loop.insertion_um();
@@ -126,7 +127,7 @@ double largest_feed_mm_min(const AxisLoop& loop) {
                                                  loop.injector.separation_s());
 }
 
-/// What the axis met, or nothing where it was sound.
+/// The faults of the axis in words; "" without faults.
 std::string faults_told(const compensation::AxisFaults& faults) {
   std::string text;
   const auto add = [&](const std::string& words) { text += (text.empty() ? "" : "; ") + words; };
@@ -160,7 +161,7 @@ output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings, c
               largest_feed_mm_min(loop)),
           .detail = true});
   compensation::AxisFaults harmful = with.faults;
-  harmful.n_glitches = 0;  // there and back over one edge, as an axis that rests on it may go: harmless, a detail
+  harmful.n_glitches = 0;  // back and forth over one edge, as an axis at rest may move: harmless, shown as a detail
   if (const std::string words = faults_told(harmful); !words.empty())
     add(section, output::Text{.words = fmt::format("Faults of this axis: {}.", words)});
   if (with.faults.n_glitches > 0)

@@ -1,5 +1,5 @@
 #pragma once
-// The axis behind a pulse injector, as part of a document.
+// The section of a document about an axis with a pulse injector.
 
 #include "compensation/injector/axis_loop.hpp"
 #include "output/document.hpp"
@@ -7,7 +7,7 @@
 
 namespace driftwright::findings {
 
-/// Section `axis_loop`: causes of error switched on in turn, counts, faults, plots.
+/// Section `axis_loop`: causes of error included one after another, counts, faults, plots.
 [[nodiscard]] output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings,
                                                 const compensation::AxisLoopRun& run, double tolerance_um,
                                                 const std::vector<output::SectionMark>& marks);

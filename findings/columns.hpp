@@ -1,5 +1,5 @@
 #pragma once
-// Columns that several tables have.
+// Columns that several tables share.
 
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace driftwright::findings {
 
-/// Of micrometres with n decimals.
+/// A column of micrometres with n decimals.
 [[nodiscard]] inline output::Column um_column(const std::string& key, const std::string& title, int n = 1) {
   return {.key = key, .title = title, .unit = "um", .digits = output::decimals(n)};
 }
 
-/// Of whole per cents.
+/// A column of whole per cents.
 [[nodiscard]] inline output::Column percent_column(const std::string& key, const std::string& title) {
   return {.key = key, .title = title, .unit = "percent", .digits = output::decimals(0)};
 }

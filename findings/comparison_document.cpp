@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostComparisonPlots = 12;
 
-/// Displacements, tilts, temperatures, then the rest; within each the largest difference first.
+/// Displacements, tilts, temperatures, then the rest; within each kind the largest difference first.
 std::vector<const studies::ChannelDifference*> in_order(const studies::RecordComparison& comparison) {
   const auto rank = [](const std::string& unit) { return unit == "um" ? 0 : unit == "urad" ? 1 : unit == "degC" ? 2 : 3; };
   std::vector<const studies::ChannelDifference*> list;

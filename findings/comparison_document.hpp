@@ -1,5 +1,5 @@
 #pragma once
-// What `compare` found of two records, as a document.
+// The result of `compare` for two records, as a document.
 
 #include "output/document.hpp"
 #include "studies/record_comparison.hpp"

@@ -10,7 +10,7 @@ namespace {
 using output::Value;
 using studies::CorrectionStudy;
 
-/// What verdict and margin of a live predictor do not say of a plan, a sentence each; none where nothing is planned.
+/// Sentences about what verdict and margin of a live predictor do not cover for a plan; none if nothing is planned.
 std::vector<std::string> reservations(const CorrectionStudy& study, const std::string& verdict, double tolerance_um) {
   std::vector<std::string> sentences;
   if (!study.margin_um) return sentences;

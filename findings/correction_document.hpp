@@ -1,14 +1,15 @@
 #pragma once
-// What `compensate` found through any actuator but the frame, as a document.
+// The result of `compensate` with any actuator except the frame, as a document.
 
 #include "output/document.hpp"
 #include "studies/correction_study.hpp"
 
 namespace driftwright::findings {
 
+/// What the user asked for.
 struct CorrectionAsked {
   std::string model = {};    ///< as the user named it
-  std::string verdict = {};  ///< that its file has; "": nobody has judged it
+  std::string verdict = {};  ///< verdict in the predictor's file; "": it has not been judged
   std::string through = {};  ///< none, injector, schedule
 };
 

@@ -27,7 +27,7 @@ using output::Value;
 
 constexpr output::Digits kThree = output::significant(3);
 
-/// @param compared  where half the channels or fewer were compared, no verdict is shown as good
+/// @param compared  if at most half of the channels were compared, no verdict is shown as good
 output::Verdict verdict_box(const diagnosis::Diagnosis& d, const Compared& compared) {
   using diagnosis::Verdict;
   using Kind = output::Verdict::Kind;
@@ -68,7 +68,7 @@ Table causes_table(const diagnosis::Diagnosis& d) {
   return table;
 }
 
-/// What the records ask for at the places of the likeliest statements over time, whatever it follows.
+/// The missing quantity over time that the records require, at the places of the likeliest statements.
 Section courses_section(const diagnosis::Diagnosis& d) {
   constexpr std::size_t kMost = 4;
   Section section{.title = "What is missing over time, whatever it follows", .detail = true};
@@ -93,7 +93,7 @@ Section courses_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// What is missing in the grammar's words.
+/// What the scenario lacks, in the words of the statements' grammar.
 Section statements_section(const diagnosis::Diagnosis& d) {
   constexpr std::size_t kMost = 5;
   Section section{.title = "What is missing, and how sure that is"};
@@ -117,7 +117,7 @@ Section statements_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// What is found and does not stand in the file, with the reason.
+/// Causes that were found and are not in the written file, with the reason.
 void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
   for (const diagnosis::Cause& c : d.causes) {
     if (!c.is_written)
@@ -125,7 +125,7 @@ void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
   }
 }
 
-/// What is said of one cause beside its numbers.
+/// The text about one cause in addition to its numbers.
 Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
   const diagnosis::Cause& c = d.causes[i];
   Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where),
@@ -190,7 +190,7 @@ Section experiment_section(const diagnosis::Experiment& e) {
   Section cyclogram{.key = "cyclogram"};
   add(cyclogram, Value{.key = "name", .datum = e.cyclogram.name});
   Table sections{.key = "sections", .columns = {{.key = "duration_min"}, {.key = "speed_rpm"}}};
-  std::vector<std::size_t> axes;  // that move
+  std::vector<std::size_t> axes;  // axes that move
   for (std::size_t a = 0; a < 3; ++a) {
     for (const auto& s : e.cyclogram.sections) {
       if (s.drive.feed_m_s[a] > 0.0 && (axes.empty() || axes.back() != a)) axes.push_back(a);
@@ -350,7 +350,7 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
   return section;
 }
 
-/// @param key  of the JSON object that says what was written
+/// @param key  of the JSON object that describes what was written
 Section written_section(const DiagnosisFindings& found, const std::string& key) {
   Section section{.key = key, .title = "What was written: " + found.file};
   add(section,
@@ -362,7 +362,7 @@ Section written_section(const DiagnosisFindings& found, const std::string& key) 
   return section;
 }
 
-/// Without what people see.
+/// The section without its parts for people.
 Section for_programs(Section section) {
   section.title.clear();
   for (output::Block& block : section.blocks) {
@@ -382,7 +382,7 @@ output::Document begin(const std::string& what, const DiagnosisFindings& found, 
           .subtitle = fmt::format("measured: {}", fmt::join(names, ", "))};
 }
 
-/// What both have below their own findings. @param after  what Diagnosis::extended is called
+/// The common part of both documents, after their own findings. @param after  name of Diagnosis::extended
 void add_evidence(Section& body, const DiagnosisFindings& found, const std::string& after) {
   const diagnosis::Diagnosis& d = found.diagnosis;
   body.sections.push_back(compared_data(found.measured.runs));
@@ -399,7 +399,7 @@ void add_evidence(Section& body, const DiagnosisFindings& found, const std::stri
   for (Section& record : residual_sections(found.measured, d, after)) body.sections.push_back(std::move(record));
   const std::vector<Iso230Run> iso = measured_iso230_3(found.measured);
   Table figures = iso230_3_table(iso);
-  figures.key.clear();  // programs have the items
+  figures.key.clear();  // programs use the items
   for (output::Column& column : figures.columns) {
     if (column.key != "unit") column.key.clear();
   }

@@ -1,5 +1,6 @@
 #pragma once
-// What `diagnose` and `calibrate` found, as documents: what was found, how sure it is, and the residuals that a person judges it by.
+// The results of `diagnose` and `calibrate` as documents: what was found, how certain it is, and the residuals for a person
+// to judge it.
 
 #include "diagnosis/extended_scenario.hpp"
 #include "output/document.hpp"
@@ -7,7 +8,7 @@
 
 namespace driftwright::findings {
 
-/// What a document shows.
+/// The contents of such a document.
 struct DiagnosisFindings {
   const studies::MeasuredTwin& measured;
   const diagnosis::Diagnosis& diagnosis;
@@ -18,7 +19,7 @@ struct DiagnosisFindings {
 
 /// The document whose JSON is diagnosis.json.
 [[nodiscard]] output::Document diagnosis_document(const DiagnosisFindings& found, const output::Provenance& made_by);
-/// The same for a calibration, calibration.json: numbers first, no causes.
+/// The document of a calibration, calibration.json: numbers first, no causes.
 [[nodiscard]] output::Document calibration_document(const DiagnosisFindings& found, const output::Provenance& made_by);
 
 }  // namespace driftwright::findings

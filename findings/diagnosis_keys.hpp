@@ -1,5 +1,5 @@
 #pragma once
-// What diagnosis.json and calibration.json hold, for `driftwright schema` and the documentation.
+// The keys of diagnosis.json and calibration.json, for `driftwright schema` and the documentation.
 
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace driftwright::findings {
 
-/// Of diagnosis.json.
+/// Keys of diagnosis.json.
 [[nodiscard]] std::vector<output::ResultKey> diagnosis_keys();
-/// Of calibration.json: the same but for the scenario written, and with a warning.
+/// Keys of calibration.json: the same except for the scenario written, and with a warning.
 [[nodiscard]] std::vector<output::ResultKey> calibration_keys();
 
 }  // namespace driftwright::findings

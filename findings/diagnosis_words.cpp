@@ -14,8 +14,8 @@ namespace {
 using diagnosis::Estimate;
 using diagnosis::kTooFar;
 
-constexpr double kClearlyBetter = 0.95;  // of the RMSE
-constexpr double kEvenOdds = 0.5;        // that nothing is missing
+constexpr double kClearlyBetter = 0.95;  // ratio of the RMSE
+constexpr double kEvenOdds = 0.5;        // probability that nothing is missing
 
 std::string unit_of(const Estimate& e) {
   return e.unit == "1" ? "" : " " + e.unit;
@@ -38,7 +38,7 @@ std::string interval_text(const Estimate& e) {
 std::string parameters_text(const diagnosis::Cause& cause) {
   std::vector<std::string> numbers;
   for (const Estimate& p : cause.parameters) {
-    if (p.name == "at_speed") continue;  // the law says it
+    if (p.name == "at_speed") continue;  // the law already states it
     numbers.push_back(fmt::format("{} {} ({})", p.name, value_text(p), interval_text(p)));
   }
   return fmt::format("{}", fmt::join(numbers, ", "));

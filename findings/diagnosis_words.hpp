@@ -1,5 +1,5 @@
 #pragma once
-// Words about a diagnosis that documents and files have in common.
+// Texts about a diagnosis that documents and files share.
 
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/extended_scenario.hpp"
@@ -8,7 +8,7 @@ namespace driftwright::findings {
 
 /// "14.3 W/(m^2 K)"; times as minutes.
 [[nodiscard]] std::string value_text(const diagnosis::Estimate& estimate);
-/// How well a calibrated number is known before the records: "10 %", "0.3 K".
+/// How well a calibrated number was known before the records: "10 %", "0.3 K".
 [[nodiscard]] std::string known_to_text(const diagnosis::Estimate& estimate);
 /// "13.1 to 15.6", in the unit of value_text().
 [[nodiscard]] std::string interval_text(const diagnosis::Estimate& estimate);
@@ -23,23 +23,24 @@ struct Compared {
   std::vector<std::pair<std::string, std::string>> left_out;  ///< name, why
 };
 [[nodiscard]] Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs);
-/// "1 of 6 channels of the records is in the scenario; ..." where some are left out, else "".
+/// "1 of 6 channels of the records is in the scenario; ..." if some are left out, else "".
 [[nodiscard]] std::string compared_text(const Compared& compared);
 
-/// The unit that a statement's size is shown in, and what it is multiplied by for that.
+/// The unit that shows a statement's size, and the factor to that unit.
 [[nodiscard]] std::pair<std::string, double> shown_unit(const diagnosis::Stated& stated);
-/// Its size with the interval of 95 %: "40 W (35 to 46)".
+/// The size of a statement with its 95 % interval: "40 W (35 to 46)".
 [[nodiscard]] std::string size_text(const diagnosis::Stated& stated);
 
-/// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
+/// A sentence if a regression without a machine model predicts kept-out rows better than the extended scenario; else "".
 [[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
-/// "temperature t_head", "displacement drift_z", "tilt rx": a channel with what it measures. @param unit  K, um or urad
+/// A channel with its quantity: "temperature t_head", "displacement drift_z", "tilt rx". @param unit  K, um or urad
 [[nodiscard]] std::string channel_text(const std::string& name, const std::string& unit);
-/// Which causes the scenario's own numbers may have taken up, since they were fitted anew without them, and which have gone far in doing so, a sentence; else "".
+/// A sentence about causes whose effect the scenario's own numbers may have absorbed when they were fitted without them, and
+/// about the numbers that have moved far because of this; else "".
 [[nodiscard]] std::string taken_up_text(const diagnosis::Diagnosis& d);
-/// What of the gain on kept-out rows is calibration's, the named causes' and that of all that is written, a sentence.
+/// A sentence that divides the gain on kept-out rows between calibration, the named causes, and everything written.
 [[nodiscard]] std::string shares_of_gain_text(const diagnosis::Diagnosis& d);
-/// Why the numbers alone do not explain a measurement that a search without effects was made on; "" where they do.
+/// The reason why the numbers alone do not explain a measurement, if no effects were searched for; "" if they do.
 [[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d);
 
 }  // namespace driftwright::findings

@@ -1,5 +1,5 @@
 #pragma once
-// What `compensate --through frame` found, as a document.
+// The result of `compensate --through frame`, as a document.
 
 #include "output/document.hpp"
 #include "studies/frame_study.hpp"

@@ -15,7 +15,7 @@ using identification::IdentifiedBody;
 using identification::IdentifiedChannel;
 using output::significant;
 
-constexpr double kWorthSaying = 0.02;  // share of a driver
+constexpr double kWorthSaying = 0.02;  // smallest share of a driver that is mentioned
 
 std::string shown(const std::string& unit) {
   return unit == "um" ? "µm" : unit == "urad" ? "µrad" : "K";
@@ -176,7 +176,7 @@ output::Table ledger_table(const Identified& n) {
   return table;
 }
 
-/// Time of the rows that are kept, records one after the other [h].
+/// Times of the rows that are used, records one after the other [h].
 std::vector<double> hours(const Identified& n, const std::vector<Record>& records) {
   std::vector<double> time_h;
   double before_h = 0.0;

@@ -81,6 +81,10 @@ output::Document document_of(const studies::LoggerImport& import, const output::
                           .datum = import.read_by.empty() ? std::string("a guess from the file itself")
                                                           : fmt::format("the columns of {}", import.read_by)});
   add(body, output::Value{.key = "rows", .words = "rows", .datum = record.n_samples()});
+  if (import.read.n_without_reading > 0)
+    add(body, output::Value{.key = "rows_without_reading",
+                            .words = "rows without a reading, left out",
+                            .datum = import.read.n_without_reading});
   const double length_s = record.time_s.back() - record.time_s.front();
   add(body, output::Value{
                 .key = "duration_min", .words = "from the first row to the last", .datum = length_s / 60.0, .unit = "min"});

@@ -1,5 +1,5 @@
 #pragma once
-// What `import` has understood of a logger's file.
+// The result of `import`: how a logger's file was understood, as a document.
 
 #include "output/document.hpp"
 #include "studies/logger_import.hpp"

@@ -13,15 +13,16 @@ namespace driftwright::findings {
 /// `range_running_period`, `at_end_of_running_period`, `range_whole_record`; or `not_available`: why.
 [[nodiscard]] output::Section iso230_3_section(const compensation::Iso230Figures& figures);
 
-/// Figures of one of several runs.
+/// The figures of one run out of several.
 struct Iso230Run {
   std::string run;
   compensation::Iso230Figures figures;
 };
-/// Table `iso_230_3` of all runs and their channels, a detail: `run`, `spindle_running_period_min`, the columns above, `not_available`.
+/// Table `iso_230_3` of all runs and their channels, shown as a detail: `run`, `spindle_running_period_min`, the columns
+/// above, `not_available`.
 [[nodiscard]] output::Table iso230_3_table(const std::vector<Iso230Run>& runs);
 
-/// As items of one section, key `iso_230_3`: the section above of each run, for programs.
+/// The section above for each run, as items with the key `iso_230_3`, for programs.
 [[nodiscard]] std::vector<output::Section> iso230_3_items(const std::vector<Iso230Run>& runs);
 
 }  // namespace driftwright::findings

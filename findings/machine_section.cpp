@@ -12,7 +12,7 @@ std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine
     if (const auto* point = std::get_if<scenarios::PointOnRegion>(&sensor.place))
       marks.push_back({sensor.name, point->at_m});
   }
-  // Indicators of several directions at one point are one mark.
+  // Indicators of several directions at one point share a mark.
   std::vector<output::PictureMark> indicators;
   for (const scenarios::DisplacementOutput& output : machine.displacements) {
     if (!output.points) continue;
@@ -61,7 +61,7 @@ void add_machine(output::Section& body, const scenarios::MachineModel& machine, 
   if (mesh.cells.size() == 0) return;
   if (worst.fields()) {
     add(body, fields_picture(machine, mesh, cyclogram, *worst.fields()));
-  } else if (mesh.facets.size() > 0) {  // kept machines have none
+  } else if (mesh.facets.size() > 0) {  // stored machines have none
     add(body, surfaces_picture(machine, mesh));
   }
 }

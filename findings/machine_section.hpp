@@ -1,6 +1,6 @@
 #pragma once
-// The machine as a picture at the head of a report: its named surfaces, or its temperature and how it bends when it bends most; sensors and indicators
-// where they sit.
+// A picture of the machine at the top of a report: its named surfaces, or its temperature and deformation at the time of the
+// largest displacement; with the positions of sensors and indicators.
 
 #include <optional>
 
@@ -11,16 +11,16 @@
 
 namespace driftwright::findings {
 
-/// Its thermometers at points of it, and its indicators: few enough to be read.
+/// Marks at its point thermometers and indicators: few enough to be readable.
 [[nodiscard]] std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine);
 
-/// Its surfaces in colours of their own, with their names. @pre the mesh has cells
+/// Its surfaces in different colours, with their names. @pre the mesh has cells
 [[nodiscard]] output::Picture surfaces_picture(const scenarios::MachineModel& machine, const mesh::Mesh& mesh);
-/// Its temperature, and its displacement magnified. @param fields  of the mesh, which has cells
+/// Its temperature, and its displacement magnified. @param fields  of the mesh, which must have cells
 [[nodiscard]] output::Picture fields_picture(const scenarios::MachineModel& machine, const mesh::Mesh& mesh,
                                              const std::string& cyclogram, const scenarios::WholeFields& fields);
 
-/// Keeps, of all fields that it is given, those of the largest displacement of any node.
+/// Keeps, of all fields that it receives, those with the largest displacement of any node.
 class WorstMoment {
  public:
   void take(const scenarios::WholeFields& fields);
@@ -31,7 +31,8 @@ class WorstMoment {
   std::optional<scenarios::WholeFields> worst_;
 };
 
-/// What a report of a run opens with: the fields at the worst moment; where no fields were asked for, the named surfaces if the mesh has them; nothing without a mesh.
+/// Adds the first picture of a run's report: the fields at the worst time; without fields, the named surfaces if the mesh
+/// has any; nothing without a mesh.
 void add_machine(output::Section& body, const scenarios::MachineModel& machine, const mesh::Mesh& mesh,
                  const std::string& cyclogram, const WorstMoment& worst);
 

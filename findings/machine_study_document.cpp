@@ -85,7 +85,7 @@ Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenar
   return plot;
 }
 
-/// δ over T: one curve per cyclogram; were drift a function of temperature they would coincide.
+/// δ over T: one curve per cyclogram; if the drift were a function of temperature they would coincide.
 Plot drift_over_temperature(const std::string& sensor, const std::string& target, const studies::MachineStudy& study) {
   Plot plot{.title = "Drift over temperature at " + sensor,
             .x_label = sensor + " [°C]",

@@ -1,5 +1,5 @@
 #pragma once
-// What the main job found, as a document.
+// The result of `run` for a machine, as a document.
 
 #include "findings/machine_section.hpp"
 #include "output/document.hpp"

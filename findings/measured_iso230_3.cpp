@@ -7,7 +7,7 @@ namespace driftwright::findings {
 std::vector<Iso230Run> measured_iso230_3(const studies::MeasuredTwin& measured) {
   std::vector<Iso230Run> list;
   for (const diagnosis::MeasuredRun& run : measured.runs) {
-    // read again: ranges are of what was recorded, and the diagnosis keeps what it compares with a model
+    // read again, because ranges refer to the recorded values, and the diagnosis keeps only what it compares with a model
     compensation::Iso230Figures figures;
     if (run.start_K.size() > 0) {
       figures.not_available = "the machine was warm at the start";

@@ -6,8 +6,8 @@
 
 namespace driftwright::findings {
 
-/// Of each record by its file's name: all displacements and tilts in it, as recorded. A run that begins warm has none, for the test begins in
-/// balance.
+/// The figures of each record, with its file's name: all displacements and tilts in it, as recorded. A run that begins warm
+/// has none, because the test must begin in balance.
 /// @throws InputError  for a record that can no longer be read
 [[nodiscard]] std::vector<Iso230Run> measured_iso230_3(const studies::MeasuredTwin& measured);
 

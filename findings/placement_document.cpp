@@ -22,11 +22,12 @@ using studies::PlacedFor;
 using studies::Placement;
 using studies::Residual;
 
-constexpr double kWorthBuying = 0.9;  // of what is left: one more that leaves more than this is not worth it
+constexpr double kWorthBuying = 0.9;  // ratio of the remaining error: one more thermometer must reduce it below this
 
-constexpr double kOutOfPicture = 4.0;  // times what one thermometer leaves: the curves of interest would lie on the axis
+// Times the error with one thermometer; larger values would squeeze the relevant curves against the axis.
+constexpr double kOutOfPicture = 4.0;
 
-/// Which of the curve's numbers the places were chosen for.
+/// The error of the curve for which the places were chosen.
 double of(const Placement& p, const Residual& left) {
   if (p.options.placed_for == PlacedFor::kObserver) return left.observer_um;
   if (p.options.placed_for == PlacedFor::kRegression) return left.regression_um;
@@ -48,7 +49,7 @@ std::string n_words(std::size_t n) {
   return n == 1 ? "1 thermometer" : fmt::format("{} thermometers", n);
 }
 
-/// The members of the set of n that are not mounted, in the order of Placement::names.
+/// The members of the set of n that are not mounted yet, in the order of Placement::names.
 std::vector<int> bought(const Placement& p) {
   const std::vector<int>& set = p.chosen.sets[static_cast<std::size_t>(p.options.n) - 1];
   return {set.begin() + static_cast<std::ptrdiff_t>(p.mounted.size()), set.end()};
@@ -63,7 +64,8 @@ std::string spot_name(const Placement& p, int spot) {
   return fmt::format("{} [{:.0f}, {:.0f}, {:.0f}] mm", s.region, 1e3 * s.at_m.x(), 1e3 * s.at_m.y(), 1e3 * s.at_m.z());
 }
 
-/// How many are worth their money: the first number behind which no more of them take off a tenth each.
+/// The number of thermometers that are worthwhile: the first number after which more of them reduce the error by less than a
+/// tenth each.
 std::size_t enough(const Placement& p) {
   for (std::size_t n = 0; n < p.chosen.left.size(); ++n) {
     double worth_um = of(p, p.chosen.left[n]);

@@ -1,5 +1,5 @@
 #pragma once
-// What `place` shows.
+// The result of `place`, as a document.
 
 #include "output/document.hpp"
 #include "studies/placement.hpp"

@@ -1,16 +1,16 @@
 #pragma once
-// What no machine has or does, as warnings of a document; `--strict` refuses a document that has some.
+// Warnings of a document about implausible data or results; `--strict` refuses a document with warnings.
 
 #include "output/document.hpp"
 #include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::findings {
 
-/// Adds the numbers of the scenario that are unusual (scenarios/reader/unusual.hpp), and what was found unusual in what came of it.
+/// Adds warnings for unusual numbers of the scenario (scenarios/reader/unusual.hpp), and those in `found` for its results.
 void add_plausibility(output::Section& body, const scenarios::Scenario& scenario,
                       const std::vector<std::string>& found = {});
 
-/// The warnings of a document; empty where it has none.
+/// The warnings of a document; empty if it has none.
 [[nodiscard]] std::vector<std::string> implausible(const output::Document& document);
 
 }  // namespace driftwright::findings

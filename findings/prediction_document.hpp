@@ -1,5 +1,5 @@
 #pragma once
-// What `predict` found, as a document.
+// The result of `predict`, as a document.
 
 #include "output/document.hpp"
 #include "studies/prediction.hpp"
@@ -11,7 +11,7 @@ namespace driftwright::findings {
                                            const Cyclogram& cyclogram, const std::string& asked,
                                            const output::Provenance& made_by);
 
-/// Table `start_checks`: how each displacement changed over the run before, recorded and in the model.
+/// Table `start_checks`: change of each displacement over the run before, recorded and in the model.
 [[nodiscard]] output::Table start_checks_table(const std::vector<studies::StartCheck>& checks);
 
 }  // namespace driftwright::findings

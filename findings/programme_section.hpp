@@ -1,15 +1,16 @@
 #pragma once
-// A programme of predictors as part of a document.
+// The section of a document about a programme of predictors.
 
 #include "output/document.hpp"
 #include "studies/programme_study.hpp"
 
 namespace driftwright::findings {
 
-/// Errors of each predictor by kinds of cyclograms, what schedules planned on them keep, modes and factors that were identified.
+/// Errors of each predictor by kinds of cyclograms, the tolerance that schedules planned with them keep, identified modes
+/// and factors.
 [[nodiscard]] output::Section programme_section(const studies::ProgrammeStudy& study, const scenarios::Scenario& scenario);
 
-/// One row a predictor, cyclogram and channel: too long for a document.
+/// One row per predictor, cyclogram and channel: too long for a document.
 [[nodiscard]] output::Table predictions_table(const studies::ProgrammeStudy& study);
 
 }  // namespace driftwright::findings

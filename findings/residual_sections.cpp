@@ -20,9 +20,9 @@ using output::Section;
 using output::Series;
 using output::Table;
 
-constexpr double kTells = 0.3;  // correlations from here on are shown
+constexpr double kTells = 0.3;  // correlations of at least this are shown
 
-/// A channel of a run as the page has it: degC, um or urad.
+/// A channel of a run in the page's units: degC, um or urad.
 struct Curves {
   std::string name, unit;       ///< of readings
   std::string difference_unit;  ///< of residuals

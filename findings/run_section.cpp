@@ -147,9 +147,9 @@ Table inner_heat_table(const solver::Trajectory& run) {
 }
 
 Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
-  constexpr std::size_t kMostRunCurves = 6;  // and `stored`: as many as there are colours
+  constexpr std::size_t kMostRunCurves = 6;  // besides `stored`: as many as there are colours
   const Record record = scenarios::heat_flow_record(run, cyclogram.name);
-  std::vector<std::pair<double, std::size_t>> by_size;  // total heat moved, channel
+  std::vector<std::pair<double, std::size_t>> by_size;  // total exchanged heat, channel
   for (std::size_t j = 0; j < run.flows.size(); ++j) {
     if (run.flows[j].kind == FlowKind::kInternal) continue;
     double moved = 0.0;

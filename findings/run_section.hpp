@@ -1,5 +1,5 @@
 #pragma once
-// One simulated cyclogram as part of a document, for every document that shows one.
+// The section about one simulated cyclogram, for every document that contains one.
 
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
@@ -9,22 +9,22 @@ namespace driftwright::findings {
 /// Times of a record in minutes, for plots.
 [[nodiscard]] std::vector<double> minutes(const Record& record);
 
-/// Where the speed changes, with what it changes to; none where it changes more than 40 times.
+/// The times of speed changes, with the new speed; none if there are more than 40.
 [[nodiscard]] std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram);
 
 /// Channels of a record over time.
 [[nodiscard]] output::Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
                                          const std::vector<std::string>& names, const Cyclogram& cyclogram);
 
-/// Displacements, tilts and temperatures over time, eight in a plot.
+/// Displacements, tilts and temperatures over time, eight per plot.
 void add_channel_plots(output::Section& section, const Record& record, const Cyclogram& cyclogram);
 
-/// Who heats, who cools: mean power and heat of each flow across the machine's boundary (`heat_flows`) and within it (`inner_heat_flows`), and
-/// the six largest of the former over time.
+/// Heat sources and sinks: mean power and heat of each flow across the machine's boundary (`heat_flows`) and within it
+/// (`inner_heat_flows`), and the six largest of the former over time.
 void add_heat(output::Section& section, const solver::Trajectory& run, const Cyclogram& cyclogram);
 
-/// Where temperatures left the bounds of conduction: each jump's largest overshoot with its place (`overshoots`), and the largest of all in a
-/// sentence; nothing where there is none.
+/// Violations of the bounds of conduction: each jump's largest overshoot with its place (`overshoots`), and the largest of
+/// all in a sentence; nothing without overshoots.
 void add_overshoots(output::Section& section, const solver::Trajectory& run, const scenarios::Model& model);
 
 }  // namespace driftwright::findings

@@ -47,7 +47,11 @@ void add_size(output::Section& section, const mesh::Mesh& mesh) {
 
 void add_demand(output::Section& section, const scenarios::MeshDemand& demand) {
   add(section, Value{.key = "solved_by", .words = "solved by", .datum = demand.method});
-  add(section, Value{.key = "memory_MB", .words = "memory that it will take, about", .datum = 1e-6 * demand.memory_bytes, .unit = "MB", .digits = output::decimals(0)});
+  add(section, Value{.key = "memory_MB",
+                     .words = "memory that it will take, about",
+                     .datum = 1e-6 * demand.memory_bytes,
+                     .unit = "MB",
+                     .digits = output::decimals(0)});
   add(section, Value{.key = "time_s",
                      .words = "time of one processor, very roughly, while the machine is not known from disk",
                      .datum = demand.time_s,
@@ -55,7 +59,7 @@ void add_demand(output::Section& section, const scenarios::MeshDemand& demand) {
                      .digits = output::decimals(0)});
 }
 
-/// Area in contact of each joint, and how far its sides are apart.
+/// Contact area of each joint, and the gap between its sides.
 Table joints_table(const mesh::Mesh& m) {
   Table joints{
       .key = "contacts",
@@ -73,7 +77,7 @@ Table joints_table(const mesh::Mesh& m) {
   return joints;
 }
 
-/// NaN where it is not known yet.
+/// Density of a region's material; NaN if it is not known yet.
 double density_kg_m3(const scenarios::MachineModel& machine, const std::string& region) {
   for (const scenarios::MaterialEntry& entry : machine.materials) {
     if (entry.region == region) return entry.material.density_kg_m3;

@@ -1,5 +1,5 @@
 #pragma once
-// A scenario as `check` and its mesh as `mesh` show it, as documents.
+// The results of `check`, `mesh` and `list`, as documents.
 
 #include "machine/machine.hpp"
 #include "machine/mesh_demand.hpp"
@@ -8,12 +8,12 @@
 
 namespace driftwright::findings {
 
-/// What is in a scenario that can be run, and what it will take. @param placed, demand  null: a study of measured records
+/// The contents of a scenario that can be run, and the resources it will need. @param placed, demand null: a study of
+/// measured records
 [[nodiscard]] output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
-                                                 const scenarios::MeshDemand* demand,
-                                                 const output::Provenance& made_by);
+                                                 const scenarios::MeshDemand* demand, const output::Provenance& made_by);
 
-/// Size and quality of a mesh, its regions, surfaces and joints. @param machine  marks and masses come from it, as far as it has them
+/// Size and quality of a mesh, its regions, surfaces and joints. @param machine  source of marks and masses, if it has them
 [[nodiscard]] output::Document mesh_document(const std::string& name, const scenarios::MachineModel& machine,
                                              const mesh::Mesh& mesh, const output::Provenance& made_by);
 

@@ -48,7 +48,7 @@ std::string operations_words(const CorrectedSeries& series) {
   return fmt::format("{} operation{}", n, n == 1 ? "" : "s (a tool change begins one)");
 }
 
-/// How long, and how often.
+/// Duration and number of parts.
 std::string extent_words(const CorrectedSeries& series) {
   const double part_min = series.program.duration_s() / 60.0;
   if (!series.is_series()) return fmt::format("{:.1f} min, {}", part_min, operations_words(series));
@@ -86,7 +86,7 @@ Plot course_plot(const CorrectedSeries& series, std::size_t a) {
           .marks = series.is_series() ? std::vector<output::SectionMark>{} : section_marks(series.cyclogram)};
 }
 
-/// Of all programs, each once.
+/// Notes of all programs, each once.
 std::vector<std::string> notes_of(const CorrectedSeries& series) {
   std::vector<std::string> notes;
   std::set<std::string> seen;
@@ -134,7 +134,7 @@ Section program_section(const CorrectedSeries& series, const CorrectedProgram& p
   return section;
 }
 
-/// Part by part, in a series.
+/// The parts of a series, one per row.
 Table parts_table(const CorrectedSeries& series) {
   Table table{
       .key = "parts",
@@ -183,7 +183,7 @@ Table long_table(const CorrectedSeries& series) {
   return table;
 }
 
-/// The first of them, for people; schedule.csv has all.
+/// The first changes, for people; schedule.csv has all.
 Table changes_table(const CorrectedSeries& series) {
   constexpr std::size_t kMostRows = 200;
   Table table{.title = "Changes of the correction c; the axis moves by -c",
@@ -225,7 +225,7 @@ const char* language_of(NcDialect dialect) {
   return "";
 }
 
-/// Where the corrections go, and who has run such a program.
+/// Where the corrections are written, and whether such programs have been run on a control.
 std::string proven_words(const CorrectedSeries& series) {
   switch (series.program.dialect) {
     case NcDialect::kLinuxCnc:

@@ -1,5 +1,5 @@
 #pragma once
-// What `schedule` found, as a document.
+// The result of `schedule`, as a document.
 
 #include "output/document.hpp"
 #include "studies/corrected_series.hpp"

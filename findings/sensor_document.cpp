@@ -123,7 +123,7 @@ Table rho_table(const SensorStudy& study) {
   return table;
 }
 
-/// Neighbours that the data do not distinguish; those among the chosen are said on the terminal.
+/// Neighbours that the data do not distinguish; those among the chosen are also shown on the terminal.
 void add_undecided(output::Section& body, const SensorStudy& study) {
   const auto& channels = study.ranking.channels;
   std::vector<std::string> sentences;

@@ -1,5 +1,5 @@
 #pragma once
-// What `select` found, as a document.
+// The result of `select`, as a document.
 
 #include "output/document.hpp"
 #include "studies/sensor_study.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// What `simulate` found, as a document.
+// The result of `simulate`, as a document.
 
 #include "findings/machine_section.hpp"
 #include "machine/simulated_run.hpp"

@@ -30,7 +30,7 @@ bool has_failures(const StrategyMatrix& m) {
   return m.settings.fails_at.has_value();
 }
 
-/// One column of the matrix: which cases it is the worst of.
+/// One column of the matrix, with the cases whose worst it shows.
 struct StrategyColumn {
   std::string title;
   std::function<bool(const Case&)> counts;
@@ -53,7 +53,7 @@ struct MapColumn {
   std::function<bool(const Case&)> counts;
 };
 
-/// The run on which a regression on few sensors leaves most, beside the strategy that was chosen.
+/// The run on which a regression on few sensors leaves the largest error, compared with the chosen strategy.
 struct Contrast {
   const JudgedStrategy *simple = nullptr, *chosen = nullptr;
   std::size_t run = 0;
@@ -101,12 +101,12 @@ std::string name_of(const JudgedRunOfMachine& r) {
   return r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season);
 }
 
-/// What is no number where a bare prediction said nothing.
+/// Replaces a value that is not finite, from a prediction that is missing.
 Datum finite(double value) {
   return std::isfinite(value) ? Datum(value) : Datum("no value");
 }
 
-/// The worst of families and seasons.
+/// The worst case per family and season.
 Table matrix_table(const StrategyMatrix& m) {
   Table table{
       .key = "largest_residuals",
@@ -204,7 +204,7 @@ Table fits_table(const StrategyMatrix& m) {
   return table;
 }
 
-/// What strategies miss on each part left out.
+/// The errors of strategies on each left-out part.
 Table folds_table(const StrategyMatrix& m) {
   Table table{
       .key = "folds",
@@ -226,7 +226,8 @@ Table folds_table(const StrategyMatrix& m) {
   return table;
 }
 
-/// Of what is judged, all displacements and tilts that were recorded. The test begins in balance: a run that goes on from others has none.
+/// ISO 230-3 figures of all recorded displacements and tilts of the judged runs. The test begins in balance: a run that
+/// continues others has none.
 std::vector<Iso230Run> judged_iso230_3(const StrategyMatrix& m) {
   std::vector<Iso230Run> list;
   for (const JudgedRunOfMachine& r : m.runs) {
@@ -239,7 +240,7 @@ std::vector<Iso230Run> judged_iso230_3(const StrategyMatrix& m) {
   return list;
 }
 
-/// Displacements and tilts of the runs that strategies leave as they are.
+/// Displacements and tilts of the runs that strategies do not correct.
 std::vector<std::string> other_axes(const StrategyMatrix& m) {
   std::vector<std::string> names;
   const Record& readings = m.runs.front().run.readings;
@@ -250,7 +251,7 @@ std::vector<std::string> other_axes(const StrategyMatrix& m) {
   return names;
 }
 
-/// Of which axis a verdict is; "" where no other was recorded.
+/// The axis that a verdict is about; "" if no other was recorded.
 std::string axis_text(const StrategyMatrix& m) {
   const std::vector<std::string> others = other_axes(m);
   if (others.empty()) return "";
@@ -264,7 +265,7 @@ std::string enough_text(const StrategyMatrix& m, const std::string& family) {
   return s->fitted.name;
 }
 
-/// What is left in µm, coloured by the tolerance. @param columns  and which cases each of them is the worst of
+/// The remaining error in µm, coloured by the tolerance. @param columns  each with the cases whose worst it shows
 output::Picture map_of(const StrategyMatrix& m, const std::string& title, const std::vector<MapColumn>& columns) {
   output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = m.settings.tolerance_um, .unit = "µm"};
   for (const MapColumn& c : columns) map.columns.push_back(c.heading);
@@ -274,15 +275,14 @@ output::Picture map_of(const StrategyMatrix& m, const std::string& title, const 
       const Worst w = worst_of(s, c.counts);
       row.push_back(w.peak ? w.peak->after.peak_abs : std::nan(""));
     }
-    if (std::all_of(row.begin(), row.end(), [](double um) { return std::isnan(um); }))
-      continue;  // no sensor that could fail
+    if (std::all_of(row.begin(), row.end(), [](double um) { return std::isnan(um); })) continue;  // no sensor can fail
     map.rows.push_back(s.fitted.name);
     map.values.push_back(std::move(row));
   }
   return {.title = title, .svg = output::draw_heat_map(map)};
 }
 
-/// Families x seasons; the runs themselves where there is one family without seasons, as of records.
+/// Families x seasons; the runs themselves if there is one family without seasons, as with records.
 output::Picture intact_map(const StrategyMatrix& m) {
   std::vector<MapColumn> columns;
   const std::vector<std::string> families = families_of(m), seasons = seasons_of(m);
@@ -301,7 +301,7 @@ output::Picture intact_map(const StrategyMatrix& m) {
   return map_of(m, fmt::format("Largest |residual| of {} in µm, all sensors intact", m.settings.strategies.target), columns);
 }
 
-/// Families x ways in which a sensor failed, the worst of all sensors.
+/// Families x ways of sensor failure, the worst of all sensors.
 std::optional<output::Picture> failed_map(const StrategyMatrix& m) {
   const auto way_of = [](const Case& c) -> std::string {  // "t05 stuck", "t05 and t11 exchanged"
     return c.failed.ends_with(" exchanged") ? "exchanged" : c.failed.substr(c.failed.find(' ') + 1);
@@ -356,7 +356,7 @@ void add_pictures(Section& section, const StrategyMatrix& m) {
   add(section, course(m, c.run, shown));
 }
 
-/// The formula that people can read, where there is one.
+/// The formula in readable form, if there is one.
 void add_formula(Section& section, const StrategyMatrix& m) {
   for (const JudgedStrategy& s : m.strategies) {
     const DriftModel* model = as_formula(*s.fitted.predictor);

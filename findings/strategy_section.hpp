@@ -1,21 +1,22 @@
 #pragma once
-// A matrix of strategies as part of a document.
+// The section of a document about a matrix of strategies.
 
 #include "compensation/judging/strategy_matrix.hpp"
 #include "output/document.hpp"
 
 namespace driftwright::findings {
 
-/// Section `validation`: verdicts, what each strategy leaves, by family and season, in its worst case, and what was left out.
+/// Section `validation`: verdicts, the remaining error of each strategy by family and season and in its worst case, and what
+/// was left out.
 [[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix);
 
 /// The conditions that all strategies were judged under: target, tolerance, training runs.
 [[nodiscard]] output::Section conditions_of(const compensation::StrategyMatrix& matrix);
-/// What one strategy was found to be, as a row of the table `strategies`.
+/// The verdicts on these strategies, one row each, with the key `strategies`.
 [[nodiscard]] output::Table strategies_table(const compensation::StrategyMatrix& matrix,
                                              const std::vector<const compensation::JudgedStrategy*>& strategies);
 
-/// One row a strategy, run and failed sensor: too long for a document.
+/// One row per strategy, run and failed sensor: too long for a document.
 [[nodiscard]] output::Table cases_table(const compensation::StrategyMatrix& matrix);
 
 }  // namespace driftwright::findings

@@ -26,7 +26,7 @@ std::string um(double m, int decimals = 1) {
   return fmt::format("{:.{}f}", 1e6 * m, decimals);
 }
 
-/// How much less than without correction [%].
+/// Reduction against no correction [%].
 double less_percent(double left_m, double none_m) {
   return none_m > 0.0 ? 100.0 * (1.0 - left_m / none_m) : 0.0;
 }
@@ -43,7 +43,8 @@ const studies::TableStrategy& strategy(const studies::TableStudy& study, const s
 
 Plot series_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   const studies::TableRun& run = study.run;
-  std::vector<double> x_um, table_um, scale_um;  // the latter since the start: from 20 degC on they would dwarf the rest
+  // The latter since the start, because counted from 20 degC they would dwarf the rest.
+  std::vector<double> x_um, table_um, scale_um;
   for (std::size_t i = 0; i < run.table_only_x_um.size(); ++i) {
     table_um.push_back(run.table_only_x_um[i] - run.table_only_x_um[0]);
     scale_um.push_back(run.scale_only_x_um[i] - run.scale_only_x_um[0]);
@@ -168,7 +169,7 @@ Section readings_section(const studies::TableStudy& study) {
   return section;
 }
 
-/// The worst of a feed and motion over the three axes.
+/// The worst values of a feed and motion over the three axes.
 ProbeErrors worst_of_axes(const studies::TableStudy& study, double feed_m_s, const std::string& motion) {
   ProbeErrors worst;
   for (const ProbeRow& row : study.probe.rows) {
@@ -209,7 +210,7 @@ Table worst_touches_table(const scenarios::Scenario& scenario, const studies::Ta
   return table;
 }
 
-/// Of each axis, for probe.csv; the page has the worst of the three.
+/// Values of each axis, for probe.csv; the page shows the worst of the three.
 Table touches_table(const studies::TableStudy& study) {
   Table table{.key = "rows",
               .title = "Largest distance of a touch from where slow touches put the surface, axis by axis",

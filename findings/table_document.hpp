@@ -1,5 +1,5 @@
 #pragma once
-// What `run` found of a scenario with a table, as a document.
+// The result of `run` for a scenario with a table, as a document.
 
 #include "findings/machine_section.hpp"
 #include "output/document.hpp"
@@ -7,7 +7,8 @@
 
 namespace driftwright::findings {
 
-/// The longest wait between measurements that keeps the tolerance, as all shorter ones do; nullptr when even the shortest does not.
+/// The longest interval between measurements that keeps the tolerance, as all shorter ones do; nullptr if even the shortest
+/// does not.
 [[nodiscard]] const studies::IntervalRow* longest_interval(const studies::TableStudy& study, double tolerance_m,
                                                            bool with_model);
 
@@ -15,7 +16,7 @@ namespace driftwright::findings {
                                            const mesh::Mesh& mesh, const WorstMoment& worst,
                                            const output::Provenance& made_by);
 
-/// Largest position error on the table over the judged time, a column a strategy, as a record CSV.
+/// Largest position error on the table over the judged time, one column per strategy, as a record CSV.
 [[nodiscard]] std::string strategies_csv(const studies::TableStudy& study, const std::vector<std::string>& comments);
 
 }  // namespace driftwright::findings

@@ -21,11 +21,11 @@ using output::Verdict;
 using studies::JudgedTest;
 using studies::TestPlan;
 
-constexpr double kOften = 0.25;         // of the faults of a kind: from there on a map is orange
-constexpr double kWorthShowing = 0.02;  // likewise
+constexpr double kOften = 0.25;         // share of the faults of a kind from which a map is orange
+constexpr double kWorthShowing = 0.02;  // share from which a confusion is shown
 constexpr std::size_t kMostPairs = 25;
 
-/// Laws of the question by kind, kinds in their order.
+/// Laws of the question, grouped by kind in their order.
 std::vector<std::pair<std::string, std::vector<Eigen::Index>>> laws_by_kind(const diagnosis::Question& question) {
   std::vector<std::pair<std::string, std::vector<Eigen::Index>>> kinds;
   for (std::size_t i = 0; i < question.laws.size(); ++i) {
@@ -41,7 +41,7 @@ double weight(const TestPlan& plan, Eigen::Index law) {
   return plan.question.laws[static_cast<std::size_t>(law)].weight;
 }
 
-/// Mean over some laws by their weights.
+/// Mean over some laws, weighted.
 template <class Of>
 double mean(const TestPlan& plan, const std::vector<Eigen::Index>& laws, const Of& of) {
   double sum = 0.0, all = 0.0;
@@ -131,7 +131,7 @@ Table kinds_table(const TestPlan& plan) {
   return table;
 }
 
-/// Of the faults of each kind that are seen, the share that the other kind may stand in for: kinds x kinds, 0 to 1.
+/// For the detected faults of each kind, the share that another kind could explain: kinds x kinds, 0 to 1.
 Eigen::MatrixXd taken_kinds(const TestPlan& plan, const JudgedTest& test) {
   const auto kinds = laws_by_kind(plan.question);
   const auto n = static_cast<Eigen::Index>(kinds.size());
@@ -149,7 +149,8 @@ Eigen::MatrixXd taken_kinds(const TestPlan& plan, const JudgedTest& test) {
   return taken;
 }
 
-/// Two maps of the kinds that are mistaken for each other behind one of the tests. Kinds are numbered: their names are longer than a cell.
+/// Two maps of the kinds that are confused after one of the tests. Kinds are numbered, because their names are longer than a
+/// cell.
 void add_maps(output::Section& body, const TestPlan& plan) {
   const auto kinds = laws_by_kind(plan.question);
   const Eigen::MatrixXd usual = taken_kinds(plan, plan.usual), planned = taken_kinds(plan, plan.planned);

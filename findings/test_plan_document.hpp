@@ -1,12 +1,12 @@
 #pragma once
-// What `plan-test` found, as a document.
+// The result of `plan-test`, as a document.
 
 #include "output/document.hpp"
 #include "studies/test_plan.hpp"
 
 namespace driftwright::findings {
 
-/// @param rows  the planned programme as a scenario's `cyclograms` has it
+/// @param rows  the planned programme in the form of a scenario's `cyclograms`
 [[nodiscard]] output::Document document_of(const studies::TestPlan& plan, const scenarios::Scenario& scenario,
                                            const std::string& rows, const output::Provenance& made_by);
 

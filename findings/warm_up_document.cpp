@@ -169,7 +169,7 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
   return plot;
 }
 
-/// One strategy of each sort, so that lines can be distinguished.
+/// One strategy of each kind, so that lines can be distinguished.
 constexpr std::array<const char*, 6> kDrawn = {
     "no correction", "one thermometer", "ridge, all sensors", "thermal modes of the model", "thermometers and memories",
     "observer"};

@@ -1,5 +1,5 @@
 #pragma once
-// What `warmup` found, as a document.
+// The result of `warmup`, as a document.
 
 #include "output/document.hpp"
 #include "studies/warm_up.hpp"

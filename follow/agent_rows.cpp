@@ -16,8 +16,9 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kLongestAnswer_s = 2.0;
-// Of an observation before the agent's own time: no more than clocks of its adapters differ.
+// Most that an observation's time may be after the agent's own time; the clocks of its adapters differ by less.
 constexpr double kClockAhead_s = 60.0;
+constexpr int kProbeTries = 3;
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
 
 void require_items(const HeardValues& values, const MtconnectStreams& told) {
@@ -42,6 +43,46 @@ void require_items(const HeardValues& values, const MtconnectStreams& told) {
   }
 }
 
+/// "Xfrt (AxisFeedrate)".
+std::string words_of(const ChannelOrigin& c, const Observation& o) {
+  return fmt::format("{} ({})", c.from, o.type);
+}
+
+/// In which unit the numbers of each channel come: as the probe says, else as the standard does for the type. What is not the agent's own word is said.
+/// @throws InputError  where an item's unit is not one of its channel's quantity
+void set_units(HeardValues& values, const MtconnectProbe& probe, const MtconnectStreams& told, const Say& say) {
+  std::vector<std::string> standard, unknown;
+  for (std::size_t k = 0; k < values.origins().size(); ++k) {
+    const ChannelOrigin& c = values.origins()[k];
+    const auto o = std::find_if(told.observations.begin(), told.observations.end(),
+                                [&](const Observation& at) { return at.id == c.from || at.name == c.from; });
+    if (o == told.observations.end()) continue;  // since the agent was started anew: it is missing until it is there again
+    const auto item =
+        std::find_if(probe.items.begin(), probe.items.end(), [&](const DataItem& at) { return at.id == o->id; });
+    const bool has_units = item != probe.items.end() && !item->units.empty();
+    const std::string units = has_units ? item->units : standard_units(o->type, o->sub_type);
+    if (units.empty())
+      unknown.push_back(fmt::format("{} in {}", words_of(c, *o), c.numbers.unit));
+    else if (!has_units)
+      standard.push_back(fmt::format("{} in {}", words_of(c, *o), units));
+    if (units.empty()) continue;
+    try {
+      values.set_unit(k, unit_of_mtconnect(units));
+    } catch (const RangeError& e) {
+      throw InputError(
+          fmt::format("--topic {}={}: the numbers of this data item are in {} ({}) and must "
+                      "convert to the channel's unit '{}': {}",
+                      c.header, c.from, units, has_units ? "by its probe" : "by the standard", c.numbers.unit, e.what()));
+    }
+  }
+  const std::string why =
+      probe.why_none.empty() ? "its probe gives no units for them" : fmt::format("it gives no probe ({})", probe.why_none);
+  if (!standard.empty()) say(fmt::format("{}, so the standard's units are taken: {}", why, fmt::join(standard, ", ")));
+  if (!unknown.empty())
+    say(fmt::format("{}, and the standard has none for their types; their numbers are taken in the channels' units: {}", why,
+                    fmt::join(unknown, ", ")));
+}
+
 void hear_in(HeardValues& values, const Observation& o) {
   for (const std::string& from : {o.id, o.name}) {
     if (from.empty()) continue;
@@ -59,10 +100,24 @@ double in_milliseconds(double time_s) {
 void wait_for(double seconds) {
   const timespec time{.tv_sec = static_cast<time_t>(seconds),
                       .tv_nsec = static_cast<long>(1e9 * (seconds - std::floor(seconds)))};
-  (void)nanosleep(&time, nullptr);  // a signal ends it
+  (void)nanosleep(&time, nullptr);  // a signal ends the wait
 }
 
 }  // namespace
+
+void ItemUnits::learn(HeardValues& values, MtconnectAgent& agent, const MtconnectStreams& told, const Say& say) {
+  if (instance_ == told.instance) return;
+  MtconnectProbe probe;
+  try {
+    probe = agent.probe(kLongestAnswer_s);
+  } catch (const RangeError& e) {
+    if (++n_failed_ < kProbeTries) throw;
+    probe.why_none = e.what();
+  }
+  n_failed_ = 0;
+  set_units(values, probe, told, say);
+  instance_ = told.instance;
+}
 
 CurrentRows::CurrentRows(const std::string& url, HeardValues values, double every_s, Say say)
     : agent_(url), values_(std::move(values)), every_s_(every_s), ticks_(every_s), say_(std::move(say)) {}
@@ -78,6 +133,7 @@ RowSource::Got CurrentRows::next(std::string& line, double wait_s) {
   try {
     const MtconnectStreams told = agent_.current(std::min(every_s_, kLongestAnswer_s));
     if (!has_answered_) require_items(values_, told);
+    units_.learn(values_, agent_, told, say_);
     values_.forget_all();
     for (const Observation& o : told.observations) hear_in(values_, o);
     if (is_away_) say_("answers again");
@@ -116,7 +172,7 @@ void SampleRows::ask() {
     const double most_s = std::max(every_s_, kLongestAnswer_s);
     if (!instance_) begin(agent_.current(most_s));
     using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + std::chrono::duration<double>(most_s);  // the rest at the next question
+    const auto until = Clock::now() + std::chrono::duration<double>(most_s);  // the rest follows with the next request
     for (int answers = 0; answers < kMostAnswers && Clock::now() < until; ++answers) {
       const MtconnectStreams streams = agent_.sample(next_, most_s);
       if (!streams.instance.empty() && streams.instance != *instance_) {
@@ -150,6 +206,7 @@ void SampleRows::ask() {
 
 void SampleRows::begin(const MtconnectStreams& now) {
   if (!instance_) require_items(values_, now);
+  units_.learn(values_, agent_, now, say_);
   instance_ = now.instance;
   next_ = now.next;
   values_.forget_all();
@@ -158,7 +215,8 @@ void SampleRows::begin(const MtconnectStreams& now) {
   rows_.push_back(values_.row(last_s_));
 }
 
-/// Observations of one time make one row, a millisecond after the last one if they come late; those of channels that nobody follows make none.
+/// Observations of one time make one row. A late row gets the last time plus a millisecond; channels that are not
+/// followed make none.
 void SampleRows::take(const MtconnectStreams& streams) {
   std::vector<Observation> list;
   for (const Observation& o : streams.observations) {
@@ -170,7 +228,7 @@ void SampleRows::take(const MtconnectStreams& streams) {
     if (streams.created_s > 0.0 && o.time_s > streams.created_s + kClockAhead_s) o.time_s = streams.created_s;
   }
   if (streams.created_s > 0.0 &&
-      streams.created_s < last_s_ - kClockAhead_s) {  // its clock was set: rows go on in front of all that is told by it
+      streams.created_s < last_s_ - kClockAhead_s) {  // the agent's clock was set back: rows continue before its new times
     last_s_ = streams.created_s;
     for (const Observation& o : list) last_s_ = std::min(last_s_, o.time_s);
     last_s_ -= 1e-3;

@@ -21,12 +21,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kBacklog = 64;
-constexpr int kSystemHolds = 1 << 18;     // bytes on their way to one client
-constexpr std::size_t kAtOnce = 1 << 18;  // bytes said to one client before the next one's turn
+constexpr int kSystemHolds = 1 << 18;     // send buffer of one client in the system [bytes]
+constexpr std::size_t kAtOnce = 1 << 18;  // bytes sent to one client before the next one's turn
 constexpr std::size_t kPassedOver =
-    1 << 18;  // bytes behind a request that are read away, so that the answer is not lost with them
-constexpr auto kLinger = std::chrono::milliseconds(2000);  // for the client to close
-constexpr auto kRest = std::chrono::milliseconds(1000);    // where no connection can be taken
+    1 << 18;  // most bytes read and dropped after a request, so that closing does not lose the answer
+constexpr auto kLinger = std::chrono::milliseconds(2000);  // time for the client to close
+constexpr auto kRest = std::chrono::milliseconds(1000);    // pause when the system cannot accept a connection
 
 const char* reason(int status) {
   switch (status) {
@@ -74,11 +74,11 @@ struct BoundedServer::Connection {
   Socket socket;
   State state = State::kHead;
   Clock::time_point since = Clock::now();
-  Clock::time_point until;  // of the state; of a stream that of the message under way
+  Clock::time_point until;  // end of the state; for a stream, of the message being sent
   std::string head;
-  std::string text;                         // to be said, before the body
-  std::shared_ptr<const std::string> body;  // null where there is none
-  std::size_t n_said = 0;                   // of both
+  std::string text;                         // to be sent, before the body
+  std::shared_ptr<const std::string> body;  // null if there is none
+  std::size_t n_said = 0;                   // bytes sent of both
   std::size_t n_passed_over = 0;
   std::function<std::string()> next;
 
@@ -111,7 +111,7 @@ BoundedServer::BoundedServer(const std::string& host, int port, Answer answer, S
     auto socket = std::make_unique<Socket>(fd);
     const int yes = 1, no = 0;
     (void)setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes,
-                     sizeof yes);  // what is still being closed of a run before does not hold the port
+                     sizeof yes);  // connections of an earlier run that are still closing do not block the port
     if (a->ai_family == AF_INET6) (void)setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &no, sizeof no);
     if (::bind(fd, a->ai_addr, a->ai_addrlen) != 0 || ::listen(fd, kBacklog) != 0) {
       why = std::strerror(errno);
@@ -138,7 +138,7 @@ std::size_t BoundedServer::n_streams() const {
 void BoundedServer::turn(std::chrono::milliseconds at_most) {
   std::vector<pollfd> polled;
   for (const auto& c : connections_) polled.push_back({c->socket.fd, c->waits_for(), 0});
-  // the newcomers last, and not where none can be taken: poll() would not wait at all
+  // The listening socket comes last, and only if a connection can be taken: otherwise poll() would not wait at all.
   const bool accepts = Clock::now() >= accepts_from_ && (connections_.size() < bounds_.n_connections || who_makes_room());
   if (accepts) polled.push_back({listening_->fd, POLLIN, 0});
   if (::poll(polled.data(), polled.size(), static_cast<int>(at_most.count())) < 0) return;
@@ -156,7 +156,8 @@ void BoundedServer::turn(std::chrono::milliseconds at_most) {
   if (accepts && polled.back().revents != 0) accept_all();
 }
 
-/// The connection whose head has been waited for longest, or its client's closing, where that is long enough to give its place away.
+/// The connection whose request head, or whose client's closing, has been awaited longest, if long enough to give its
+/// place away.
 const BoundedServer::Connection* BoundedServer::who_makes_room() const {
   const Connection* oldest = nullptr;
   for (const auto& c : connections_) {
@@ -231,7 +232,7 @@ void BoundedServer::begin_answer(Connection& c, const HttpAnswer& answer, bool w
   say(c);
 }
 
-/// By when all that is to be said must have been read.
+/// The time by which the client must have read all that is to be sent.
 std::chrono::steady_clock::time_point BoundedServer::when_read(const Connection& c) const {
   const std::chrono::duration<double> length_s(static_cast<double>(c.n_to_say()) / bounds_.least_bytes_per_s);
   return Clock::now() + bounds_.patience + std::chrono::duration_cast<Clock::duration>(length_s);
@@ -260,7 +261,8 @@ void BoundedServer::say(Connection& c) {
     at_once += static_cast<std::size_t>(n);
   }
   if (c.n_to_say() > 0 || c.state != Connection::State::kAnswer) return;
-  // All is said. Who closes with bytes unread breaks the connection off, and the answer may be lost: the client closes first, or its time is over.
+  // All is sent. Closing with unread bytes would reset the connection, and the answer could be lost: so the client closes
+  // first, or its time runs out.
   (void)::shutdown(c.socket.fd, SHUT_WR);
   c.body.reset();
   c.state = Connection::State::kLinger;

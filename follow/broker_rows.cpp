@@ -7,7 +7,7 @@ namespace driftwright::follow {
 RowSource::Got MessageRows::next(std::string& line, double wait_s) {
   MqttLink::Message message;
   if (lines_.empty() && link_.next(message, wait_s)) {
-    if (message.is_cut) {  // no row, though lines of it may look like some
+    if (message.is_cut) {  // not a row, though some of its lines may look like one
       line = std::move(message.payload);
       return Got::kLine;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Rows of an MQTT broker: messages that are rows, or one number a message, of which rows are made.
+// Rows from an MQTT broker: messages that are rows themselves, or rows made of messages with one number each.
 
 #include <deque>
 
@@ -9,7 +9,7 @@
 
 namespace driftwright::follow {
 
-/// Messages of the link's topic, line by line.
+/// The lines of the messages of the link's topic.
 class MessageRows final : public RowSource {
  public:
   explicit MessageRows(MqttLink& link) : link_(link) {}
@@ -20,7 +20,7 @@ class MessageRows final : public RowSource {
   std::deque<std::string> lines_;
 };
 
-/// Rows of the last number of each topic, so often, by this computer's clock.
+/// Rows of the last number of each topic, at a fixed interval by this computer's clock.
 class TopicRows final : public RowSource {
  public:
   TopicRows(MqttLink& link, HeardValues values, double every_s) : link_(link), values_(std::move(values)), ticks_(every_s) {}

@@ -1,5 +1,5 @@
 #pragma once
-// What follows a stream and tells corrections: predictors from files, or the machine of a scenario.
+// What follows a stream and gives corrections: predictors from files, or the machine of a scenario.
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -11,45 +11,48 @@
 
 namespace driftwright::follow {
 
-/// What is said of one axis at one row.
+/// The correction of one axis at one row.
 struct AxisCorrection {
   std::string name;            ///< the displacement that is corrected
-  double correction_um = 0.0;  ///< in force: what is to be taken away from the position
-  double predicted_um = 0.0;   ///< as the predictor was judged by, before hold, fade and slew of the stream
+  double correction_um = 0.0;  ///< in force: to be subtracted from the position
+  double predicted_um = 0.0;   ///< the predictor's value, before hold, fade and slew limit of the stream
   std::optional<double>
-      interval_um;  ///< half width of the 95 % interval of the drift in force, over trust; none without trust, or where none was learned
-  std::optional<double> deviation_um;      ///< of an observer: 1 sigma that its filter gives the drift now
-  double trust = 0.0;                      ///< 0 to 1, that the prediction is multiplied by
-  std::string verdict = {};                ///< of `validate`; "" where nobody has judged it
-  std::vector<std::string> doubted = {};   ///< inputs
-  std::optional<double> watch_level = {};  ///< where it is watched: above 1 the machine is not as modelled
-  std::string alarm = {};                  ///< since when, and what it shows in; "": none
+      interval_um;  ///< half width of the 95 % interval of the drift, in force; none without trust, or if none was learned
+  std::optional<double> deviation_um;      ///< of an observer: its filter's present standard deviation of the drift
+  double trust = 0.0;                      ///< factor on the prediction, 0 to 1
+  std::string verdict = {};                ///< from `validate`; "" if nothing has judged it
+  std::vector<std::string> doubted = {};   ///< inputs that are not trusted now
+  std::optional<double> watch_level = {};  ///< with a watch: above 1 the machine no longer behaves as modelled
+  std::string alarm = {};                  ///< since when, and which sensors show it; "": none
 };
 
-/// What a picture of a machine is coloured by.
+/// The state that colours the picture of a machine.
 struct MachineState {
-  Eigen::VectorXd state;   ///< of its model
+  Eigen::VectorXd state;   ///< of the machine's model
   double ambient_K = 0.0;  ///< over the reference
 };
 
+/// Something that follows the rows of a stream and gives corrections. Call begin() once, then take() for each row and
+/// wait() while there is none.
 class Followed {
  public:
   virtual ~Followed() = default;
-  /// Channels that the stream must have.
+  /// The channels that the stream must have.
   [[nodiscard]] virtual std::vector<WantedChannel> wanted() const = 0;
-  /// Before the first row. @param channels  of the stream, all wanted ones among them
+  /// Call it before the first row. @param channels  of the stream; they include all wanted ones
   virtual void begin(const std::vector<Channel>& channels) = 0;
-  /// Takes a row. @param step_s  since the row or wait before. @return false: drive or ambient are not known yet, and nothing has begun
+  /// Takes a row. @param step_s  time since the last row or wait
+  /// @return false while drive or ambient are not known yet and the run has not begun
   virtual bool take(double run_s, const std::vector<double>& values, double step_s) = 0;
-  /// There was no row for so long.
+  /// No row came during the last `step_s`.
   virtual void wait(double step_s) = 0;
   [[nodiscard]] virtual bool has_begun() const = 0;
   [[nodiscard]] virtual std::vector<AxisCorrection> axes() const = 0;
-  /// The model of a machine that a page can draw, as long as this is there; null: none.
+  /// The machine model that a page can draw, valid as long as this object; null: none.
   [[nodiscard]] virtual const scenarios::Model* model() const { return nullptr; }
-  /// Of that model; none before the first row.
+  /// The state of that model; none before the first row.
   [[nodiscard]] virtual std::optional<MachineState> machine_state() const { return {}; }
-  /// All that it knows, and back.
+  /// The whole state, to be saved, and its restoration.
   [[nodiscard]] virtual nlohmann::ordered_json state() const = 0;
   virtual void recall(const nlohmann::ordered_json& state) = 0;
 };

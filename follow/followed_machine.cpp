@@ -132,7 +132,7 @@ class FollowedMachine final : public Followed {
   }
 
  private:
-  /// As warm as the ambient of the first row, where the scenario's start is the ambient or balance with it.
+  /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
     MachineModel here = machine_;
     here.ambient = {{0.0}, {run_->ambient_K()}};
@@ -142,7 +142,7 @@ class FollowedMachine final : public Followed {
     state_ = scenarios::start_of(machine_, *model_) + warmer_K * scenarios::ones_of(*model_);
   }
 
-  /// Over the last step; what was before is one section, which is not run again.
+  /// Advances the state over the last step. The time before it is one section, which is not computed again.
   void advance(double now_s, double ambient_before_K) {
     const double before_s = now_s - run_->run().cyclogram.sections.back().duration_s;
     Cyclogram cyclogram{.name = "stream", .sections = {}};
@@ -174,10 +174,10 @@ class FollowedMachine final : public Followed {
   MachineModel machine_;
   solver::TransientOptions tolerances_;
   std::optional<scenarios::Model> model_;
-  std::optional<solver::Propagator> exact_;  // of a linear reduced model
+  std::optional<solver::Propagator> exact_;  // for a linear reduced model
   std::optional<LiveRun> run_;
   Eigen::VectorXd state_;
-  std::vector<Eigen::Index> output_;  // of each axis
+  std::vector<Eigen::Index> output_;  // index of each axis
   std::vector<AxisCorrection> axes_;
   std::vector<OutputStage> stages_;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// The machine of a scenario on a stream, by drive and ambient alone: the drift that `predict` tells, of all its displacements.
+// The machine of a scenario on a stream, driven by speed and ambient alone: the same drift as `predict`, for all its
+// displacements.
 
 #include <memory>
 
@@ -10,8 +11,8 @@
 namespace driftwright::follow {
 
 /// Opens the model that predictions run on.
-/// @throws InputError  for a machine that no stream tells enough of: thermostats, effects that change recorded drives or displacements, laws of
-///                     recorded columns, or that hold for a part of a run
+/// @throws InputError  for a machine that a stream does not describe fully: thermostats, effects that change recorded
+/// drives or displacements, laws of recorded columns, laws that hold for a part of a run
 [[nodiscard]] std::unique_ptr<Followed> followed_machine(const scenarios::Scenario& scenario, const FollowOptions& options,
                                                          const Listener& listener);
 

@@ -23,7 +23,7 @@ namespace {
 
 using namespace compensation;
 
-/// Why a law of an observer holds on no stream; "" where it does.
+/// Why a law of an observer cannot be followed on a stream; "" if it can.
 std::string why_not(const effects::Effect& e) {
   for (const effects::Mention& mention : e.kind->mentions) {
     if (mention.of != effects::Mention::Of::kColumn) continue;
@@ -39,7 +39,7 @@ std::string why_not(const effects::Effect& e) {
   return "";
 }
 
-/// @throws InputError  for an observer whose laws no stream tells enough of
+/// @throws InputError  for an observer with laws that a stream cannot provide
 void require_laws_of_streams(const std::string& path) {
   const Json file = parse_json(read_bytes(path));
   if (output::value<std::string>(file, "predictor") != "observer") return;
@@ -47,7 +47,7 @@ void require_laws_of_streams(const std::string& path) {
   const Json laws = output::list(output::value<Json>(file, "observer"), "effects");
   if (laws.empty()) return;
   for (const Json& law : laws) yaml += "  - " + law.get<std::string>() + "\n";
-  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  std::vector<scenarios::FormerWord> former;  // words of an earlier release
   const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
   for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) {
     if (const std::string why = why_not(effects::read_effect(entry)); !why.empty())

@@ -1,5 +1,5 @@
 #pragma once
-// A predictor of `validate` on a stream: the numbers that it was judged by.
+// A predictor from `validate` on a stream, with the numbers that it was judged by.
 
 #include <memory>
 

@@ -4,17 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
+#include "base/quantity.hpp"
 #include "follow/row_text.hpp"
 
 namespace driftwright::follow {
 namespace {
 
-/// A message as a cell: a number, or something that is none.
-std::string cell_of(const std::string& text) {
+/// A message as a cell: a number, or something that is none. @param from, to  units
+std::string cell_of(const std::string& text, const std::string& from, const std::string& to) {
   try {
-    return fmt::format("{:.17g}", stream_number(text, '.'));
+    const double number = stream_number(text, '.');
+    return fmt::format("{:.17g}", from.empty() ? number : convert(number, from, to));
   } catch (const RangeError&) {
     return "?";
   }
@@ -34,11 +37,29 @@ std::vector<ChannelOrigin> read_origins(const std::vector<std::string>& topics) 
 }
 
 HeardValues::HeardValues(std::vector<ChannelOrigin> origins, double stale_s)
-    : origins_(std::move(origins)), values_(origins_.size()), stale_s_(stale_s) {}
+    : origins_(std::move(origins)), values_(origins_.size()), units_(origins_.size()), stale_s_(stale_s) {}
+
+void HeardValues::set_unit(std::size_t k, const std::string& unit) {
+  const ColumnUnit& channel = origins_[k].numbers;
+  units_[k].clear();
+  if (unit.empty() || channel.unit.empty() || unit == channel.unit) return;
+  if (channel.is_difference && has_offset(unit))
+    throw RangeError(fmt::format("'{}' is a unit of temperatures, and the channel is a difference of two", unit));
+  const double factor = unit_factor(unit, channel.unit);
+  if (!std::isfinite(factor))  // UDUNITS also turns a quantity into its reciprocal, Hz into s
+    throw RangeError(fmt::format("'{}' is a unit of another quantity than '{}'", unit, channel.unit));
+  if (factor == 1.0 && convert(0.0, unit, channel.unit) == 0.0) return;
+  if (channel.is_scaled)
+    throw RangeError(
+        fmt::format("the map multiplies numbers in '{}' or adds to them, but they are in '{}'; write that unit "
+                    "into the map, without a factor or an offset",
+                    channel.unit, unit));
+  units_[k] = unit;
+}
 
 void HeardValues::hear(const std::string& from, const std::string& text) {
   for (std::size_t k = 0; k < origins_.size(); ++k) {
-    if (origins_[k].from == from) values_[k] = {cell_of(text), Clock::now()};
+    if (origins_[k].from == from) values_[k] = {cell_of(text, units_[k], origins_[k].numbers.unit), Clock::now()};
   }
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-/// What stands before a mark, which is taken away with it; all where there is none.
+/// Cuts off and returns the text before a mark, and removes the mark; all text if there is no mark.
 std::string_view cut(std::string_view& text, std::string_view mark) {
   const std::size_t at = text.find(mark);
   const std::string_view before = text.substr(0, at);
@@ -64,7 +64,7 @@ std::optional<HttpRequest> read_request(std::string_view head) {
   request.query = read_query(target);
   for (line = cut(head, "\r\n"); !line.empty(); line = cut(head, "\r\n")) {
     const std::string name = small(cut(line, ":"));
-    // no space may stand before the colon: one who reads it otherwise would be asked something else
+    // No space may precede the colon (RFC 9112): another program might read the header differently.
     if (name.empty() || name.find_first_of(" \t") != std::string::npos) return std::nullopt;
     request.headers.emplace_back(name, trimmed(line));
   }

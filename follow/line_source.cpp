@@ -13,7 +13,7 @@
 namespace driftwright::follow {
 namespace {
 
-constexpr std::size_t kLongestLine = 1'000'000;  // what is longer is cut: it is no row
+constexpr std::size_t kLongestLine = 1'000'000;  // a longer line is cut, and is no row
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// Lines from a file descriptor as they come, with a limit to the wait.
+// Lines from a file descriptor as they arrive, with a limit on the wait.
 
 #include <string>
 #include <utility>

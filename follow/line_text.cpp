@@ -19,7 +19,7 @@ std::string quoted(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(all, ","));
 }
 
-/// Nine digits, so that a picometre of the largest corrections comes through.
+/// Nine digits, which keep a picometre of the largest corrections.
 std::string number(double x) {
   return std::isfinite(x) ? fmt::format("{:.9g}", x == 0.0 ? 0.0 : x) : "null";
 }

@@ -9,7 +9,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-constexpr double kJitter = 0.01;  // of the top speed so far: no change of the drive, as records are read
+constexpr double kJitter = 0.01;  // share of the top speed so far; a smaller change is no change of drive, as in records
 constexpr std::size_t kMostKept = 8 * compensation::kRowsBack;
 
 }  // namespace
@@ -90,7 +90,7 @@ void LiveRun::forget() {
   for (Channel& c : readings.channels) drop(c.values);
   drop(run_.ambient.time_s);
   drop(run_.ambient.value);
-  drop(run_.cyclogram.sections);  // one behind each row
+  drop(run_.cyclogram.sections);  // one after each row
   run_.n_forgotten += static_cast<std::size_t>(n);
   run_.cyclogram_from_s = readings.time_s.front();
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Messages of an MQTT broker as they come, and ours to it. If the broker is unreachable or disconnects, the link waits and reconnects.
+// Receives messages from an MQTT broker and publishes ours. If the broker is unreachable or disconnects, the link waits
+// and reconnects.
 
 #include <atomic>
 #include <condition_variable>
@@ -22,33 +23,34 @@ struct MqttAddress {
 /// "localhost", "10.0.0.5:1884". @throws InputError
 [[nodiscard]] MqttAddress read_mqtt_address(const std::string& text);
 
-/// Of a payload, as of a line of standard input.
+/// Largest payload, the same limit as for a line of standard input.
 constexpr std::size_t kLargestPayload = 1'000'000;  // bytes
 
 class MqttLink {
  public:
   struct Message {
     std::string topic, payload;
-    bool is_cut = false;  ///< it was larger than that, and only its beginning is here
+    bool is_cut = false;  ///< the message was larger, and only its beginning is here
   };
   /// Connects in the background, now and whenever the link is lost (again after 1 s, later after up to 10 s).
-  /// @param topics   that are listened to
-  /// @param will     what the broker tells on `will_topic` when we go without a word; "": nothing
-  /// @throws InputError  for a topic or host that can be none
+  /// @param topics   topics to subscribe to
+  /// @param will     message that the broker publishes on `will_topic` if we disconnect without a word; "": none
+  /// @throws InputError  for an invalid topic or host
   MqttLink(const MqttAddress& address, std::vector<std::string> topics, const std::string& will_topic,
            const std::string& will);
   ~MqttLink();
   MqttLink(const MqttLink&) = delete;
   MqttLink& operator=(const MqttLink&) = delete;
 
-  /// The next message. @return false: none within so long
+  /// Takes the next message. @return false if none arrives within `wait_s`
   [[nodiscard]] bool next(Message& message, double wait_s);
-  /// Hands a message on, at most once. @return false: there is no link by now, and it is lost
+  /// Publishes a message, at most once. @return false if there is no link; the message is lost then
   bool publish(const std::string& topic, const std::string& payload);
-  /// How many times the broker was reached.
+  /// How often the broker was reached.
   [[nodiscard]] int n_links() const { return n_links_; }
   [[nodiscard]] bool is_linked() const { return is_linked_; }
-  /// Messages that came faster than they were taken, of which the oldest are lost: more than 10 000 of them or 64 MB wait nowhere.
+  /// Number of messages lost because they arrived faster than they were taken: beyond 10 000 or 64 MB waiting, the oldest
+  /// are dropped.
   [[nodiscard]] std::int64_t n_lost();
 
  private:

@@ -54,7 +54,7 @@ void PageHistory::say(double run_s, std::string words) {
   journal_.push_back({n_rows_, run_s, std::move(words)});
 }
 
-/// Changes of the state, but for single rows that are passed over; alarms and doubts that come and go.
+/// Writes changes into the journal: of the state, except for single rows that are passed over, and of alarms and doubts.
 void PageHistory::note(const PageRow& row) {
   const FollowLine& line = row.line;
   const bool is_passed_over = !line.run_s && !line.faults.empty();

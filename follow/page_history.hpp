@@ -1,5 +1,6 @@
 #pragma once
-// The last hours of a stream as a page shows them: curves of a bounded number of points, what has changed, and the last line.
+// The last hours of a stream, as a page shows them: curves with a limited number of points, a journal of changes, and the
+// last line.
 
 #include <cstdint>
 #include <deque>
@@ -13,16 +14,18 @@ namespace driftwright::follow {
 
 class PageHistory {
  public:
-  /// @param run  a word that no other run of the program has: pages then know that curves begin anew
+  /// @param run  a word that differs for each run of the program, so that pages know when curves start again
   explicit PageHistory(std::string run) : run_(std::move(run)) {}
   void begin(const std::vector<Channel>& channels) { channels_ = channels; }
   void add(PageRow row);
 
   [[nodiscard]] std::uint64_t n_rows() const { return n_rows_; }
   [[nodiscard]] std::size_t n_points() const { return points_.size(); }
-  /// The number of a message's last row from its id, such as a page returns; 0 for one of another run.
+  /// The number of the last row in a message, from the id that a page sends back; 0 for an id of another run.
   [[nodiscard]] std::uint64_t number_of(const std::string& id) const;
-  /// A message of Server-Sent Events (event: row) with what came behind row `since`; 0: all there is, and what the columns are. @pre n_rows() > 0
+  /// A message of Server-Sent Events (event: row) with all that is newer than row `since`; 0: everything, with the column
+  /// names.
+  /// @pre n_rows() > 0
   [[nodiscard]] std::string news(std::uint64_t since) const;
 
  private:
@@ -42,13 +45,13 @@ class PageHistory {
   std::string run_;
   std::vector<Channel> channels_;
   std::uint64_t n_rows_ = 0;
-  double spacing_s_ = 0.0;  // points that are closer are passed over
+  double spacing_s_ = 0.0;  // points closer than this are skipped
   std::deque<Point> points_;
   std::deque<Entry> journal_;
   std::optional<Point> tip_;
   PageRow last_;
-  std::string state_;               // in the journal
-  std::set<std::string> standing_;  // alarms and doubts in the journal
+  std::string state_;               // last state in the journal
+  std::set<std::string> standing_;  // alarms and doubts in force, as in the journal
 };
 
 }  // namespace driftwright::follow

@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostReaders = 32;  // of events; half of all places
+constexpr std::size_t kMostReaders = 32;  // connections to `events`; half of all places
 constexpr auto kGather = std::chrono::milliseconds(100);
 constexpr auto kBeat = std::chrono::seconds(2);
 constexpr std::size_t kLeastToken = 16;
@@ -34,21 +34,22 @@ bool is_loopback(const std::string& host) {
   return host == "localhost" || host == "::1";
 }
 
-/// Names that a page on loopback is asked by. Another one is a page of elsewhere whose name was made to point here.
+/// Names under which a page on loopback may be requested. Any other name belongs to a foreign page whose name was made to
+/// point here (DNS rebinding).
 bool is_own_name(const std::string& host_and_port) {
   const std::string host =
       host_and_port.substr(0, host_and_port.starts_with('[') ? host_and_port.find(']') + 1 : host_and_port.find(':'));
   return host == "[::1]" || is_loopback(host);
 }
 
-/// What this thread does comes behind the stream, whatever priority that has.
+/// Lowers this thread's priority below that of the stream, whatever priority that has.
 void step_back() {
   const sched_param usual{};
   (void)pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNicer);
 }
 
-/// Begins a thread that no signal goes to: those are the stream's.
+/// Starts a thread that receives no signals: the stream handles those.
 template <class Work>
 std::thread quiet_thread(Work work) {
   sigset_t all, before;
@@ -95,7 +96,7 @@ struct PageServer::Running {
   PageAddress address;
   std::shared_ptr<const std::string> html;
   PageFeed feed;
-  std::mutex mutex;  // of the history
+  std::mutex mutex;  // guards `history`
   PageHistory history;
   BoundedServer server;
   std::atomic<bool> is_over = false;

@@ -1,5 +1,6 @@
 #pragma once
-// The page of a stream over HTTP: `/` the page, `/events` what it shows as Server-Sent Events. In a thread of its own, below that of the stream.
+// Serves the page of a stream over HTTP: `/` the page, `/events` its rows as Server-Sent Events. It runs in a thread of
+// its own, with a lower priority than the stream.
 
 #include <memory>
 #include <string>
@@ -11,24 +12,25 @@ namespace driftwright::follow {
 struct PageAddress {
   std::string host = "127.0.0.1";
   int port = 8080;    ///< 0: any that is free
-  std::string token;  ///< asked of each request, as `?token=` or `Authorization: Bearer`; "": none, on loopback alone
+  std::string token;  ///< required of each request, as `?token=` or `Authorization: Bearer`; "": none, on loopback only
 };
-/// @throws InputError  for an address beyond loopback without a token, a token of less than 16 characters, a port that is none
+/// @throws InputError  for an address beyond loopback without a token, a token of less than 16 characters, or an invalid
+/// port
 void require_safe(const PageAddress& address);
 
-/// Whether two words are the same; how long it takes depends on the length of `given` alone.
+/// Whether two words are equal; the run time depends on the length of `given` alone.
 [[nodiscard]] bool is_same_token(const std::string& given, const std::string& token);
 
 class PageServer {
  public:
-  /// Begins to listen. @param html  the page
-  /// @throws InputError  as require_safe(), and where nobody can listen there
+  /// Starts to listen. @param html  the page
+  /// @throws InputError  as require_safe(), and if it cannot listen there
   PageServer(const PageAddress& address, std::string html);
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
 
-  /// Of the stream, before its first row.
+  /// Sets the channels of the stream; call it before its first row.
   void begin(const std::vector<Channel>& channels);
   [[nodiscard]] PageFeed& feed();
   /// "http://127.0.0.1:8080/", without the token.

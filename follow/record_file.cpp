@@ -17,7 +17,7 @@ std::string header_of(const std::vector<Channel>& channels) {
   return text;
 }
 
-/// Cuts off a last line that was not written to its end. @return the header
+/// Removes an incomplete last line. @return the header
 std::string mend(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string line, header;

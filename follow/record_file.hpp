@@ -1,5 +1,5 @@
 #pragma once
-// The rows that were followed as an ordinary record (docs/reference/record.md), which every other verb reads.
+// Writes the followed rows as an ordinary record (docs/reference/record.md), which every other verb reads.
 
 #include <cstdio>
 #include <memory>
@@ -11,8 +11,9 @@ namespace driftwright::follow {
 
 class RecordFile {
  public:
-  /// @param goes_on  rows are added to the file, where it is there: the session has been resumed
-  /// @throws InputError  for a file that is there and not gone on with, or that has other columns; when it cannot be written
+  /// @param goes_on  append to an existing file, after the session was resumed
+  /// @throws InputError  for an existing file without `goes_on`, for a file with other columns, or if it cannot be
+  /// written
   RecordFile(const std::string& path, const std::vector<Channel>& channels, const std::string& comment, bool goes_on);
   void add(const StreamRow& row);
   /// @throws InputError  when not all could be written

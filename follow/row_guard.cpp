@@ -9,9 +9,9 @@ namespace {
 constexpr double kShortGap_s = 30.0, kShortGapSteps = 10.0;
 constexpr double kLongestFirstStep_s = 3600.0;
 constexpr double kLongestAbsence_s = 7.0 * 86400.0;
-constexpr double kMemory = 1.0 / 30.0;  // of the usual step, a row
+constexpr double kMemory = 1.0 / 30.0;  // weight of a new row in the usual step
 
-/// Whether a reading can be one at all. The sign of a feed does not count.
+/// Whether a reading is possible at all. The sign of a feed does not matter.
 bool is_possible(const std::string& unit, double value) {
   if (unit == "degC") return value >= -100.0 && value <= 1500.0;
   if (unit == "rpm") return value >= 0.0 && value <= 1e6;

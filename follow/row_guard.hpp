@@ -1,7 +1,9 @@
 #pragma once
-// Between a stream and what follows it: rows that are late, doubled, swapped or missing, clocks that are set, values that no machine has.
+// Checks the rows of a stream before they are used: rows that are late, doubled, swapped or missing, clocks that were
+// set, and impossible values.
 //
-// A row is taken or passed over, by its own time and that of the rows before alone: the same rows give the same answers, at whatever pace they come.
+// A row is taken or passed over by its own time and the times of earlier rows alone: the same rows give the same answers,
+// no matter how fast they arrive.
 //
 //   the same time as the row taken last                 passed over: doubled
 //   earlier, by up to a short gap                       passed over: late
@@ -10,7 +12,8 @@
 //     later by up to a week                             taken: so much time has passed without rows
 //     else                                              taken: the clock was set, and one usual step has passed
 //
-// A short gap is ten usual steps, and 30 s at least, an hour before there was a step; a usual step is the mean of the last steps of about 30 rows.
+// A short gap is ten usual steps, but at least 30 s; before the first step it is an hour. The usual step is an
+// exponential mean over about 30 rows.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +24,7 @@
 
 namespace driftwright::follow {
 
-/// What is wrong with a row, in the order of fault_words().
+/// Faults of a row, in the order of fault_words().
 enum class Fault {
   kUnreadableRow,
   kUnreadableValue,
@@ -36,29 +39,29 @@ enum class Fault {
 };
 [[nodiscard]] const char* fault_words(Fault fault);
 
-/// Faults and how many of each, since the start.
+/// Number of each fault since the start.
 using FaultCounts = std::array<std::int64_t, static_cast<std::size_t>(Fault::kCount)>;
 
 struct JudgedRow {
   bool is_taken = false;
-  double run_s = 0.0;   ///< time since the first row taken, which only goes on
+  double run_s = 0.0;   ///< time since the first row taken; it never decreases
   double step_s = 0.0;  ///< since the row taken before
   std::vector<Fault> faults;
 };
 
 class RowGuard {
  public:
-  /// What it knows, such as goes into a file.
+  /// Its state, for the state file.
   struct State {
     bool has_row = false;
     double stamp_s = 0.0, run_s = 0.0;  ///< of the row taken last: by the source's clock, and since the start
-    double usual_s = 0.0;               ///< step; 0: none yet
+    double usual_s = 0.0;               ///< usual step; 0: none yet
     bool has_candidate = false;
-    double candidate_s = 0.0;  ///< a row that awaits its confirmation
+    double candidate_s = 0.0;  ///< time of a row that awaits confirmation
     FaultCounts counts{};
   };
 
-  /// Judges the next row; values that no machine has are missing afterwards.
+  /// Judges the next row; impossible values are NaN afterwards.
   [[nodiscard]] JudgedRow judge(StreamRow& row, const std::vector<Channel>& channels);
   /// Counts a line that is no row.
   void count_unreadable() { count(Fault::kUnreadableRow); }

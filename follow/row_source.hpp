@@ -1,5 +1,5 @@
 #pragma once
-// Where rows come from, whatever it is: text, line by line, with a limit to the wait.
+// Interface of all sources of rows: lines of text, with a limit on the wait.
 
 #include <string>
 
@@ -9,8 +9,8 @@ class RowSource {
  public:
   enum class Got { kLine, kNothingYet, kEnd };
   virtual ~RowSource() = default;
-  /// The next line, without its line break. @param wait_s  at most so long, less where a signal comes
-  /// @throws InputError  where nothing can come any more that could be read
+  /// The next line, without its line break. @param wait_s  longest wait; a signal ends it earlier
+  /// @throws InputError  if no readable line can come any more
   [[nodiscard]] virtual Got next(std::string& line, double wait_s) = 0;
 };
 

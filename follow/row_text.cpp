@@ -19,14 +19,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostBeforeHeader = 1000;  // lines in which a header is looked for
+constexpr std::size_t kMostBeforeHeader = 1000;  // lines that are searched for a header
 constexpr std::size_t kLongestLine = 100'000;    // characters
-constexpr std::size_t kShown = 60;               // of a line in messages
+constexpr std::size_t kShown = 60;               // characters of a line that messages show
 
-/// A column of the stream: its name in the header or its place, and how its number becomes a value.
+/// A column of the stream: its name in the header or its index, and how its number becomes a value.
 struct Place {
   std::string name;
-  std::size_t index = 0;  // of a cell
+  std::size_t index = 0;  // of the cell
 };
 
 /// "bearing_front_degC" as name and unit. @throws InputError
@@ -59,6 +59,28 @@ double stream_number(const std::string& text, char decimal) {
   return parse_number(text, decimal);
 }
 
+std::vector<ColumnUnit> column_units(const std::vector<std::string>& headers, const std::optional<ColumnMap>& columns) {
+  std::vector<ColumnUnit> list(headers.size());
+  if (!columns) {
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+      for (const std::string& unit : known_units()) {
+        if (!headers[i].ends_with("_" + unit)) continue;
+        list[i] = {in_udunits(unit), unit == "K", false};
+        break;
+      }
+    }
+    return list;
+  }
+  for (const MappedChannel& c : columns->channels) {
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+      const bool is_it = c.column.position > 0 ? c.column.position == static_cast<int>(i) + 1
+                                               : plain_name(c.column.name) == plain_name(headers[i]);
+      if (is_it) list[i] = {c.written_unit, c.unit == "K", c.factor != 1.0 || c.offset != 0.0};
+    }
+  }
+  return list;
+}
+
 struct RowText::State {
   std::optional<ColumnMap> map;
   std::string source;
@@ -80,7 +102,7 @@ struct RowText::State {
     return all;
   }
 
-  /// Where a column of the map stands among names; none where it does not.
+  /// The index of a column of the map among names; none if it is missing.
   [[nodiscard]] static std::optional<std::size_t> index_in(const std::vector<std::string>& names, const ColumnPlace& place) {
     if (place.position > 0) return static_cast<std::size_t>(place.position) - 1;
     const auto at = std::find(names.begin(), names.end(), plain_name(place.name));
@@ -158,7 +180,7 @@ struct RowText::State {
         throw InputError(fmt::format("{}, line {}: '{}' does not have all columns of {}:{} ({})", source, n_lines,
                                      shown(line), map->where.file, map->where.line, fmt::join(wanted, ", ")));
       }
-      return false;  // lines of a logger above its header
+      return false;  // lines that a logger writes above its header
     }
     lay_out_map(has_none ? std::vector<std::string>{} : best);
     return !has_none;
@@ -192,7 +214,7 @@ struct RowText::State {
     return static_cast<double>((at - *first).count()) / 1e9;
   }
 
-  /// The value of channel k from its text, or its number.
+  /// The value of channel k, from its text or its number.
   template <class Number>
   void put(StreamRow& row, std::size_t k, const Number& number) const {
     double value = kMissing;
@@ -296,7 +318,7 @@ std::optional<StreamRow> RowText::take(const std::string& given) {
     }
     if (!s.has_layout) return std::nullopt;
   }
-  if (line == s.header) return std::nullopt;  // the source has started anew
+  if (line == s.header) return std::nullopt;  // the source has restarted and sends its header again
   return s.of_cells(split_cells(line, s.separator));
 }
 

@@ -12,7 +12,7 @@
 namespace driftwright::follow {
 namespace {
 
-constexpr double kOn = 0.99, kOff = 0.01;  // of trust
+constexpr double kOn = 0.99, kOff = 0.01;  // limits of trust
 constexpr const char* kFormat = "driftwright follow 1";
 
 }  // namespace

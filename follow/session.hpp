@@ -1,5 +1,5 @@
 #pragma once
-// A stream as it is followed: rows in, a line for each out, whatever they are like.
+// A followed stream: takes rows and returns one line for each, however faulty the row is.
 
 #include <memory>
 
@@ -8,12 +8,12 @@
 
 namespace driftwright::follow {
 
-/// What is said after a row.
+/// The output for one row.
 struct FollowLine {
-  std::optional<double> time_s;  ///< of the row, by the source's clock; none where it has none
-  std::optional<double> run_s;   ///< since the first row, of a row that was taken
+  std::optional<double> time_s;  ///< of the row, by the source's clock; none for a row without a time
+  std::optional<double> run_s;   ///< since the first row; none for a row that was not taken
   std::string state;             ///< on, held, reduced, off
-  std::string why;               ///< where it is not on
+  std::string why;               ///< reason, unless the state is on
   std::vector<AxisCorrection> axes;
   std::vector<std::string> faults;  ///< of the row
 };
@@ -21,33 +21,34 @@ struct FollowLine {
 class Session {
  public:
   struct Model {
-    std::string path, hash;  ///< of the file that it was read from
+    std::string path, hash;  ///< path and hash of the model's file
     std::unique_ptr<Followed> followed;
   };
   explicit Session(std::vector<Model> models);
 
-  /// What the stream must have, each once. @throws InputError  where models want one channel in two units, or correct one axis twice
+  /// The channels that the stream must have, each once.
+  /// @throws InputError  if models want one channel in two units, or correct one axis twice
   [[nodiscard]] std::vector<WantedChannel> wanted() const;
-  /// Before the first row. @throws InputError  for a stream that lacks a wanted channel
+  /// Call it before the first row. @throws InputError  for a stream that lacks a wanted channel
   void begin(const std::vector<Channel>& channels);
   [[nodiscard]] bool has_channels() const { return !channels_.empty(); }
   [[nodiscard]] const std::vector<Channel>& channels() const { return channels_; }
 
   [[nodiscard]] FollowLine take(StreamRow row);
-  /// A line that is no row. @param why  as RowText says it
+  /// Takes a line that is no row. @param why  the reason from RowText
   [[nodiscard]] FollowLine pass_over(const std::string& why);
-  /// No line came for so long, since the last one or the last wait.
+  /// No line came during the last `step_s`.
   [[nodiscard]] FollowLine wait(double step_s);
 
   [[nodiscard]] const std::vector<Model>& models() const { return models_; }
-  /// Of the run: of the row taken last, and how long there has been none.
+  /// Present time of the run: that of the last row taken plus the time without rows since then.
   [[nodiscard]] double now_s() const { return guard_.state().run_s + waited_s_; }
   [[nodiscard]] double usual_step_s() const { return guard_.usual_step_s(); }
   [[nodiscard]] const FaultCounts& faults() const { return guard_.state().counts; }
-  /// The values of the row taken last, as the models got them, and its time in the run: what a record holds.
+  /// The last row taken, with the values that the models received and its time in the run, as a record holds it.
   [[nodiscard]] const StreamRow& taken() const { return taken_; }
 
-  /// All that it knows, for a file. @throws InputError  from recall(): for a state of other models or another stream
+  /// The whole state, for a file. @throws InputError  from recall(), for a state of other models or another stream
   [[nodiscard]] nlohmann::ordered_json state() const;
   void recall(const nlohmann::ordered_json& state);
 

@@ -29,7 +29,7 @@ std::vector<std::string> parts_of(const std::string& topic) {
   return parts;
 }
 
-/// Signed integers travel as unsigned ones of 32 or 64 bits (6.4.16: two's complement).
+/// Signed integers are sent as unsigned ones of 32 or 64 bits (6.4.16: two's complement).
 std::optional<std::string> number_of(const Metric& m, std::uint32_t datatype) {
   if (m.is_null()) return std::nullopt;
   switch (m.value_case()) {
@@ -122,9 +122,9 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
     next_seq_ = (payload.seq() + 1) % kNumbers;
     is_alive_ = true;
     wants_birth_ = false;
-    nobody();  // a device of the node says all of its values anew
+    nobody();  // a device of the node sends all of its values again
   } else {
-    if (!is_alive_ && !wants_birth_) wants_birth_ = true;  // it speaks behind its death
+    if (!is_alive_ && !wants_birth_) wants_birth_ = true;  // data after its death
     if (wants_birth_) return "its node's birth has not been heard";
     if (payload.seq() != next_seq_) {
       wants_birth_ = true;
@@ -144,7 +144,7 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
     aliases_.clear();
   }
   for (const Metric& m : payload.metrics()) {
-    if (m.is_historical()) continue;  // it was so once
+    if (m.is_historical()) continue;  // an old value
     Known known{m.name(), m.datatype()};
     if (m.has_alias()) {
       if (is_birth) {

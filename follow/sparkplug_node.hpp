@@ -1,9 +1,11 @@
 #pragma once
-// An edge node of Sparkplug B: what its birth and data messages say of its metrics, by name (Eclipse Sparkplug Specification 3.0.0).
+// An edge node of Sparkplug B: the values of its metrics, by name, from its birth and data messages (Eclipse Sparkplug
+// Specification 3.0.0).
 //
-// A birth (NBIRTH, DBIRTH) names all metrics, with an alias each where it likes; data (NDATA, DDATA) may name the alias alone. Messages of a node are
-// numbered 0 to 255 from its NBIRTH on. Where one is missing, or data come before the birth, the node is asked for its birth anew
-// ("Node Control/Rebirth"). Births are not kept by the broker, so that is how whoever comes later begins.
+// A birth (NBIRTH, DBIRTH) names all metrics and may give each an alias; data (NDATA, DDATA) may use the alias alone.
+// Messages of a node are numbered 0 to 255 from its NBIRTH on. If a message is missing, or data come before the birth,
+// the node is asked to send its birth again ("Node Control/Rebirth"). The broker does not keep births, so a client that
+// connects later asks for one.
 
 #include <cstdint>
 #include <map>
@@ -24,20 +26,20 @@ class SparkplugNode {
  public:
   explicit SparkplugNode(SparkplugAddress address) : address_(std::move(address)) {}
 
-  /// That are listened to: of the node and of all its devices, whose messages are numbered together.
+  /// The topics to subscribe to: of the node and of all its devices, whose messages are numbered together.
   [[nodiscard]] std::vector<std::string> topics() const;
-  /// What asks for a birth: topic and payload.
+  /// Topic and payload of the request for a birth.
   [[nodiscard]] std::string rebirth_topic() const;
   [[nodiscard]] static std::string rebirth_payload();
 
-  /// Takes a message. @return why it is of no use; "" where it is
+  /// Takes a message. @return why the message is of no use; "" if it is of use
   std::string take(const std::string& topic, const std::string& payload);
-  /// The link was lost: nobody knows whether messages were, and a birth is required.
+  /// The link was lost, and possibly messages: a new birth is required.
   void lose_sight() { wants_birth_ = true; }
   [[nodiscard]] bool wants_birth() const { return wants_birth_; }
   [[nodiscard]] bool is_alive() const { return is_alive_; }
 
-  /// The metrics of a birth in force: numbers as text; none where null, or of a type that is no number.
+  /// The metrics of the valid birth: numbers as text; none for null, and for a type that is no number.
   [[nodiscard]] const std::map<std::string, std::optional<std::string>>& metrics() const { return metrics_; }
 
  private:

@@ -22,7 +22,7 @@ void SparkplugRows::ask_for_birth() {
   (void)link_.publish(node_.rebirth_topic(), SparkplugNode::rebirth_payload());
 }
 
-/// The values that are in force; a metric that the birth does not have will never come.
+/// Takes over the values in force; throws for a channel whose metric is not in the birth, since it will never come.
 void SparkplugRows::hear() {
   const auto& metrics = node_.metrics();
   if (!has_birth_ && node_.is_alive() && !metrics.empty()) {
@@ -69,7 +69,7 @@ RowSource::Got SparkplugRows::next(std::string& line, double wait_s) {
     }
   }
   if (!ticks_.is_due()) return Got::kNothingYet;
-  if (link_.is_linked() && !node_.wants_birth()) hear();  // else what was heard last holds until it is stale
+  if (link_.is_linked() && !node_.wants_birth()) hear();  // otherwise the last values hold until they are stale
   if (!has_birth_) return Got::kNothingYet;
   line = values_.row(now_s());
   return Got::kLine;

@@ -1,5 +1,5 @@
 #pragma once
-// Rows of a Sparkplug B node: the last value of each metric, so often, by this computer's clock.
+// Rows of a Sparkplug B node: the last value of each metric, at a fixed interval by this computer's clock.
 
 #include "follow/agent_rows.hpp"
 #include "follow/mqtt_link.hpp"
@@ -7,7 +7,8 @@
 
 namespace driftwright::follow {
 
-/// A node reports by exception: a value holds until its node or device dies, or as long as `values` say while the broker is away.
+/// A node reports only changes: a value holds until its node or device dies, or while the broker is away as long as
+/// `values` allow.
 class SparkplugRows final : public RowSource {
  public:
   SparkplugRows(MqttLink& link, SparkplugNode node, HeardValues values, double every_s, Say say)

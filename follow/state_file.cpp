@@ -45,7 +45,7 @@ void write_state(const std::filesystem::path& file, const Session& session) {
 
 bool resume_from(const std::filesystem::path& file, Session& session) {
   if (!std::filesystem::exists(file)) return false;
-  if (!std::filesystem::is_regular_file(file))  // which the rename of write_state() would do away with
+  if (!std::filesystem::is_regular_file(file))  // the rename in write_state() would replace it
     throw InputError(
         fmt::format("--state {}: a folder, device or pipe of this name exists; it must be a file", file.string()));
   try {

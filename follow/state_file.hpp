@@ -1,5 +1,5 @@
 #pragma once
-// What a session knows, in a file that is whole at every moment.
+// Saves the state of a session in a file that is complete at every moment.
 
 #include <filesystem>
 
@@ -7,10 +7,10 @@
 
 namespace driftwright::follow {
 
-/// Writes beside the file and puts that in its place, on the disk before it has the name. @throws InputError  when it cannot be written
+/// Writes a file beside it, syncs that to disk and renames it into place. @throws InputError  if it cannot be written
 void write_state(const std::filesystem::path& file, const Session& session);
 
-/// Goes on from a file, where there is one. @return whether there was
+/// Restores a session from a file, if there is one. @return whether there was
 /// @throws InputError  for a file that is damaged, of other models or of another stream
 [[nodiscard]] bool resume_from(const std::filesystem::path& file, Session& session);
 

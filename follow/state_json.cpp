@@ -9,7 +9,7 @@ using output::value;
 
 namespace {
 
-/// A number that states of earlier versions lack; 0 there.
+/// A number that states of earlier versions lack; it is 0 then.
 double added(const Json& j, const char* key) {
   return j.contains(key) ? finite(j, key) : 0.0;
 }

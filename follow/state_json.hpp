@@ -1,5 +1,6 @@
 #pragma once
-// Parts of what is followed as JSON, for the state file. Numbers come back to the last bit; one that is not finite is null, and NaN again.
+// Parts of the session's state as JSON, for the state file. Numbers are restored exactly; one that is not finite is
+// stored as null and restored as NaN.
 
 #include "follow/live_run.hpp"
 #include "follow/output_stage.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// A row of a stream: what a source says of one time.
+// A row of a stream: the values that a source gives for one time.
 
 #include <limits>
 #include <string>
@@ -10,18 +10,26 @@
 namespace driftwright::follow {
 
 struct StreamRow {
-  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< by the source's clock; its zero is the source's own
-  std::vector<double> values;                                ///< one a channel of the stream, in its unit; NaN where missing
-  int n_unreadable = 0;                                      ///< cells that are no number, missing now
+  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< by the source's clock, with the source's own zero
+  std::vector<double> values;  ///< one per channel of the stream, in its unit; NaN where missing
+  int n_unreadable = 0;        ///< cells that are no number; their values are NaN
 };
 
-/// Of usual steps: rows that come later than this miss some between them, and so long a value may be missing from rows that come.
+/// In usual steps: a row that comes later than this has missing rows before it, and a value may be missing this long from
+/// rows before its age counts.
 inline constexpr double kMissingSteps = 2.5;
+
+/// What the numbers in a column of a stream are, for sources that say in which unit theirs are.
+struct ColumnUnit {
+  std::string unit;            ///< as UDUNITS reads it; "": nothing says
+  bool is_difference = false;  ///< of two temperatures
+  bool is_scaled = false;      ///< a map multiplies them or adds to them: they are in `unit` already
+};
 
 /// A channel that a stream must have.
 struct WantedChannel {
   std::string name, unit;
-  std::string by;  ///< who wants it, for messages
+  std::string by;  ///< the model that requires it, for messages
 };
 
 }  // namespace driftwright::follow

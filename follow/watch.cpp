@@ -12,9 +12,9 @@
 namespace driftwright::follow {
 namespace {
 
-constexpr double kCalm = 0.5, kCalmFor_s = 3600.0;  // of the threshold, before an alarm goes
-constexpr double kRegular = 0.01;                   // of the mean variance
-constexpr std::size_t kNamed = 3;                   // sensors of an alarm
+constexpr double kCalm = 0.5, kCalmFor_s = 3600.0;  // share of the threshold, and time below it, before an alarm ends
+constexpr double kRegular = 0.01;                   // share of the mean variance added to the diagonal
+constexpr std::size_t kNamed = 3;                   // most sensors that an alarm names
 
 }  // namespace
 
@@ -74,7 +74,7 @@ std::string Watch::words(std::size_t scale) const {
   const Eigen::VectorXd& mean = means_.mean(scale);
   std::vector<std::size_t> order(limits_.sensors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto weight = [&](std::size_t k) {  // by what is usual of that sensor
+  const auto weight = [&](std::size_t k) {  // relative to the sensor's usual size
     const auto i = static_cast<Eigen::Index>(k);
     return mean(i) * mean(i) / limits_.scales[scale].covariance(i, i);
   };

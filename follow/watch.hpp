@@ -1,14 +1,16 @@
 #pragma once
-// Is the machine still as modelled? The residuals of a running observer that reads all thermometers there are, watched over several times.
+// Watches whether the machine still behaves as modelled, by the residuals of a running observer that reads all
+// thermometers, over several time constants.
 //
-// Each sensor's innovation (reading minus what was expected of it) goes through exponential means of several time constants, m_τ. Over machines that
-// are scattered by their priors, and that nothing is wrong with, these means have a covariance C_τ, and their size
+// Each sensor's innovation (reading minus its expected value) is smoothed by exponential means of several time constants,
+// m_τ. Over healthy machines, scattered by their priors, these means have a covariance C_τ, and their size
 //
 //     T²_τ = m_τ' C_τ⁻¹ m_τ
 //
-// exceeds h_τ as seldom as is required. An alarm is raised where one of them exceeds its h, and goes when all have been below half of it for an hour.
-// Source: Lowry, Woodall, Champ & Rigdon, Technometrics 34 (1992) 46 (multivariate exponentially weighted mean charts); thresholds are simulated
-// (watch_trial.hpp), since innovations of a model that is a little wrong are neither white nor normal.
+// exceeds h_τ as rarely as required. An alarm is raised when one of them exceeds its h, and ends when all have been below
+// half of it for an hour.
+// Source: Lowry, Woodall, Champ & Rigdon, Technometrics 34 (1992) 46 (multivariate exponentially weighted mean charts);
+// thresholds are simulated (watch_trial.hpp), since innovations of a slightly wrong model are neither white nor normal.
 
 #include <Eigen/Core>
 #include <array>
@@ -24,7 +26,7 @@ namespace driftwright::follow {
 
 inline constexpr std::array<double, 3> kWatchedOver_s = {600.0, 2400.0, 9600.0};
 
-/// What is usual, by simulation.
+/// The usual size of the means, from simulation.
 struct WatchLimits {
   struct Scale {
     Eigen::MatrixXd covariance;  ///< of the means [K^2], n_sensors x n_sensors
@@ -32,15 +34,15 @@ struct WatchLimits {
   };
   std::vector<std::string> sensors;
   std::array<Scale, kWatchedOver_s.size()> scales;
-  double machine_days = 0.0;  ///< that were simulated
-  int n_alarms = 0;           ///< among them with these thresholds
+  double machine_days = 0.0;  ///< simulated days, over all machines
+  int n_alarms = 0;           ///< alarms on those days with these thresholds
 };
 
-/// Residuals on their way.
+/// Exponential means of the residuals.
 class ResidualMeans {
  public:
   explicit ResidualMeans(std::size_t n_sensors);
-  /// @param innovation_K  NaN where there is none: the mean then goes to 0
+  /// @param innovation_K  NaN where there is none: that mean then decays to 0
   void take(const std::vector<double>& innovation_K, double step_s);
   [[nodiscard]] const Eigen::VectorXd& mean(std::size_t scale) const { return mean_[scale]; }
   void recall(std::size_t scale, Eigen::VectorXd mean) { mean_[scale] = std::move(mean); }
@@ -51,19 +53,19 @@ class ResidualMeans {
 
 /// T² of a scale. @param inverse  of its covariance
 [[nodiscard]] double size_of(const Eigen::MatrixXd& inverse, const Eigen::VectorXd& mean);
-/// Of a covariance that is regular by a hundredth of its mean variance.
+/// The inverse of a covariance, with a hundredth of its mean variance added to the diagonal.
 [[nodiscard]] Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance);
 
 class Watch {
  public:
   struct Alarm {
-    double since_s = 0.0;  ///< of the run
+    double since_s = 0.0;  ///< time in the run
     std::string words;     ///< "t06 is 0.8 K warmer than the model says, t01 0.5 K warmer; mean over 40 min"
   };
-  /// @throws InputError  for limits of sensors that the model has not
+  /// @throws InputError  for limits of sensors that the model does not have
   Watch(const compensation::Observer& observer, WatchLimits limits);
 
-  /// Takes the last row of a run. @return the largest T² over its threshold: above 1 is an alarm
+  /// Takes the last row of a run. @return the largest T² divided by its threshold; above 1 is an alarm
   double next(const compensation::ObservedRun& run);
   [[nodiscard]] const std::optional<Alarm>& alarm() const { return alarm_; }
   [[nodiscard]] double level() const { return level_; }

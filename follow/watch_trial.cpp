@@ -22,20 +22,20 @@ using compensation::ObservedRun;
 using compensation::Observer;
 
 constexpr double kDay_s = 86400.0, kHour_s = 3600.0;
-constexpr double kTestedFor_s = 4.0 * kHour_s;       // of each heating and cooling test
-constexpr double kTestedSpeeds[] = {0.4, 0.7, 1.0};  // of the top
+constexpr double kTestedFor_s = 4.0 * kHour_s;       // each heating and each cooling test
+constexpr double kTestedSpeeds[] = {0.4, 0.7, 1.0};  // shares of the top speed
 constexpr double kFallsFor_s = 120.0;                // time constant of a thermometer in air
-constexpr double kDoor_K = -3.0;                     // air that comes in
+constexpr double kDoor_K = -3.0;                     // change of the ambient by an open door
 constexpr double kBlock_s = 1800.0;
-constexpr double kAlarmsADay = 1.0 / 300.0;  // of one scale
-constexpr double kTail = 0.1;                // of daily maxima, whose shape tells how seldom larger ones are
-constexpr int kMachinesOfCovariance = 30;    // beside those of the thresholds
+constexpr double kAlarmsADay = 1.0 / 300.0;  // for one scale
+constexpr double kTail = 0.1;                // upper share of daily maxima that the exponential tail is fitted to
+constexpr int kMachinesOfCovariance = 30;    // for the covariance, besides those for the thresholds
 
-/// Sections from 6 in the morning on.
+/// Sections of work and rest, starting at 6 in the morning.
 Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
   Cyclogram c{.name = "shop", .sections = {}};
   for (double t_s = 0.0; t_s < duration_s;) {
-    const double hour = std::fmod(t_s / kHour_s, 24.0);  // since 6
+    const double hour = std::fmod(t_s / kHour_s, 24.0);  // hours since 6 in the morning
     const bool is_week_end = static_cast<int>(t_s / kDay_s) % 7 >= 5;
     const bool is_rest = hour >= 16.0 || is_week_end;
     double length_s = 60.0 * std::round(random.uniform(15.0, 120.0));
@@ -48,7 +48,8 @@ Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
   return c;
 }
 
-/// Minus the reference temperature [K], an hour a knot: a day's wave of 1 to 3 K and what wanders by 0.3 K.
+/// Ambient minus the reference temperature [K], one knot an hour: a daily wave of 1 to 3 K (peak to peak) and a random
+/// part of 0.3 K.
 TimeSeries shop_ambient(double duration_s, double at_start_K, Random& random) {
   TimeSeries ambient;
   const double wave_K = 0.5 * random.uniform(1.0, 3.0);
@@ -77,9 +78,9 @@ solver::ReducedSystem broken(const solver::ReducedSystem& machine, const TrialFa
   return solver::with_factors(machine, f);
 }
 
-/// The level that daily maxima like these exceed with a probability. Most of what makes them large is that of the machine (its numbers are off in ways
-/// that an observer cannot learn), and it is there each day: their tail is that of squares of normally distributed numbers, which is exponential. The
-/// mean excess over their 90 % quantile is its scale.
+/// The level that the daily maxima exceed with a probability. Most of a large maximum comes from the machine (its numbers
+/// are off in ways that an observer cannot learn) and recurs each day: the tail is that of squares of normally
+/// distributed numbers, which is exponential. Its scale is the mean excess over the 90 % quantile.
 double tail_level(std::vector<double> maxima, double probability) {
   std::sort(maxima.begin(), maxima.end());
   const auto n_below = static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(maxima.size()));
@@ -245,8 +246,8 @@ namespace {
 
 using OfScales = std::array<Eigen::MatrixXd, kWatchedOver_s.size()>;
 
-/// Means of the residuals of a machine that nothing is wrong with, row by row.
-/// @param take  is told the row's number and the means
+/// Runs a healthy machine and passes on the means of its residuals, row by row.
+/// @param take  called with the row's number and the means
 template <class Take>
 void follow_at_work(const Observer& model, const std::vector<std::string>& sensors, const TrialSettings& settings, int seed,
                     double days, Take take) {
@@ -277,7 +278,7 @@ WatchLimits simulated_limits(const Observer& model, const std::vector<std::strin
     listener.share(static_cast<double>(++n_done) / (n_machines + kMachinesOfCovariance));
   };
 
-  // What is usual comes from machines of its own: those whose T² is looked at next shall not have had a part in what it is measured by.
+  // The covariance comes from machines of its own, so that the machines whose T² gives the thresholds have no part in it.
   std::vector<OfScales> squares(kMachinesOfCovariance);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < kMachinesOfCovariance; ++m) {

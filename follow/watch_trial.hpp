@@ -1,6 +1,6 @@
 #pragma once
-// Machines that differ from their model as real ones do, months of their work, and faults that begin in them at some hour: what thresholds of a watch
-// are simulated on, and what a watch is tried by.
+// Simulated machines that differ from their model as real ones do, at work for days, with faults that begin at some time.
+// The thresholds of a watch are simulated on them, and a watch is tested on them.
 
 #include "base/listener.hpp"
 #include "follow/watch.hpp"
@@ -10,36 +10,38 @@ namespace driftwright::follow {
 struct TrialSettings {
   double top_rpm = 0.0;
   double scatter =
-      0.1;  ///< of each heat source, film, joint and link, of all conduction and of all rates: standard deviation of the logarithm
+      0.1;  ///< standard deviation of the logarithm of each source, film, joint and link, all conduction and all rates
   double period_s = 60.0;
 };
 
-/// What goes wrong in a trial.
+/// A fault that begins in a trial.
 struct TrialFault {
   enum class Kind { kNone, kFilm, kFanStops, kPreload, kSensorFallsOff, kDoorOpens };
   Kind kind = Kind::kNone;
   double onset_s = 0.0;
   std::size_t index = 0;  ///< of the exchange, source or sensor
-  double factor = 1.0;    ///< on it
+  double factor = 1.0;    ///< factor on it
 };
 [[nodiscard]] const char* words(TrialFault::Kind kind);
 
-/// A machine whose numbers are off from the model's, and the observer that `validate` would have fitted to three tests of it.
+/// A machine whose numbers differ from the model's, and the observer that `validate` would have fitted to three tests of
+/// it.
 class TrialMachine {
  public:
-  /// @param model    whose model, start and settings are taken; what it has learned is not
-  /// @param sensors  that are watched
+  /// @param model    gives the model, start and settings; what it has learned is not used
+  /// @param sensors  sensors to watch
   TrialMachine(const compensation::Observer& model, std::vector<std::string> sensors, const TrialSettings& settings,
                std::uint64_t seed);
 
-  /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top between 6 and 22 h, rests at night and at week-ends; an ambient that
-  /// follows the day and wanders. Thermometers read with the model's noise.
+  /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top speed between 6 and 22 h, rest at night and
+  /// at week-ends, and an ambient with a daily wave and a random part. Thermometers read with the model's noise.
   [[nodiscard]] compensation::ObservedRun work(double duration_s, const TrialFault& fault, std::uint64_t seed) const;
 
-  /// Time constant [s] of what a fault is in: of the heat that it brings, b'K⁻²b / b'K⁻¹b with M = 1, at half the top speed.
+  /// Time constant [s] of the part with the fault: of the heat that the fault adds, b'K⁻²b / b'K⁻¹b with M = 1, at half
+  /// the top speed.
   [[nodiscard]] double time_constant_s(const TrialFault& fault) const;
-  /// What the readings until a time tell of a fault, in nats, by an observer that knows all else: half the sum of squares of what it makes of them, in
-  /// blocks of half an hour against their noise and the error of the model.
+  /// Evidence [nats] of a fault in the readings up to a time, for an observer that knows all else: half the sum of
+  /// squares of the fault's effect on them, in blocks of half an hour, over their noise and the error of the model.
   [[nodiscard]] double nats(double duration_s, const TrialFault& fault, std::uint64_t seed) const;
 
   [[nodiscard]] const compensation::Observer& observer() const { return observer_; }
@@ -60,16 +62,18 @@ class TrialMachine {
   compensation::Observer observer_;
 };
 
-/// Thermometers that a watch can read: outputs of the observer's model in K that are not the ambient alone, as far as a stream has them.
+/// Thermometers that a watch can read: outputs in K of the observer's model that are not the ambient alone, and that the
+/// stream has.
 [[nodiscard]] std::vector<std::string> watchable_sensors(const compensation::Observer& observer,
                                                          const std::vector<Channel>& channels);
 
-inline constexpr int kTrialMachines = 100;  ///< so many that the few whose numbers are furthest off are among them
-inline constexpr double kTrialDays = 7.0;   ///< of each, a week-end among them
+inline constexpr int kTrialMachines = 100;  ///< enough to include some with extreme numbers
+inline constexpr double kTrialDays = 7.0;   ///< for each machine; includes a week-end
 
-/// Thresholds by simulation: so high that each scale alone raises an alarm in one of 300 days, by the tail of daily maxima over all machines.
-/// @param n_machines  for the thresholds; 30 more tell what is usual
-/// @throws std::logic_error  for none of them, or less than a day
+/// Simulates the thresholds: each scale alone raises an alarm on one of 300 days, by the tail of daily maxima over all
+/// machines.
+/// @param n_machines  for the thresholds; 30 more give the covariance
+/// @throws std::logic_error  for less than one machine, or less than a day
 [[nodiscard]] WatchLimits simulated_limits(const compensation::Observer& model, const std::vector<std::string>& sensors,
                                            const TrialSettings& settings, int n_machines, double days_each,
                                            const Listener& listener);

@@ -10,10 +10,10 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr double kMeanOne =
-    1e4;  // weight of the sum of a thermometer's shares being 1, where it would be more, over the largest of its normal equations
+// Weight of the constraint that a thermometer's shares sum to at most 1, relative to the largest of its normal equations.
+constexpr double kMeanOne = 1e4;
 constexpr double kTiny = 1e-12;
-constexpr double kNothing = 1e9;  // a penalty that leaves nothing
+constexpr double kNothing = 1e9;  // a penalty that forces a coefficient to zero
 
 }  // namespace
 
@@ -171,7 +171,8 @@ ChannelFit FosterProblem::fit(const Normal& normal, std::size_t channel, const S
 
 ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                           const Smoothness& smoothness) const {
-  // Columns of shares: bodies, then the ambient itself, the scenario; beside them one constant, or one of each record, and starts.
+  // Columns with shares: bodies, then the ambient itself, the scenario. Other columns: one constant, or one per record, and
+  // starts.
   const Eigen::Index n_constants = is_rise ? n_records_ : 1;
   const Eigen::Index n_bodies = n_heated_ + n_ambient_, n_shares = first_of_records(), n_beside = n_constants + n_starts_;
   Eigen::MatrixXd to = Eigen::MatrixXd::Zero(g.rows(), n_shares + n_beside);
@@ -198,7 +199,7 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
   if (extends_scenario()) penalty[n_shares - 1] *= smoothness.scenario_of_thermometers / smoothness.thermometers;
   reduced.diagonal() += penalty;
   reduced.diagonal().array() += 1e-9 * largest;
-  if (extends_scenario()) target[n_shares - 1] += penalty[n_shares - 1];  // drawn to 1
+  if (extends_scenario()) target[n_shares - 1] += penalty[n_shares - 1];  // the penalty draws it to 1
   Eigen::VectorXd shares = non_negative_least_squares(reduced, target);
   const Eigen::Index first_of_mean = extends_scenario() ? n_heated_ : 0, n_mean = n_shares - first_of_mean;
   if ((has_ambient_ || extends_scenario()) && shares.tail(n_mean).sum() > 1.0) {
@@ -220,7 +221,8 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
 
 ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,
                                            const Smoothness& smoothness) const {
-  // What heat and what the ambient does to a body have a weight each, the scenario one; the ambient itself has none.
+  // The effects of heat and of the ambient on a body have one weight each, the scenario has one; the ambient itself has
+  // none.
   std::vector<Eigen::Index> parts_at, beside_at;
   for (Eigen::Index i = 0; i < n_heated_ + n_ambient_; ++i) parts_at.push_back(i);
   if (extends_scenario()) parts_at.push_back(first_of_records() - 1);
@@ -236,7 +238,7 @@ ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen
   const double largest = std::max(reduced.diagonal().maxCoeff(), kTiny);
   for (Eigen::Index i = 0; i < n_heated_ + n_ambient_; ++i)
     reduced(i, i) += (i < n_heated_ ? smoothness.drive : smoothness.ambient) * reduced(i, i) + 1e-9 * largest;
-  if (extends_scenario()) {  // drawn to 1
+  if (extends_scenario()) {  // the penalty draws it to 1
     const double penalty = smoothness.scenario_of_displacements * reduced(n_parts - 1, n_parts - 1) + 1e-9 * largest;
     reduced(n_parts - 1, n_parts - 1) += penalty;
     target[n_parts - 1] += penalty;

@@ -1,15 +1,20 @@
 #pragma once
-// A network of bodies side by side: each stands in the ambient, loses heat to it alone and is heated by one law of one drive, or by none. Thermometers are means of bodies
-// and the ambient, displacements sums of their temperatures.
+// A network of parallel bodies: each exchanges heat with the ambient only, and is heated by one law of one drive, or by
+// none. Thermometers are weighted means of bodies and the ambient, displacements are sums of body temperatures.
 //
-//     tau_k dT_b/dt = T_ambient - T_b + rise_b u_b(t),   theta_c = offset_c + sum_b v_cb T_b + v_c T_ambient,  v >= 0, sum v <= 1,   d_c = sum_b s_cb (T_b - T_b(0))
+//     tau_k dT_b/dt = T_ambient - T_b + rise_b u_b(t), theta_c = offset_c + sum_b v_cb T_b + v_c T_ambient, v >= 0, sum v <=
+//     1, d_c = sum_b s_cb (T_b - T_b(0))
+// T_ambient is the ambient minus its first value in the record. Any linear network of positive capacities and conductances
+// between a drive and the point that it heats has such a form (Foster). A thermometer far from the heat, whose step response
+// is S-shaped, has weights of both signs and is not represented exactly. Positive weights keep thermometers passive for
+// drives that were never fitted. The remainder of the sum is the share of something at constant temperature: a floor, a
+// cooled part. For given time constants and laws the model is linear in v and s, so there is one best fit, and it needs no
+// first guess.
 //
-// T_ambient is the ambient less its first value in the record. Between a drive and what it heats any linear network of positive capacities and conductances has such a form (Foster).
-// A thermometer far from the heat, which follows a step in an S, has weights of both signs and is not met; means with positive weights keep thermometers passive
-// at drives that were never fitted; what is left of the sum is a share of something that keeps its temperature: a floor, a cooled part. Given time constants and laws it is linear in v and s, so that there is one best fit and no start to choose.
-// Beside a scenario's own simulation S_c the same columns say what is missing of it: y_c = kept_c S_c + heated bodies (rises alone) + ambient parts, 0 <= kept <= 1, of thermometers all weights >= 0
-// and kept + ambient parts <= 1; least squares are drawn to kept = 1 and nothing else.
-// Sources: Foster, Bell System Technical Journal 3 (1924) 259-267; for heat: Gerstenmaier & Wachutka, Microelectronics Reliability 44 (2004) 1469.
+// If a scenario's simulation S_c is extended, the same columns describe what it lacks: y_c = kept_c S_c + heated bodies
+// (rises alone) + ambient parts, with 0 <= kept <= 1; for thermometers all weights are >= 0 and kept + ambient parts <= 1.
+// The penalties draw the fit to kept = 1 and nothing else. Sources: Foster, Bell System Technical Journal 3 (1924) 259-267;
+// for heat: Gerstenmaier & Wachutka, Microelectronics Reliability 44 (2004) 1469.
 
 #include <map>
 #include <optional>
@@ -18,7 +23,7 @@
 
 namespace driftwright::identification {
 
-/// A time constant with the laws whose heat bodies of it have; beside them one without heat, where there is an ambient.
+/// A time constant, and the laws that heat bodies with it; if there is an ambient, one more body without heat has it.
 struct Pole {
   double tau_s = 0.0;
   std::vector<std::size_t> laws;  ///< of Structure::laws
@@ -29,41 +34,44 @@ struct Structure {
   [[nodiscard]] std::size_t n_heated() const;
 };
 
-/// Ridge penalties, each a share of its column's own sum of squares: the larger, the less a fit may do.
+/// Ridge penalties, each relative to its column's sum of squares: a larger penalty restricts the fit more.
 struct Smoothness {
   double thermometers = 1e-3, drive = 1e-3, ambient = 1e-3;
-  /// Of what a scenario's simulation loses; huge: it is kept whole.
+  /// On the lost part of a scenario's simulation; huge: it is kept completely.
   double scenario_of_thermometers = 1e6, scenario_of_displacements = 1e6;
-  double offset = 0.0;  ///< of a thermometer's constant
-  /// Of how much warmer or colder than the ambient a record begins, which is true of it alone; huge: it begins in balance.
+  double offset = 0.0;  ///< on a thermometer's constant
+  /// On the initial difference of a record from the ambient, which belongs to that record alone; huge: it begins in balance.
   double start_of_thermometers = 1e-3, start_of_displacements = 1e-3;
 };
 
-/// One channel in numbers. Bodies in the order of bodies_of().
+/// The fit of one channel. Bodies are in the order of bodies_of().
 struct ChannelFit {
-  Eigen::VectorXd weight;   ///< v of bodies; or s [um/K]
-  double of_ambient = 0.0;  ///< v of the ambient itself; of a displacement 0
-  double kept = 0.0;        ///< of the scenario's simulation; without one 0
+  Eigen::VectorXd weight;   ///< v of the bodies; of a displacement s [um/K]
+  double of_ambient = 0.0;  ///< v of the ambient itself; 0 for a displacement
+  double kept = 0.0;        ///< share of the scenario's simulation; 0 without one
   double offset = 0.0;      ///< of a thermometer in degC [K]
-  Eigen::VectorXd
-      of_records;  ///< what is true of records alone: a constant of each (of displacements and rises), then each pole's part of how warm it begins
-  Eigen::VectorXd
-      standard_deviation;  ///< of the heated part of a displacement, n rows counted as n / rows_as_one(); else empty
+  /// Terms of single records: a constant for each (displacements and rises), then per pole the initial warmth.
+  Eigen::VectorXd of_records;
+  /// Of the heated part of a displacement, with n rows counted as n / rows_as_one(); else empty.
+  Eigen::VectorXd standard_deviation;
 };
 
+/// A body of the network.
 struct NetworkBody {
   double tau_s = 0.0;
-  std::optional<std::size_t> law;  ///< none: warmed by the ambient alone
-  double rise_K = 0.0;             ///< over the ambient, in the end, where the law is 1
+  std::optional<std::size_t> law;  ///< none: only the ambient warms it
+  double rise_K = 0.0;             ///< steady rise over the ambient where the law is 1
 };
 [[nodiscard]] std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient, double rise_K);
 
-/// Records and a structure as a problem of linear least squares.
+/// The linear least squares problem of records and a structure.
 class FosterProblem {
  public:
-  /// @param rise_K  of heated bodies where their law is 1: larger than any thermometer's rise, for thermometers are means
-  /// @param blocks  of each record: so many rows are taken as one, by their means, once all are computed
-  /// @param simulated  what a scenario says of the same rows, if one is to be extended: a record each, with all thermometers and displacements
+  /// @param rise_K  of heated bodies where their law is 1: larger than any thermometer's rise, because thermometers are
+  ///                means
+  /// @param blocks  of each record: this many rows are averaged into one, after all are computed
+  /// @param simulated  simulation of the same rows by the scenario to be extended, if any: one record each, with all
+  ///                   thermometers and displacements
   FosterProblem(std::span<const Record> records, const RecordRoles& roles, Structure structure, double rise_K,
                 const std::vector<std::size_t>& blocks, std::span<const Record> simulated = {});
 
@@ -72,55 +80,60 @@ class FosterProblem {
   [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }  ///< thermometers, then displacements
   [[nodiscard]] std::size_t n_thermometers() const { return n_thermometers_; }
   [[nodiscard]] std::size_t n_rows() const { return static_cast<std::size_t>(columns_.rows()); }
-  [[nodiscard]] double reference_degC() const { return reference_degC_; }  ///< the ambient in the first row of all, else 20
+  [[nodiscard]] double reference_degC() const {
+    return reference_degC_;
+  }  ///< the first ambient value of all records, else 20
 
-  /// Normal equations of the rows that count, one of each set of rows that channels have. Rows of all records, one after the other.
+  /// Normal equations of the rows that are not hidden; channels with the same valid rows share one matrix. The rows of all
+  /// records follow each other.
   struct Normal {
     Eigen::MatrixXd g;
-    Eigen::MatrixXd c;            ///< a column a channel
-    std::vector<double> n;        ///< rows of each channel
-    std::vector<std::size_t> of;  ///< of each channel, which of `own`
+    Eigen::MatrixXd c;            ///< one column per channel
+    std::vector<double> n;        ///< number of rows of each channel
+    std::vector<std::size_t> of;  ///< for each channel, the index into `own`
     std::vector<Eigen::MatrixXd> own;
-    Eigen::MatrixXd with_scenario;     ///< products of all columns and a channel's simulation, a column a channel
+    Eigen::MatrixXd with_scenario;     ///< products of all columns and a channel's simulation, one column per channel
     Eigen::VectorXd scenario_squares;  ///< of each channel
   };
   [[nodiscard]] Normal normal(const std::vector<bool>& hidden) const;
 
   [[nodiscard]] ChannelFit fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const;
-  /// The scenario as it is, with what is true of records alone.
+  /// The unchanged scenario, with the terms of single records.
   [[nodiscard]] ChannelFit scenario_alone(const Normal& normal, std::size_t channel, Smoothness smoothness) const;
   [[nodiscard]] bool extends_scenario() const { return n_scenario_ > 0; }
-  /// What the scenario says of a channel, as measured() has it.
+  /// The scenario's simulation of a channel, in the units of measured().
   [[nodiscard]] Eigen::VectorXd simulated(std::size_t channel) const {
     return simulated_.col(static_cast<Eigen::Index>(channel));
   }
-  /// What the network says of all rows. Thermometers less the first ambient of their record. @param in_records  with what is true of records alone
+  /// The network's values for all rows; thermometers minus the first ambient of their record. @param in_records with the
+  /// terms of single records
   [[nodiscard]] Eigen::VectorXd predicted(std::size_t channel, const ChannelFit& fit, bool in_records) const;
-  /// How much warmer a body is than the first ambient of its record.
+  /// Temperature of a body minus the first ambient of its record.
   [[nodiscard]] Eigen::VectorXd body_K(std::size_t body) const { return body_columns_.col(static_cast<Eigen::Index>(body)); }
-  /// The part of it that is heat's; of a body that none heats 0.
+  /// The part of it that is caused by heat; 0 for a body without a law.
   [[nodiscard]] Eigen::VectorXd heated_K(std::size_t body) const;
   [[nodiscard]] const Eigen::VectorXd& ambient_K() const { return ambient_K_; }
-  /// Readings of a channel, thermometers in degC less the first ambient of their record; NaN where missing.
+  /// Readings of a channel, thermometers in degC minus the first ambient of their record; NaN where missing.
   [[nodiscard]] Eigen::VectorXd measured(std::size_t channel) const {
     return readings_.col(static_cast<Eigen::Index>(channel));
   }
-  /// What is missed row by row, with what is true of records alone; NaN where there is no reading. A displacement of a record of which no row was fitted to counts from its
-  /// first reading. @param in_records  false: as the written scenario is simulated, which knows nothing of a record's own; displacements and rises count from their first readings
+  /// Residuals row by row, with the terms of single records; NaN without a reading. A displacement of a record without any
+  /// fitted row counts from its first reading. @param in_records false: as the written scenario is simulated, without terms
+  /// of single records; displacements and rises then count from their first readings
   [[nodiscard]] Eigen::VectorXd misses(std::size_t channel, const ChannelFit& fit, bool in_records = true) const;
-  /// Some rows by themselves, for root mean squares of their misses().
+  /// A subset of rows, prepared for root mean squares of misses().
   struct Part {
-    std::vector<std::size_t> records;  ///< of each row
+    std::vector<std::size_t> records;  ///< record of each row
     Eigen::MatrixXd bodies, of_records, readings, simulated;
     Eigen::VectorXd ambient_K;
   };
   [[nodiscard]] Part part(const std::vector<bool>& rows) const;
-  /// NaN where none has a reading.
+  /// Root mean square of the residuals; NaN without readings.
   [[nodiscard]] double rms(const Part& part, std::size_t channel, const ChannelFit& fit, bool in_records = true) const;
 
  private:
   [[nodiscard]] Eigen::Index first_of_records() const { return n_heated_ + n_ambient_ + n_direct_ + n_scenario_; }
-  /// What a record's misses count from, where not from 0: the first of them.
+  /// Zero point of a record's residuals: the first of them, or 0.
   [[nodiscard]] double zero_of(std::size_t record, std::size_t channel, const ChannelFit& fit, bool in_records) const;
   [[nodiscard]] ChannelFit fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                            const Smoothness& smoothness) const;
@@ -133,11 +146,12 @@ class FosterProblem {
   std::vector<NetworkBody> bodies_;
   std::vector<std::string> channels_;
   std::size_t n_thermometers_ = 0;
-  std::vector<char> counts_from_start_;  ///< of each channel: a displacement, or a rise in K
-  std::vector<std::size_t> first_row_;   ///< of each record; last the number of all rows
-  Eigen::MatrixXd body_columns_;         ///< T_b less the reference
+  std::vector<char> counts_from_start_;  ///< of each channel: true for a displacement or a rise in K
+  std::vector<std::size_t> first_row_;   ///< of each record, followed by the number of all rows
+  Eigen::MatrixXd body_columns_;         ///< T_b minus the reference
   Eigen::VectorXd ambient_K_;
-  /// Heated parts, ambient parts, ambient, the scenario's simulation (0 here: it differs from channel to channel), a constant of each record, start of each record and pole.
+  /// Heated parts, ambient parts, ambient, the scenario's simulation (0 here, because it differs by channel), a constant per
+  /// record, start per record and pole.
   Eigen::MatrixXd columns_;
   Eigen::MatrixXd readings_, simulated_;
   Eigen::Index n_heated_ = 0, n_ambient_ = 0, n_direct_ = 0, n_scenario_ = 0, n_records_ = 0, n_starts_ = 0;

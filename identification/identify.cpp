@@ -15,17 +15,17 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr std::array<double, 3> kExponents = {5.0 / 3.0, 2.0, 1.0};  // the first unless others are better
+constexpr std::array<double, 3> kExponents = {5.0 / 3.0, 2.0, 1.0};  // the first one is used unless others are better
 constexpr std::array<std::size_t, 4> kPoles = {2, 3, 4, 6};
-constexpr double kRowsOfShortest = 3.0;  // rows that the shortest time constant spans
-constexpr double kShortest = 0.003;      // of the longest record, at least
-constexpr double kLongest = 1.0 / 3.0;   // of the longest record
-constexpr double kRest = 0.05;           // of the top speed: slower is rest, nearer is one level
+constexpr double kRowsOfShortest = 3.0;  // rows within the shortest time constant
+constexpr double kShortest = 0.003;      // of the longest record: lower limit of the shortest time constant
+constexpr double kLongest = 1.0 / 3.0;   // longest time constant, of the longest record
+constexpr double kRest = 0.05;           // of the top speed: lower speeds are rest, closer speeds are one level
 constexpr double kHottest = 3.0;         // rise of heated bodies over the largest of a thermometer
-constexpr double kDefaultRise_K = 10.0;  // where there is no thermometer
-constexpr double kLagOfSign = 0.03;      // of a record, behind which a column is held against thermometers
+constexpr double kDefaultRise_K = 10.0;  // without a thermometer
+constexpr double kLagOfSign = 0.03;      // of a record: lag of a column before it is compared with thermometers
 constexpr std::size_t kFewestBlocks = 30;
-constexpr double kMostRows = 3000.0;  // of all records; more are thinned evenly
+constexpr double kMostRows = 3000.0;  // of all records; more rows are averaged
 
 double top_of(std::span<const Record> records, const std::string& channel) {
   double top = 0.0;
@@ -43,13 +43,13 @@ std::vector<double> time_constants(std::span<const Record> records, std::size_t 
   const double from = std::log(std::max(kRowsOfShortest * row_s, kShortest * longest_s)),
                to = std::log(kLongest * longest_s);
   std::vector<double> tau_s;
-  // in the middles of even steps
+  // the centres of equal intervals
   for (std::size_t k = 0; k < n; ++k)
     tau_s.push_back(std::exp(from + (static_cast<double>(k) + 0.5) / static_cast<double>(n) * (to - from)));
   return tau_s;
 }
 
-/// Whether thermometers fall, most of them, where a column rises.
+/// True if most thermometers fall when a column rises.
 bool cools(std::span<const Record> records, const RecordRoles& roles, const std::string& drive) {
   double votes = 0.0;
   for (const std::string& t : roles.thermometers) {
@@ -67,7 +67,7 @@ bool cools(std::span<const Record> records, const RecordRoles& roles, const std:
   return votes < 0.0;
 }
 
-/// Whether a speed stands at two levels at least, rest aside.
+/// True if a speed has at least two levels apart from rest.
 bool has_levels(std::span<const Record> records, const std::string& speed, double top) {
   double least = top;
   for (const Record& r : records) {
@@ -87,7 +87,7 @@ std::vector<Judged> structures(std::span<const Record> records, const RecordRole
     of_speed.push_back({turning});
     is_default.push_back(1);
     for (double exponent : kExponents) {
-      if (!has_levels(records, roles.speed, top)) break;  // one speed tells of no law
+      if (!has_levels(records, roles.speed, top)) break;  // one speed does not determine a law
       const Law power{.kind = Law::Kind::kPower, .channel = roles.speed, .exponent = exponent, .top = top};
       of_speed.push_back({power});
       of_speed.push_back({turning, power});
@@ -120,7 +120,7 @@ std::vector<Judged> structures(std::span<const Record> records, const RecordRole
   return list;
 }
 
-/// A structure without one of its bodies; none where that is the ambient's part of a pole with heated bodies.
+/// A structure without one of its bodies; none if that body is the ambient's part of a pole with heated bodies.
 std::optional<Structure> without(const Structure& structure, bool has_ambient, std::size_t body) {
   Structure less = structure;
   std::size_t at = 0;
@@ -158,7 +158,7 @@ std::string name_of(const NetworkBody& body, const Structure& structure) {
   return law.channel + "_" + time_words(body.tau_s);
 }
 
-/// So many rows of each record are taken as one that all have no more than kMostRows, and each as many as it needs.
+/// Number of rows of each record that are averaged into one, so that all records together have at most kMostRows.
 std::vector<std::size_t> blocks_of(std::span<const Record> records) {
   double n = 0.0;
   for (const Record& r : records) n += static_cast<double>(r.n_samples());
@@ -168,7 +168,7 @@ std::vector<std::size_t> blocks_of(std::span<const Record> records) {
   return blocks;
 }
 
-/// Rise of heated bodies: larger than any thermometer's.
+/// Rise of heated bodies: larger than that of any thermometer.
 double rise_of(std::span<const Record> records, const RecordRoles& roles) {
   double rise_K = 0.0;
   for (const std::string& t : roles.thermometers) {
@@ -185,7 +185,7 @@ struct Chosen {
   std::vector<double> gains;  ///< of each body
 };
 
-/// The structure that predicts kept-out rows.
+/// Chooses the structure that predicts kept-out rows.
 Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, const Listener& listener) {
   listener.begin("laws and number of bodies");
   for_each_index(
@@ -232,7 +232,7 @@ Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, con
   return {std::move(now), std::move(gains)};
 }
 
-/// Geometric mean of a channel's misses over the folds of a kind; NaN where none judges.
+/// Geometric mean of a channel's errors over the folds of a kind; NaN without a judged row.
 double missed(const Loss& loss, const std::vector<HiddenRows>& folds, const std::string& kind, std::size_t channel) {
   double logs = 0.0, there = 0.0;
   for (std::size_t f = 0; f < folds.size(); ++f) {

@@ -1,5 +1,6 @@
 #pragma once
-// Which network predicts: laws of its heat, how many bodies, how smooth, decided by rows that were kept out.
+// Chooses the network with the best predictions: the laws of its heat, the number of bodies, the smoothness, judged on
+// kept-out rows.
 
 #include "base/listener.hpp"
 #include "base/mean_error.hpp"
@@ -8,37 +9,39 @@
 
 namespace driftwright::identification {
 
-/// Kept-out rows of one kind, all channels in turn.
+/// Errors on kept-out rows of one kind, for all channels.
 struct KeptOutKind {
-  std::string kind;         ///< as compensation::Fold has it
-  std::vector<double> rms;  ///< a channel each; mean of the logarithms over the folds of the kind; NaN where none judges
+  std::string kind;         ///< same as compensation::Fold::kind
+  std::vector<double> rms;  ///< per channel; geometric mean over the folds of the kind; NaN without a judged row
 };
 
+/// A body of the chosen network.
 struct IdentifiedBody {
   NetworkBody body;
-  std::string name;   ///< what heats it and its time constant: "speed_25min", "ambient_4h"
-  double gain = 0.0;  ///< by how much more kept-out rows are missed without it: 0.1 is a tenth
+  std::string name;   ///< law and time constant: "speed_25min", "ambient_4h"
+  double gain = 0.0;  ///< relative increase of the error on kept-out rows without it: 0.1 means a tenth
 };
 
+/// A channel with its fit and errors.
 struct IdentifiedChannel {
-  std::string name, unit;  ///< degC, K (a rise over the reference) or um
+  std::string name, unit;  ///< degC, K (a rise above the reference) or um
   ChannelFit fit;
   double swing = 0.0;       ///< standard deviation of the readings
-  double missed_own = 0.0;  ///< root mean square of the rows that were fitted to
-  double missed_simulated =
-      0.0;  ///< the same rows as the written scenario is simulated, in balance at the start of each record
+  double missed_own = 0.0;  ///< root mean square over the fitted rows
+  /// The same rows as the written scenario simulates them, in balance at the start of each record.
+  double missed_simulated = 0.0;
   double missed_kept_out = 0.0;  ///< geometric mean over kinds of kept-out rows
-  Eigen::VectorXd predicted;     ///< all rows, with what is true of records alone
-  Eigen::VectorXd misses;        ///< of these; NaN where there is no reading
-  std::vector<Driver> ledger;    ///< the largest share first
-  // Where a scenario is extended:
-  bool is_extended = false;        ///< else the scenario is kept as it is
-  double scenario_simulated = 0.0;  ///< what the scenario as it is leaves of the same rows, as missed_simulated
-  double scenario_kept_out = 0.0;  ///< of kept-out rows, as missed_kept_out
-  MeanError
-      missed_more_without;  ///< logarithm of what the scenario as it is misses over what it misses extended, kept-out folds
+  Eigen::VectorXd predicted;     ///< all rows, with the terms of single records
+  Eigen::VectorXd misses;        ///< residuals of all rows; NaN without a reading
+  std::vector<Driver> ledger;    ///< the driver with the largest share first
+  // If a scenario is extended:
+  bool is_extended = false;         ///< false: the scenario is unchanged for this channel
+  double scenario_simulated = 0.0;  ///< error of the unchanged scenario on the same rows, as missed_simulated
+  double scenario_kept_out = 0.0;   ///< the same on kept-out rows, as missed_kept_out
+  MeanError missed_more_without;  ///< logarithm of the ratio of errors, unchanged over extended scenario, on kept-out folds
 };
 
+/// The identified network.
 struct Identified {
   RecordRoles roles;
   Structure structure;
@@ -46,20 +49,25 @@ struct Identified {
   std::vector<IdentifiedBody> bodies;       ///< in the order of bodies_of()
   std::vector<IdentifiedChannel> channels;  ///< thermometers, then displacements
   std::vector<KeptOutKind> kinds;
-  std::vector<std::size_t> blocks;  ///< of each record, so many rows are one in what is kept of rows
-  bool is_extension = false;        ///< of a scenario; bodies then are what is missing beside it
+  std::vector<std::size_t> blocks;  ///< for each record, this many rows are averaged into one in stored rows
+  bool is_extension = false;        ///< it extends a scenario; the bodies are those that the scenario lacks
 };
 
-/// Laws that are tried: of the speed, on while it turns, a power of it (5/3, viscous friction of bearings, unless kept-out rows speak for another), or both; of other drives, in
-/// proportion. Time constants lie in even steps of their logarithm between three rows, or 0.3 % of the longest record, and a third of that. Of all, the network with the fewest bodies whose kept-out
-/// misses are within a standard error of the least; then bodies go that kept-out rows do not miss.
+/// Laws that are tried. For the speed: on while it turns, a power of it, or both; the power is 5/3 (viscous friction of
+/// bearings) unless kept-out rows support another one. For other drives: in proportion. Time constants are spaced evenly in
+/// their logarithm, from three rows or 0.3 % of the longest record to a third of that record. The result is the network with
+/// the fewest bodies whose error on kept-out rows is within a standard error of the smallest; then bodies without benefit
+/// for kept-out rows are removed.
 /// @throws InputError  as record_roles()
-/// Source of the exponent: Palmgren's friction torque M ~ (nu n)^(2/3): Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed. (2006), ch. 10.
+/// Source of the exponent: Palmgren's friction torque M ~ (nu n)^(2/3): Harris & Kotzalas, Essential Concepts of Bearing
+/// Technology, 5th ed. (2006), ch. 10.
 [[nodiscard]] Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener = {});
 
-/// What a scenario misses, learned beside it: how much of its simulation is kept, and bodies that it does not have, chosen and judged in the same way. Nothing is learned where
-/// kept-out rows do not speak for it: all channels together must be missed by more without, with 95 % over the folds (Student), and so must each channel that is extended.
-/// @param simulated  the same rows as the scenario gives them, a record each, with all thermometers and displacements of the roles
+/// Learns what a scenario lacks: the share of its simulation that is kept, and additional bodies, chosen and judged in the
+/// same way. Nothing is learned without support by kept-out rows: the error of all channels together must be larger without
+/// it, with 95 % confidence over the folds (Student), and so must the error of each extended channel.
+/// @param simulated  the scenario's simulation of the same rows, one record each, with all thermometers and displacements of
+///                   the roles
 [[nodiscard]] Identified extend(std::span<const Record> records, const RecordRoles& roles, std::span<const Record> simulated,
                                 const Listener& listener = {});
 

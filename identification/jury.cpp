@@ -11,12 +11,12 @@ namespace driftwright::identification {
 namespace {
 
 constexpr std::array<double, 3> kPenalties = {1e-4, 1e-3, 1e-2};
-constexpr std::array<double, 3> kPenaltiesBeside = {1.0, 1e-2, 1e-4};  // of what a scenario is extended by
-constexpr std::array<double, 3> kScenarios = {1e6, 1e-2, 1e-4};        // kept whole; may lose
+constexpr std::array<double, 3> kPenaltiesBeside = {1.0, 1e-2, 1e-4};  // of the terms that extend a scenario
+constexpr std::array<double, 3> kScenarios = {1e6, 1e-2, 1e-4};        // kept completely; may lose
 constexpr std::array<double, 2> kStarts = {1e6, 1e-3};                 // in balance; free
-constexpr double kFloor = 0.02;  // of a channel's deviation: misses below are not told from nothing
+constexpr double kFloor = 0.02;  // of a channel's deviation: smaller errors count as equal
 
-/// Records with the first row of each block: what folds are told by.
+/// Records with the first row of each block, from which folds are made.
 std::vector<Record> thinned(std::span<const Record> records, const std::vector<std::size_t>& blocks) {
   std::vector<Record> few(records.begin(), records.end());
   for (std::size_t r = 0; r < few.size(); ++r) {
@@ -79,7 +79,7 @@ Eigen::VectorXd mean_over_channels(const Eigen::MatrixXd& log_rms) {
   return mean;
 }
 
-/// Displacements count as much as thermometers do, however many there are.
+/// Gives displacements as a group the same weight as thermometers, for any number of each.
 void weigh(Loss& loss, std::size_t n_thermometers, const std::vector<HiddenRows>& folds) {
   const auto n_t = static_cast<Eigen::Index>(n_thermometers), n_d = loss.log_rms.cols() - n_t;
   const Eigen::VectorXd thermometers = mean_over_channels(loss.log_rms.leftCols(n_t));
@@ -94,7 +94,7 @@ void weigh(Loss& loss, std::size_t n_thermometers, const std::vector<HiddenRows>
   loss.mean = mean_of_kinds(loss.of_fold, folds);
 }
 
-/// What is tried of a network from records alone: records that begin in balance, and free starts.
+/// The penalties to try for a network from records alone: records that begin in balance, and free starts.
 std::array<std::vector<Smoothness>, 2> alone(bool of_thermometers) {
   std::array<std::vector<Smoothness>, 2> lists;
   for (std::size_t free : {0, 1}) {
@@ -109,7 +109,7 @@ std::array<std::vector<Smoothness>, 2> alone(bool of_thermometers) {
   return lists;
 }
 
-/// The same of what is learned beside a scenario; of equals the first, which is most drawn to it.
+/// The same for the extension of a scenario; of equal results the first is used, which keeps the scenario most.
 std::array<std::vector<Smoothness>, 2> beside_scenario(bool of_thermometers) {
   std::array<std::vector<Smoothness>, 2> lists;
   for (std::size_t free : {0, 1}) {
@@ -184,7 +184,7 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
   struct Tried {
     Smoothness smoothness;
     Eigen::MatrixXd log_rms, rms;
-    Loss loss, simulated;  ///< with what is true of a record alone, and as the written scenario is simulated
+    Loss loss, simulated;  ///< with the terms of single records, and as the written scenario is simulated
   };
   const auto tried = [&](std::size_t from, std::size_t to, const Smoothness& s) {
     Tried t{.smoothness = s,
@@ -220,8 +220,9 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
     }
     return best;
   };
-  // Records begin in balance, unless the scenario that is written, which knows of no other start, is better beyond a standard error where starts are free; beside a scenario, unless kept-out
-  // rows are: a heat is not to stand for a warm machine.
+  // For a network alone, records begin in balance, unless the written scenario, which knows no other start, is better by
+  // more than a standard error with free starts. For an extension they do so unless kept-out rows are better with free
+  // starts: a heat must not explain a machine that was warm.
   const auto try_all = [&](std::size_t from, std::size_t to, const std::array<std::vector<Smoothness>, 2>& lists) {
     Tried best = best_of(from, to, lists[0]);
     if (!lists[1].empty()) {
@@ -236,7 +237,7 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
   };
   if (!only.empty()) {
     for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, {{{only[c]}, {}}});
-  } else if (problem.extends_scenario()) {  // each channel lacks its own
+  } else if (problem.extends_scenario()) {  // each channel lacks different terms
     for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, beside_scenario(c < n_t));
   } else {
     if (n_t > 0) try_all(0, n_t, alone(true));

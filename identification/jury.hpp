@@ -1,31 +1,34 @@
 #pragma once
-// How well a structure predicts rows that were kept out.
+// Measures how well a structure predicts kept-out rows.
 
 #include "base/mean_error.hpp"
 #include "identification/foster_network.hpp"
 
 namespace driftwright::identification {
 
-/// Folds as rows of all records, one after the other.
+/// A fold as a mask over the rows of all records, one after the other.
 struct HiddenRows {
   std::string kind;
   std::vector<bool> hidden;
 };
 
-/// Logarithms of kept-out misses: a row a fold, a column a channel.
+/// Errors on kept-out rows: one row per fold, one column per channel.
 struct Loss {
-  Eigen::MatrixXd log_rms, rms;  ///< with a floor; without
-  Eigen::VectorXd of_fold;       ///< mean over channels, thermometers and displacements half each; NaN where none judges
-  double mean = 0.0;             ///< over kinds of the mean over their folds
+  Eigen::MatrixXd log_rms, rms;  ///< log_rms: logarithm, with a lower limit; rms: without
+  /// Mean over channels, with half the weight for thermometers and half for displacements; NaN without a judged row.
+  Eigen::VectorXd of_fold;
+  double mean = 0.0;  ///< mean over kinds of the mean over their folds
 };
 
-/// By how much more the one misses, or a channel of it: mean of the logarithms' differences over the folds.
+/// By how much the error of `one` is larger than that of `other`, in all or in one channel: mean difference of the
+/// logarithms over the folds.
 [[nodiscard]] MeanError missed_more(const Loss& one, const Loss& other);
 [[nodiscard]] MeanError missed_more(const Loss& one, const Loss& other, std::size_t channel);
 
-/// Whether one is no worse than another beyond a standard error of their difference over the folds.
+/// True if one is not worse than another by more than a standard error of their difference over the folds.
 [[nodiscard]] bool is_as_good(const Loss& one, const Loss& best);
 
+/// A structure with its errors.
 struct Judged {
   Structure structure;
   std::vector<Smoothness> smoothness;  ///< of each channel
@@ -34,21 +37,23 @@ struct Judged {
   bool has_default_exponent = true;
 };
 
-/// Standard deviation of the values that are there.
+/// Standard deviation of the values that are not missing.
 [[nodiscard]] double deviation(const Eigen::VectorXd& y);
 
-/// Judges structures by the folds of validation (compensation/judging/folds.hpp), each hidden from the fit in turn. All arguments are loans for its life.
+/// Judges structures by the folds of validation (compensation/judging/folds.hpp), each hidden from the fit in turn. All
+/// arguments must outlive it.
 class Jury {
  public:
-  /// @param rise_K, blocks, simulated  as FosterProblem has them
+  /// @param rise_K, blocks, simulated  as of FosterProblem
   Jury(std::span<const Record> records, const RecordRoles& roles, double rise_K, const std::vector<std::size_t>& blocks,
        std::span<const Record> simulated = {});
   [[nodiscard]] const std::vector<HiddenRows>& folds() const { return folds_; }
 
-  /// With the penalties that do best, alike for all thermometers and for all displacements; beside a scenario each channel's own.
-  /// @param only  one of each channel: with these alone
+  /// Uses the penalties with the smallest error: common ones for all thermometers and for all displacements; if a scenario
+  /// is extended, separate ones per channel.
+  /// @param only  one per channel: uses these penalties
   [[nodiscard]] Judged judged(const Structure& structure, const std::vector<Smoothness>& only = {}) const;
-  /// Of the scenario that is extended, as it is, records beginning as they do in that extension.
+  /// Errors of the unchanged scenario, with the same initial states of records as in that extension.
   [[nodiscard]] Loss of_scenario(const Judged& extension) const;
 
  private:

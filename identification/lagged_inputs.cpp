@@ -5,7 +5,7 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr double kTurns = 0.01;  // of the top speed: below, a tachometer's noise at rest
+constexpr double kTurns = 0.01;  // of the top speed: smaller values are a tachometer's noise at rest
 
 }  // namespace
 

@@ -8,7 +8,8 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr int kTimes = 400;  // of a step response, from a hundredth of the shortest time constant to ten of the longest
+// Number of times of a step response, from a hundredth of the shortest time constant to ten times the longest.
+constexpr int kTimes = 400;
 constexpr double kThere = 0.63;
 
 std::string name_of(const Law& law) {

@@ -14,17 +14,17 @@ namespace {
 constexpr double kCapacity_J_K = 1e4;
 constexpr double kThermometer_J_K = 1e-3, kThermometerTau_s = 20.0;
 constexpr const char* kStill = "floor";
-constexpr double kStill_J_K = 1e12, kStillTau_s = 1e9;  // stands for ever where it began
+constexpr double kStill_J_K = 1e12, kStillTau_s = 1e9;  // a node that keeps its initial temperature
 
-constexpr double kLeastShare = 1e-4;  // a heated body rises some times as much as the hottest thermometer
+constexpr double kLeastShare = 1e-4;  // a heated body rises several times as much as the hottest thermometer
 constexpr double kLeastOffset_K = 0.005;
 
-/// A number with its digits and no more.
+/// A number with the digits it needs.
 std::string digits(double value) {
   return fmt::format("{:.5g}", value);
 }
 
-/// A name as YAML reads it as one.
+/// A name that YAML reads as text.
 std::string word(const std::string& name) {
   static const std::set<std::string> kOther = {"yes", "no", "true", "false", "on", "off", "null", "y", "n"};
   std::string small = name;
@@ -61,7 +61,7 @@ std::string network_scenario(const Identified& network, const std::string& name,
   text += fmt::format(
       "name: {}\n\nreference_temperature: {} degC\nstart: steady\n\nmachine: {{generator: lumped}}\n\neffects:\n", name,
       digits(network.reference_degC));
-  // Bodies that some channel sees.
+  // Bodies that some channel uses.
   std::set<std::size_t> used;
   for (const IdentifiedChannel& c : network.channels) {
     const bool is_thermometer = c.unit != "um";
@@ -76,7 +76,7 @@ std::string network_scenario(const Identified& network, const std::string& name,
   for (std::size_t b : used)
     text += fmt::format("  - {{type: link, node: {}, to: ambient, conductance: {} W/K}}\n", network.bodies[b].name,
                         digits(kCapacity_J_K / network.bodies[b].body.tau_s));
-  const auto rest_of = [&](const IdentifiedChannel& c) {  // of a thermometer's mean: what keeps its temperature
+  const auto rest_of = [&](const IdentifiedChannel& c) {  // rest of a thermometer's mean: something at constant temperature
     double rest = has_ambient && c.fit.of_ambient > kLeastShare ? 1.0 - c.fit.of_ambient : 1.0;
     for (double share : c.fit.weight) rest -= share > kLeastShare ? share : 0.0;
     return rest;
@@ -110,7 +110,7 @@ std::string network_scenario(const Identified& network, const std::string& name,
     }
     if (has_ambient && c.fit.of_ambient > kLeastShare) link("ambient", c.fit.of_ambient);
     if (rest_of(c) > kLeastShare) link(has_ambient ? kStill : "ambient", rest_of(c));
-    if (std::abs(c.fit.offset) > kLeastOffset_K)  // heat of its own: it stands so far from what it is a mean of
+    if (std::abs(c.fit.offset) > kLeastOffset_K)  // a heat that produces the constant difference from its mean
       text += fmt::format("  - {{type: heat_source, node: at_{}, power: {} W}}\n", c.name, digits(whole_W_K * c.fit.offset));
   }
   text += has_ambient ? fmt::format("\nambient: {{csv: {}, channel: {}}}\n", records.front(), word(roles.ambient))

@@ -6,10 +6,10 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr double kSlack = 1e-10;  // of the largest of c: a gradient that is none
-constexpr double kNone = 1e-12;   // of the largest number: a number that is 0
+constexpr double kSlack = 1e-10;  // of the largest of c: smaller gradients count as zero
+constexpr double kNone = 1e-12;   // of the largest number: smaller numbers count as zero
 
-/// Least squares of the numbers that are free, the others 0.
+/// Least squares for the free numbers, with the others 0.
 Eigen::VectorXd of_free(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, const std::vector<char>& is_free) {
   std::vector<Eigen::Index> free;
   for (std::size_t i = 0; i < is_free.size(); ++i) {
@@ -42,7 +42,7 @@ Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& g, const Eigen
     is_free[static_cast<std::size_t>(enters)] = 1;
     for (Eigen::Index turn = 0; turn < n; ++turn) {
       const Eigen::VectorXd to = of_free(g, c, is_free);
-      double share = 1.0;  // of the way, up to where the first number is 0
+      double share = 1.0;  // of the step, up to where the first number becomes 0
       for (Eigen::Index i = 0; i < n; ++i) {
         if (is_free[static_cast<std::size_t>(i)] && to[i] <= 0.0 && x[i] > to[i])
           share = std::min(share, x[i] / (x[i] - to[i]));

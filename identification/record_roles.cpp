@@ -15,9 +15,9 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr std::size_t kFewestRows = 30;  // of a record
-constexpr double kAmbientFollows = 0.5;  // of its squares that drives explain: more is no ambient
-constexpr double kHole = 10.0;           // usual steps
+constexpr std::size_t kFewestRows = 30;  // per record
+constexpr double kAmbientFollows = 0.5;  // share of its squares that drives explain; an ambient has less
+constexpr double kHole = 10.0;           // in usual time steps
 constexpr std::array kDriveUnits = {"W", "V", "percent", "W_m2", "1", "mm_min", "count"};
 constexpr std::array kAmbientNames = {"ambient", "room", "hall", "outdoor", "environment", "surroundings"};
 
@@ -26,14 +26,14 @@ std::string lower(std::string s) {
   return s;
 }
 
-/// Whether one of the words of a name, parted by '_', is one of an ambient.
+/// True if one of the parts of a name, split at '_', is a word for an ambient.
 bool is_ambient_name(const std::string& name) {
   return std::any_of(kAmbientNames.begin(), kAmbientNames.end(), [&](const std::string& word) {
     return ("_" + lower(name) + "_").find("_" + word + "_") != std::string::npos;
   });
 }
 
-/// What a scenario may call an output, a column or a node.
+/// True if a scenario allows the name for an output, a column or a node.
 bool is_plain(const std::string& name) {
   return !name.empty() &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
@@ -56,9 +56,10 @@ bool changes(std::span<const Record> records, const std::string& channel) {
   return most > least;
 }
 
-/// Share of a thermometer's squares, about its mean in each record, that lags of the drives explain, in all records alike.
+/// Share of a thermometer's squares, about its mean in each record, that lags of the drives explain, with common
+/// coefficients for all records.
 double follows(std::span<const Record> records, const std::vector<std::string>& drives, const std::string& thermometer) {
-  constexpr std::array kLags = {0.01, 0.05, 0.2};  // of a record
+  constexpr std::array kLags = {0.01, 0.05, 0.2};  // as shares of a record
   const auto n = static_cast<Eigen::Index>(kLags.size() * drives.size());
   Eigen::MatrixXd g = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd c = Eigen::VectorXd::Zero(n);

@@ -1,4 +1,4 @@
-// The machine row by row: each step goes on from the state of the last one, exactly where the machine is linear.
+// Runs the machine row by row: each step continues from the state of the last one; it is exact if the machine is linear.
 
 #include <fmt/format.h>
 
@@ -18,8 +18,8 @@ struct Run::State {
   std::shared_ptr<const scenarios::Model> model;
   Cyclogram cyclogram;  ///< so far
   Eigen::VectorXd state;
-  solver::Trajectory so_far;  ///< outputs of all rows where instruments remember them, else of the last one
-  bool remembers = false;     ///< whether instruments do
+  solver::Trajectory so_far;  ///< outputs of all rows if instruments depend on earlier ones, else of the last one
+  bool remembers = false;     ///< true if instruments depend on earlier rows
   std::vector<Channel> channels;
 
   void take(double time_s, const Eigen::VectorXd& outputs) {
@@ -77,7 +77,7 @@ Run Machine::start(std::optional<double> ambient_degC, const std::string& run_na
   s->machine = own;
   s->tolerances = asked.solver.transient;
   s->cyclogram.name = run_name;
-  // The model is that of the scenario's own cyclograms, which `predict` takes for them too.
+  // The model for the scenario's own cyclograms, which `predict` also uses for them.
   const Cyclogram own_job = asked.cyclograms.empty() ? Cyclogram{} : asked.cyclograms.front();
   s->model = parts_->predicting.of(asked, own_job, parts_->listener);
   const auto has_thermostats = [](const auto& system) { return !system.thermostats.empty(); };

@@ -73,7 +73,7 @@ Record Machine::predict(const Cyclogram& cyclogram, const PredictOptions& option
 std::vector<Record> Machine::predict(const std::vector<Cyclogram>& cyclograms, const PredictOptions& options) const {
   std::vector<Record> records(cyclograms.size());
   if (cyclograms.empty()) return records;
-  records[0] = predict(cyclograms[0], options);  // opens the model with all cores
+  records[0] = predict(cyclograms[0], options);  // opens the model, with all cores
   const studies::PredictionOptions how{.start = options.start, .after_pause = options.after_pause, .model = options.model};
   const auto no_space = [] { return 0; };
   const auto one = [&](std::size_t i, int) {

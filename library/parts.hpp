@@ -1,5 +1,5 @@
 #pragma once
-// What a Machine holds.
+// The private data of a Machine.
 
 #include "driftwright/machine.hpp"
 #include "studies/prediction.hpp"
@@ -13,7 +13,7 @@ struct Machine::Parts {
   studies::PredictingModels simulating;
 };
 
-/// The scenario as predictions run it.
+/// The scenario in the form that predictions use.
 [[nodiscard]] scenarios::Scenario as_predicted(const scenarios::Scenario& scenario);
 
 }  // namespace driftwright

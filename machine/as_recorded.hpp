@@ -1,5 +1,5 @@
 #pragma once
-// From a run of the machine to its record: what instruments make of it.
+// Converts a run of the machine into its record, with all errors of its instruments.
 
 #include "base/record.hpp"
 #include "scenarios/reader/scenario.hpp"
@@ -7,9 +7,9 @@
 
 namespace driftwright::scenarios {
 
-/// The record of a run: drive as recorded; sensors, displacements and tilts as instruments tell them. A sensor on the ambient reads
-/// the recorded ambient; where there is none, the channel `ambient` does.
-/// @param run  of felt_run(model, recorded)
+/// The record of a run: drive as recorded; sensors, displacements and tilts as instruments read them. A sensor on the
+/// ambient reads the recorded ambient; without such a sensor, the channel `ambient` contains it.
+/// @param run  a run of felt_run(model, recorded)
 [[nodiscard]] Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
                                  const Cyclogram& recorded);
 

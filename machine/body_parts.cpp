@@ -10,7 +10,7 @@ namespace {
 
 using Part = solver::BodyPart<solver::SparseRow>;
 
-/// M and K0 of one region alone: those of a machine in which all others neither store nor conduct.
+/// M and K0 of one region: those of a machine in which no other region stores or conducts heat.
 void set_matrices(Part& part, const mesh::Mesh& mesh, solver::RegionMaterials materials, int region,
                   const effects::HeatBalance& nodes) {
   for (std::size_t r = 0; r < materials.size(); ++r) {

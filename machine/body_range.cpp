@@ -12,7 +12,7 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr std::size_t kStatesOfReduced =
-    16;  // whose node temperatures are worked out, some 0.5 ms each on a mesh of 24000 nodes
+    16;  // number of states whose node temperatures are computed; some 0.5 ms each on a mesh of 24000 nodes
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// How cold and how warm each body became in a run, and what of that no machine does.
+// The lowest and highest temperature of each body in a run, and warnings about impossible ones.
 
 #include <string>
 #include <vector>
@@ -8,18 +8,19 @@
 
 namespace driftwright::scenarios {
 
-/// Temperatures of a region or lumped node in a run, absolute.
+/// Absolute temperatures of a region or lumped node in a run.
 struct BodyRange {
   std::string body;
   double low_K = 0.0, high_K = 0.0;
-  double highest_s = 0.0;  ///< time of the highest
+  double highest_s = 0.0;  ///< time of the highest temperature
 };
 
-/// Takes the states of a run: all of the full model, of a reduced one with a mesh some, since each takes the temperatures of all its nodes. A reduced
-/// model does not tell those of its lumped nodes, and one opened without fields tells none.
+/// Collects these from the states of a run: from all states of the full model, from some states of a reduced one with a
+/// mesh, because each needs the temperatures of all nodes. A reduced model has no temperatures of its lumped nodes; one
+/// opened without fields has none at all.
 class BodyRangeWatch {
  public:
-  /// @param n_states  that the run will have. The model outlives the watch.
+  /// @param n_states  number of states in the run. The model must outlive the watch.
   BodyRangeWatch(const MachineModel& machine, const Model& model, std::size_t n_states);
   void take(double time_s, const Eigen::VectorXd& state);
   [[nodiscard]] const std::vector<BodyRange>& bodies() const { return bodies_; }
@@ -32,7 +33,8 @@ class BodyRangeWatch {
   std::vector<BodyRange> bodies_;
 };
 
-/// Bodies outside of the usual temperatures, the one that goes farthest alone, and those that left the table of a property of their material.
+/// Warnings about bodies outside of the usual temperatures (only the most extreme one) and outside of the table of a
+/// material property.
 [[nodiscard]] std::vector<std::string> unusual_temperatures(const std::vector<BodyRange>& bodies,
                                                             const MachineModel& machine, const std::string& cyclogram);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The state in which a run begins that the machine had been driven before.
+// The initial state of a run if the machine was driven before it.
 
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
@@ -7,9 +7,10 @@
 
 namespace driftwright::scenarios {
 
-/// The state at t = 0 of a run: `from`, and what drove the machine between that and the run, in the ambient of the run's start.
+/// The state at t = 0 of a run: `from`, advanced by what drove the machine before the run, with the ambient of the run's
+/// start.
 /// @param system  a solver::FullSystem or a solver::ReducedSystem
-/// @param from    its state before
+/// @param from    the state before that
 template <typename System>
 [[nodiscard]] Eigen::VectorXd after_what_was_before(const System& system, const FeltRun& felt,
                                                     const solver::TransientOptions& options, Eigen::VectorXd from) {

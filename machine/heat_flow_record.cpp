@@ -20,7 +20,7 @@ std::string channel_name(const std::string& flow, std::set<std::string>& taken) 
   return unique;
 }
 
-/// Differences of a heat [J] over the intervals between rows [W].
+/// Differences of a heat [J] between rows, divided by the interval [W].
 template <class Heat>
 std::vector<double> mean_power_W(const std::vector<double>& time_s, const Heat& heat_J) {
   std::vector<double> power_W = {std::numeric_limits<double>::quiet_NaN()};

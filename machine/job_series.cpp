@@ -5,7 +5,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-/// Appends stretches of time one behind the other.
+/// Appends stretches of time one after the other.
 class SeriesWriter {
  public:
   SeriesWriter(JobSeries& series, double interval_s) : series_(series), interval_s_(interval_s) {}
@@ -16,7 +16,8 @@ class SeriesWriter {
     const std::vector<double> local_s = output_times_s({.name = "", .sections = sections}, interval_s_);
     for (const Cyclogram::Section& section : sections) {
       series_.cyclogram.sections.push_back(section);
-      end_s_ += section.duration_s;  // as the cyclogram itself adds up, so that the last row is its end to the last bit
+      // The same sum as of the cyclogram itself, so that the last row is its end to the last bit.
+      end_s_ += section.duration_s;
     }
     std::vector<double>& time_s = series_.time_s;
     if (time_s.empty()) time_s.push_back(start_s);

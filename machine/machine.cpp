@@ -21,7 +21,7 @@ namespace {
 using mesh::Mesh;
 using solver::DisplacementFunctional;
 
-constexpr double kSnap_m = 5e-3;  ///< how far a sensor may be moved onto its region
+constexpr double kSnap_m = 5e-3;  ///< largest distance by which a sensor is moved onto its region
 
 [[noreturn]] void unknown_name(const Where& where, const std::string& what, const std::string& name,
                                const std::vector<std::string>& known) {
@@ -31,7 +31,7 @@ constexpr double kSnap_m = 5e-3;  ///< how far a sensor may be moved onto its re
                                       near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
-std::vector<std::string> outer_surfaces(const Mesh& mesh) {  // those a film can lie on: not the sides of joints
+std::vector<std::string> outer_surfaces(const Mesh& mesh) {  // surfaces that may have films: not the sides of joints
   std::vector<std::string> names;
   for (const std::string& s : mesh.surfaces) {
     if (s.find('@') == std::string::npos) names.push_back(s);
@@ -50,7 +50,7 @@ void must_be_one_of(const Where& where, const std::string& what, const std::stri
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown_name(where, what, name, known);
 }
 
-/// Lumped nodes and the ambient. @throws InputError  where two effects make a node of the same name, or one called ambient
+/// Lumped nodes and the ambient. @throws InputError  if two effects make a node of the same name, or one called ambient
 std::vector<std::string> node_names(const MachineModel& model) {
   std::vector<std::string> nodes = {effects::kAmbientName};
   for (const effects::Effect& e : model.effects) {
@@ -69,10 +69,10 @@ std::vector<std::string> node_names(const MachineModel& model) {
   return nodes;
 }
 
-/// Films and supports belong outside: a surface may hold no facet that lies between two cells.
+/// Films and supports must be outside: a surface must not contain a facet between two cells.
 void require_outside(const Mesh& mesh, const std::string& surface, const Where& where) {
   const std::vector<int> facets = mesh.facets_on(mesh.surface(surface));
-  std::vector<char> is_first(mesh.n_nodes(), 0);  // of some facet
+  std::vector<char> is_first(mesh.n_nodes(), 0);  // node is the first corner of some facet
   for (int facet : facets) is_first[mesh.facets.nodes(facet)[0]] = 1;
   std::vector<std::vector<int>> cells_at(mesh.n_nodes());
   for (int c = 0; c < mesh.cells.size(); ++c) {
@@ -95,7 +95,7 @@ void require_outside(const Mesh& mesh, const std::string& surface, const Where& 
   }
 }
 
-/// An effect that leads the exchanges of others elsewhere finds some that it can.
+/// Checks that an effect that redirects the exchanges of others finds at least one.
 void require_changed_paths(const MachineModel& model) {
   effects::HeatBalance balance;
   for (const effects::Effect& e : model.effects) {
@@ -139,7 +139,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSensor || e.place_kind == effects::Place::kDisplacement ||
         e.place_kind == effects::Place::kClock || e.place_kind == effects::Place::kSpindle) {
-      // no part of the machine: check_instruments()
+      // not a part of the machine: check_instruments()
     } else if (e.place_kind == effects::Place::kLaw) {
       must_be_one_of(e.where, "heat or exchange", e.place, laws);
       const bool is_of_joint = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
@@ -180,7 +180,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   require_changed_paths(model);
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const effects::Effect& e = model.effects[i];
-    const bool is_joint = e.kind->key == "contact";  // one after another is no doubt
+    const bool is_joint = e.kind->key == "contact";  // contacts that follow each other in time are allowed
     const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification" || is_joint;
     const auto follows = [&](const effects::Effect& a, const effects::Effect& b) {
       return is_joint && b.from_s >= a.until_s;
@@ -206,7 +206,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   }
 }
 
-/// Bodies of a displacement by sensitivities: regions and lumped nodes.
+/// Checks the bodies of a displacement by sensitivities: regions and lumped nodes.
 void check_bodies(const BySensitivity& by, const Mesh& mesh, const effects::HeatBalance& balance) {
   std::vector<std::string> nodes;
   for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
@@ -216,7 +216,7 @@ void check_bodies(const BySensitivity& by, const Mesh& mesh, const effects::Heat
   }
 }
 
-/// The point of a region nearest to where the user put it.
+/// The point of a region nearest to the position given by the user.
 mesh::MeshPoint place_point(const Mesh& mesh, const PointOnRegion& point) {
   must_be_one_of(point.where, "region", point.region, mesh.regions);
   const std::vector<int> cells = mesh.cells_in(mesh.region(point.region));
@@ -254,7 +254,7 @@ DisplacementFunctional tool_against_table(const Mesh& mesh, const ToolAgainstTab
   DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
   add_displacement(d, mesh, tool, direction);
   if (!output.table) return d;
-  PointOnRegion foot = *output.table;  // the spot of the table that its travel has brought there
+  PointOnRegion foot = *output.table;  // the point of the table that its travel has brought there
   foot.at_m -= output.travel_m;
   const mesh::MeshPoint table = place_point(mesh, foot);
   const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
@@ -299,7 +299,7 @@ int n_functionals(const PlacedMachine& placed) {
   return static_cast<int>(placed.functionals.size());
 }
 
-/// Whether a displacement or tilt is one of points of the mesh, at least in part.
+/// True if a displacement or tilt is defined by points of the mesh, at least in part.
 bool has_points(const MachineModel& model, std::size_t functional) {
   return functional >= model.displacements.size() || model.displacements[functional].points;
 }
@@ -333,7 +333,7 @@ solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& 
   for (const effects::MaterialFactor& factor : effects::material_factors(model.effects)) {
     const auto region = std::find(mesh.regions.begin(), mesh.regions.end(), factor.body.name);
     if (factor.body.kind != effects::BodyKind::kRegion || !factor.displacement.empty() || region == mesh.regions.end())
-      continue;  // place() says so at the effect
+      continue;  // place() reports this at the effect
     multiply(materials[static_cast<std::size_t>(region - mesh.regions.begin())], factor);
   }
   return materials;
@@ -494,7 +494,7 @@ Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
 
 namespace {
 
-/// Channels of what the cyclogram uses beside the spindle speed.
+/// Adds channels for the drives that the cyclogram uses besides the spindle speed.
 void add_feeds_and_cutting_power(Record& record, const Cyclogram& cyclogram) {
   const auto add = [&](const char* name, const char* unit, const auto& of_drive) {
     const auto& sections = cyclogram.sections;
@@ -520,7 +520,7 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   record.channels.push_back(std::move(speed));
   add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
-    if (effects::is_mean_output(outputs.name[i])) continue;  // of no instrument
+    if (effects::is_mean_output(outputs.name[i])) continue;  // not an instrument
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};
     double factor = 1e6, offset = 0.0;
@@ -546,7 +546,7 @@ std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s
   }
   times_s.push_back(end_s);
   std::sort(times_s.begin(), times_s.end());
-  const auto same = [](double a, double b) { return b - a <= 1e-9 * b; };  // sums of intervals miss by rounding
+  const auto same = [](double a, double b) { return b - a <= 1e-9 * b; };  // sums of intervals differ by rounding
   times_s.erase(std::unique(times_s.begin(), times_s.end(), same), times_s.end());
   return times_s;
 }

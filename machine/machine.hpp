@@ -1,5 +1,5 @@
 #pragma once
-// From scenario to computable machine: mesh, matrices, influence vectors; and its runs as records.
+// From a scenario to a computable machine: mesh, matrices, influence vectors; and its runs as records.
 
 #include <memory>
 
@@ -11,16 +11,16 @@
 
 namespace driftwright::scenarios {
 
-/// Everything that has been looked up in the mesh: no name is left to be wrong.
+/// A machine whose names and points have all been found in the mesh.
 struct PlacedMachine {
   mesh::Mesh mesh;
   solver::RegionMaterials materials;
   effects::HeatBalance balance;
   std::vector<solver::Support> supports;
   std::vector<solver::JointMechanics> joints;
-  /// Weights of each thermometer on the unknowns; empty for one that reads the ambient.
+  /// Weights of the unknowns for each thermometer; empty for one that reads the ambient.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
-  /// Displacements, then tilts; of no terms for a displacement by sensitivities alone.
+  /// Displacements, then tilts; without terms for a displacement that is defined by sensitivities alone.
   std::vector<solver::DisplacementFunctional> functionals;
 };
 
@@ -28,44 +28,46 @@ struct PlacedMachine {
 /// @throws InputError  for a name or point that does not exist, a region without material, a joint without contact
 /// @throws SolveError  when the mesh cannot be made
 [[nodiscard]] PlacedMachine place(const MachineModel& model);
-/// The same in a mesh that build_mesh() has made of model.mesh.
+/// The same with a mesh that build_mesh() has made from model.mesh.
 [[nodiscard]] PlacedMachine place(const MachineModel& model, mesh::Mesh mesh);
 
-/// Materials by region of the mesh, with the factors of effects. @throws InputError  for a region without material, or a material without region
+/// Materials by region of the mesh, with the factors of effects. @throws InputError for a region without material, or the
+/// reverse
 [[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);
 
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;
-  /// None without a mesh, where nothing needs it, or when built with known influences.
+  /// None without a mesh, if nothing needs it, or when built with known influences.
   std::optional<solver::Elasticity> elasticity;
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
-/// @param with_elasticity  as needs_elasticity() says, or true
-/// @param n_fields         about how many displacement fields will be solved for
+/// @param with_elasticity  result of needs_elasticity(), or true
+/// @param n_fields         approximate number of displacement fields to be solved for
 [[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true, int n_fields = 10);
-/// True where displacements or tilts of a mesh are asked for, or whole fields of it.
+/// True if the outputs contain displacements or tilts of a mesh, or whole fields.
 [[nodiscard]] bool needs_elasticity(const PlacedMachine& placed, bool with_fields);
 
-/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities alone are zero.
-/// They follow from mesh, materials, supports, joints and points alone, so models that differ in effects share them.
+/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities alone
+/// are zero. They depend on mesh, materials, supports, joints and points only, so models that differ in effects share them.
 [[nodiscard]] Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed);
-/// build() with influences() that are known: no factorisation, and no displacement fields.
+/// build() with known influences(): no factorisation, and no displacement fields.
 [[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
                                             const Eigen::MatrixXd& influence);
 
-/// Bodies whose mean temperature effects on readings look at, each once; the ambient is none of them.
+/// Bodies whose mean temperature is used by effects on readings, each once, without the ambient.
 [[nodiscard]] std::vector<effects::Body> bodies_of_readings(const MachineModel& model);
 
-/// What the instruments of a scenario tell, in its order, then mean temperatures of bodies_of_readings() (effects::mean_output()), and who of them reads the ambient; `state` stays empty: before there is a system.
+/// The outputs of a scenario: its instruments in its order, then the mean temperatures of bodies_of_readings()
+/// (effects::mean_output()), and which of them read the ambient. `state` stays empty, because there is no system yet.
 [[nodiscard]] solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed);
 
-/// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
-/// @throws SolveError  when there is no steady state to start from
+/// Temperatures minus the reference temperature at t = 0, as the scenario's `start` defines them.
+/// @throws SolveError  if no steady state exists to start from
 [[nodiscard]] Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine);
 
-/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad;
-/// no mean temperatures of bodies.
+/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in
+/// degC, displacements in um, tilts in urad; no mean temperatures of bodies.
 [[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                                double reference_K);
 

@@ -12,7 +12,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr int kFormat = 4;  // of the folders; a new one makes all others unknown
+constexpr int kFormat = 4;  // version of the folders' format; a new one invalidates all others
 
 std::string words(const effects::Body& body) {
   const char* kinds[] = {"region", "surface", "node", "joint"};
@@ -25,7 +25,7 @@ std::string words(const effects::Law& law) {
   return fmt::format("looks at [{}] switched by '{}'", fmt::join(probes, ", "), law.thermostat);
 }
 
-/// Everything of a balance but its laws' numbers.
+/// The text of a balance without the numbers of its laws.
 std::string structure(const effects::HeatBalance& balance) {
   std::string text;
   const auto add = [&](const char* what, const auto&... parts) {
@@ -68,7 +68,7 @@ std::string numbers_of_laws(const MachineModel& model) {
   return text;
 }
 
-/// Of a balance whose laws do not look at temperatures.
+/// Coefficients of a balance whose laws do not depend on temperatures.
 std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double ambient_K) {
   const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K};
   std::vector<double> values;
@@ -114,7 +114,7 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
     key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
     for (const Signal& signal : t.signals) key += fmt::format("typical {} {}\n", signal.name, signal.value);
     key += numbers_of_laws(model);
-  } else if (makes_modes) {  // or taken at standstill
+  } else if (makes_modes) {  // or at standstill
     key += fmt::format("at standstill {}\n",
                        fmt::join(coefficients_at_standstill(balance, felt_ambient_at_start_K(model)), " "));
   }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kHashes = "hashes.json";  // of all other files of a machine
+constexpr const char* kHashes = "hashes.json";  // hashes of all other files of a machine
 
 std::filesystem::path folder_of(const std::filesystem::path& store, const std::string& key) {
   return store / content_hash(key);
@@ -62,7 +62,7 @@ mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file
   return mesh;
 }
 
-/// Files in a folder, their names beginning with a prefix.
+/// Paths of files in a folder; their names get a prefix.
 FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix = "") {
   return [folder, prefix](const std::string& name) { return folder / (prefix + name); };
 }
@@ -95,7 +95,7 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
   write_bytes(work / kHashes, hashes.dump());
 }
 
-/// @throws InputError  naming the first file that is not as it was written; a JSON exception where the list of hashes holds something else
+/// @throws InputError  naming the first file that has changed; a JSON exception if the list of hashes is not valid
 void require_whole(const std::filesystem::path& folder) {
   Json hashes;
   try {
@@ -159,7 +159,7 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     why = e.what();
   } catch (const nlohmann::json::exception& e) {
     why = fmt::format("{}: {}", folder.string(), e.what());
-  } catch (const std::logic_error& e) {  // of another balance
+  } catch (const std::logic_error& e) {  // the machine belongs to another balance
     why = fmt::format("{}: {}", folder.string(), e.what());
   }
   if (damage) *damage = why;
@@ -175,15 +175,15 @@ void save_machine(const std::filesystem::path& store, const std::string& key, co
   if (failed) throw InputError(fmt::format("{}: {}", work.string(), failed.message()));
   try {
     write_machine(work, key, machine);
-  } catch (...) {  // a full disk is not filled further
+  } catch (...) {  // avoids filling a full disk further
     std::filesystem::remove_all(work, failed);
     throw;
   }
   const std::filesystem::path old = folder.string() + fmt::format(".old-{}", ::getpid());
   std::error_code none, ignored;
-  std::filesystem::rename(folder, old, none);  // a damaged one
+  std::filesystem::rename(folder, old, none);  // an existing one is damaged
   std::filesystem::rename(work, folder, failed);
-  if (failed) std::filesystem::remove_all(work, ignored);  // another process was first
+  if (failed) std::filesystem::remove_all(work, ignored);  // another process was faster
   if (!none) std::filesystem::remove_all(old, ignored);
 }
 

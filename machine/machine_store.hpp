@@ -1,8 +1,9 @@
 #pragma once
-// Reduced machines kept on disk, by content: a known machine with a new cyclogram needs no finite elements at all.
+// Stores reduced machines on disk, by content: a known machine with a new cyclogram needs no finite elements.
 //
-// A machine's folder is named after a hash of its key: everything that decides the result, as text. The key itself stands in the
-// folder and is compared, so a machine is never taken for another. Nothing depends on what was run before.
+// A machine's folder is named after a hash of its key, a text that contains everything that determines the result. The
+// folder also contains the key itself, and loading compares it, so two machines are never confused. Nothing depends on
+// earlier runs.
 
 #include <filesystem>
 #include <optional>
@@ -11,17 +12,17 @@
 
 namespace driftwright::scenarios {
 
-/// $XDG_CACHE_HOME/driftwright, or ~/.cache/driftwright; empty where the environment names neither: then nothing is kept.
+/// $XDG_CACHE_HOME/driftwright, or ~/.cache/driftwright; empty if the environment defines neither: then nothing is stored.
 [[nodiscard]] std::filesystem::path machine_store();
 
-/// The machine of this key with the laws of this balance, or none. A folder in which a file is not as it was written counts as none: each has
-/// its hash in hashes.json.
+/// The machine of this key with the laws of this balance, or none. A folder with a changed file counts as none: hashes.json
+/// contains the hash of each file.
 /// @param balance  of the scenario, as effects::heat_balance() gives it
-/// @param damage   where given: what is wrong with a folder that is there and was not taken
+/// @param damage   if given, receives what is wrong with a folder that exists but was not used
 [[nodiscard]] std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, const std::string& key,
                                                          const effects::HeatBalance& balance, std::string* damage = nullptr);
 
-/// Keeps a machine. Other processes see it whole or not at all. @throws InputError  when it cannot be written
+/// Stores a machine. Other processes see it complete or not at all. @throws InputError  when it cannot be written
 void save_machine(const std::filesystem::path& store, const std::string& key, const ReducedMachine& machine);
 
 }  // namespace driftwright::scenarios

@@ -20,18 +20,19 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kMB = 1048576.0;
-// Measured (docs/theory/performance.md): what a process takes without a mesh, and per pair of nodes that couple.
+// Measured values (docs/theory/performance.md) [bytes]: the process without a mesh, and per pair of coupled nodes.
 constexpr double kProgram = 74.0 * kMB;
 constexpr double kAssembled = 254.0;       // both triangles of blocks, CHOLMOD's copy, mesh and loads
 constexpr double kMultigrid = 610.0;       // the same with all levels
 constexpr double kHeatMatrix = 12.0;       // a number and its column
-constexpr int kHeatMatrices = 8;           // beside one for each set of coefficients
-constexpr double kVectorsOfOutput = 8.0;   // in all copies
+constexpr int kHeatMatrices = 8;           // in addition to one for each set of coefficients
+constexpr double kVectorsOfOutput = 8.0;   // number of copies
 constexpr double kVectorsOfPoint = 280.0;  // basis, its products and fields, for each set of coefficients
-// Seconds: of a multiplication, of a byte of a factor in a solve, of a pair of nodes assembled and in multigrid, of a basis.
+// Seconds: per multiplication, per byte of a factor in a solve, per pair of nodes for assembly and for multigrid, per basis.
 constexpr double kMultiplied_s = 3.3e-11, kSolved_s = 2e-10, kAssembled_s = 1.2e-6, kCycled_s = 1.4e-6, kBasis_s = 3e-9;
 
-/// A number behind a word at the beginning of a line of a file of the system, or the whole file where there is no word; infinite where there is none.
+/// The number after a word at the start of a line of a system file, or that of the whole file if the word is empty; infinite
+/// if there is none.
 double number_in(const std::string& file, const std::string& word) {
   std::ifstream in(file);
   double number = 0.0;
@@ -45,7 +46,7 @@ double half_of_memory() {
   return 0.5 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
-/// How often elasticity is solved.
+/// The number of elastic solves.
 int n_solves(const Scenario& scenario, const PlacedMachine& placed, bool full) {
   const auto n = static_cast<int>(placed.functionals.size());
   if (scenario.solver.fields_format == FieldsFormat::kNone) return n;
@@ -66,7 +67,7 @@ MeshDemand mesh_demand(const Scenario& scenario, const PlacedMachine& placed, bo
   MeshDemand demand{.memory_bytes = kProgram + 6.0 * kHeatMatrix * n_pairs,
                     .time_s = 0.5 + 0.2 * kAssembled_s * n_pairs,
                     .method = "heat alone"};
-  double stays = kProgram;  // of the elastic machine
+  double stays = kProgram;  // memory that remains in use while the elastic machine is kept
   if (is_elastic) {
     const int solves = n_solves(scenario, placed, full);
     solver::FactorSize factor;
@@ -107,7 +108,8 @@ MeshDemand mesh_demand(const Scenario& scenario, const PlacedMachine& placed, bo
 double room_bytes() {
   double room = 1024.0 * number_in("/proc/meminfo", "MemAvailable:");
   std::ifstream groups("/proc/self/cgroup");
-  for (std::string line; std::getline(groups, line);) {  // "0::/user.slice/..." of version 2; a group's parents limit it too
+  for (std::string line;
+       std::getline(groups, line);) {  // "0::/user.slice/..." of version 2; the limits of parent groups also apply
     if (!line.starts_with("0::")) continue;
     for (std::string group = line.substr(3); !group.empty(); group.resize(group.find_last_of('/'))) {
       const std::string folder = "/sys/fs/cgroup" + group;
@@ -122,7 +124,7 @@ double room_bytes() {
 }
 
 void require_room(const Scenario& scenario, const PlacedMachine& placed, const MeshDemand& demand, double room_bytes) {
-  if (demand.memory_bytes - kProgram <= room_bytes) return;  // the program itself is there already
+  if (demand.memory_bytes - kProgram <= room_bytes) return;  // the program itself is already in memory
   std::string change = "a coarser mesh, or a machine with more memory";
   if (scenario.solver.model == ModelKind::kReduced) {
     const double full = mesh_demand(scenario, placed, true).memory_bytes;

@@ -15,7 +15,8 @@ namespace driftwright::scenarios {
 
 namespace {
 
-/// What other sources, or another build of them, have reduced may be something else. Program and library of one build know each other's machines.
+/// A name of this build. Other sources, or another build of them, may reduce a machine differently. Program and library of
+/// one build share machines.
 std::string build_name() {
   return fmt::format("{} {}", kVersion, kSourcesOfMachines);
 }
@@ -74,7 +75,7 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
   scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);
   try {
     scenarios::save_machine(store, key, reduced);
-  } catch (const InputError& e) {  // the run is none the worse for it
+  } catch (const InputError& e) {  // the run itself is not affected
     fmt::print(stderr, "note: the reduced model is not kept: {}\n", e.what());
   }
   return reduced;

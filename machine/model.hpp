@@ -1,5 +1,5 @@
 #pragma once
-// What a verb runs cyclograms on: the finite elements, or the reduced model of the same machine.
+// The model that a verb runs cyclograms on: the finite elements, or the reduced model of the same machine.
 
 #include <optional>
 #include <variant>
@@ -9,6 +9,7 @@
 
 namespace driftwright::scenarios {
 
+/// A full or reduced machine with its heat balance.
 struct Model {
   std::variant<scenarios::Machine, scenarios::ReducedMachine> machine;
   effects::HeatBalance balance;
@@ -21,34 +22,35 @@ struct Model {
     return full() ? full()->system.outputs : reduced()->system.outputs;
   }
   [[nodiscard]] int n_unknowns() const { return full() ? full()->system.size() : reduced()->n_unknowns; }
-  /// True where coefficients and powers follow from the drive alone.
+  /// True if coefficients and powers depend on the drive alone.
   [[nodiscard]] bool is_linear() const { return full() ? full()->system.is_linear() : reduced()->system.is_linear(); }
-  /// For terminal and report: what was run, and how far it is from the full model. Ends without a full stop.
+  /// For terminal and report: which model was run, and its distance from the full model. Without a full stop.
   [[nodiscard]] std::string words() const;
 };
 
-/// Drift from the thermal modes of a model.
+/// Drift predictors from the thermal modes of a model.
 /// @throws InputError  when thermostats leave it without a linear model
 [[nodiscard]] compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model,
                                                              int n_modes, const Drive& typical);
 
-/// States that a reduced model will about have: as many displacement fields.
+/// Typical number of states of a reduced model [-]; building it takes as many displacement fields.
 inline constexpr int kStates = 50;
-/// How many fields are written of the longest cyclogram.
+/// Number of fields to be written for the longest cyclogram.
 [[nodiscard]] int n_fields(const Scenario& scenario);
 
-/// Meshes, places and factorises, saying so.
-/// @param n_fields  about how many whole fields are to be written, which takes displacements everywhere
+/// Meshes, places and factorises the machine, and reports each step to the listener.
+/// @param n_fields  approximate number of whole fields to be written; each needs displacements of all nodes
 [[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields);
 
-/// The reduced machine of a plan, from disk where it is known, else made and kept. @param was_known  unless null, which it was
+/// The reduced machine of a plan: read from disk if it is stored there, else made and stored. @param was_known receives
+/// which, unless null
 [[nodiscard]] scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model,
                                                      const scenarios::ReductionPlan& plan, const Listener& listener,
                                                      bool* was_known = nullptr);
 
-/// The model that the scenario asks for. A reduced one comes from disk where the machine is known for such cyclograms, else it is
-/// made and kept.
-/// @param cyclograms  that it will be asked; those of the scenario are always among them
+/// The model that the scenario asks for. A reduced one is read from disk if the machine is stored for such cyclograms, else
+/// it is made and stored.
+/// @param cyclograms  that it will run; those of the scenario are always included
 [[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
                                const Listener& listener, bool with_fields);
 

@@ -16,7 +16,7 @@ using solver::BoundLaw;
 using solver::ReducedSystem;
 using Json = nlohmann::ordered_json;
 
-/// Vectors side by side; empty ones as zeros.
+/// Vectors as columns of a matrix; empty ones become zeros.
 Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -169,7 +169,7 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   const auto array = [&](const char* name, Eigen::Index columns) { return sized(name, r, columns); };
   system.reference_K = json.at("reference_K");
   system.conduction = array("conduction", r);
-  system.mass = Eigen::MatrixXd::Identity(r, r);  // of a size that an array has
+  system.mass = Eigen::MatrixXd::Identity(r, r);  // of the same size as the stored arrays
   const Eigen::Index n_exchanges = n_of("exchanges");
   const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_ambient = array("to_hall", n_exchanges),
                         flow = array("flow", n_exchanges), offset = array("offset", n_exchanges),

@@ -21,7 +21,7 @@ bool has_curves(const solver::RegionMaterials& materials) {
   });
 }
 
-/// The demand of a system in which some exchanges stand for prescribed temperatures, last and with the coefficient 1.
+/// The demand of a system whose last exchanges, with the coefficient 1, replace prescribed temperatures.
 solver::ReductionDemand with_prescriptions(solver::ReductionDemand demand, std::size_t n_exchanges) {
   const auto n = static_cast<Eigen::Index>(n_exchanges), before = demand.low.size();
   demand.low.conservativeResize(n);
@@ -31,8 +31,8 @@ solver::ReductionDemand with_prescriptions(solver::ReductionDemand demand, std::
   return demand;
 }
 
-/// Materials with conductivity and capacity as they are at each region's mean temperature, in the steady state of half the
-/// demanded power, in the middle of the coefficients.
+/// Materials with conductivity and capacity at each region's mean temperature, in the steady state of half the
+/// demanded power, with coefficients in the middle of their ranges.
 solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalance& balance,
                                 const solver::FullSystem& system, const solver::ReductionDemand& demand, double ambient_K) {
   const Eigen::VectorXd c = demand.points().front();
@@ -63,8 +63,8 @@ solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalan
   return materials;
 }
 
-/// The full system without what has no projection.
-/// @param materials  as they are frozen
+/// The full system without the terms that cannot be projected.
+/// @param materials  with frozen properties
 solver::FullSystem reducible_system(const MachineModel& model, const Machine& machine, const effects::HeatBalance& balance,
                                     const solver::ReductionDemand& demand, solver::RegionMaterials& materials) {
   for (const solver::FixedUnknowns& f : machine.system.fixed) {
@@ -77,7 +77,7 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
   const mesh::Mesh& mesh = machine.placed.mesh;
   solver::FullSystem system = machine.system;
   if (!system.nonlinear.empty() || system.capacity) {
-    for (solver::Material& m : materials) {  // at the reference temperature first
+    for (solver::Material& m : materials) {  // first at the reference temperature
       if (!m.conductivity_curve.empty()) m.conductivity_W_mK = m.conductivity_curve.at(model.reference_K);
       if (!m.heat_capacity_curve.empty()) m.heat_capacity_J_kgK = m.heat_capacity_curve.at(model.reference_K);
       m.conductivity_curve = {};
@@ -124,7 +124,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   ReductionPlan plan;
   plan.demand = solver::reduction_demand(balance, driven, model.ambient, model.reference_K);
   const bool moves_ambient = std::any_of(model.effects.begin(), model.effects.end(), effects::changes_drive);
-  if (moves_ambient) {  // each run may have an ambient of its own
+  if (moves_ambient) {  // each run may have another ambient
     for (const FeltRun& run : felt) {
       plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.ambient, model.reference_K));
     }
@@ -160,7 +160,7 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
   if (plan.with_parts) system.parts = body_parts(model, machine, materials, balance);
   const double ambient_K = felt_ambient_at_start_K(model);
   Eigen::VectorXd start = start_state(model, machine);
-  for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
+  for (const solver::FixedUnknowns& f : machine.system.fixed) {  // prescribed temperatures jump at once, as in simulate()
     for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
   const solver::Reduction reduction = solver::reduce(

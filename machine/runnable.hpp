@@ -1,15 +1,15 @@
 #pragma once
-// Would a scenario run? What the solvers would refuse, looked for without a factorisation.
+// Checks whether a scenario can run: finds what the solvers would refuse, without a factorisation.
 
 #include "machine/machine.hpp"
 
 namespace driftwright::scenarios {
 
-/// Looks whether supports and joints hold every part where displacements are asked for, and whether heat can leave every part where a steady state, a reduced model or
-/// thermal modes want it. @throws InputError  as simulating would
+/// Checks that supports and joints hold every part if displacements are requested, and that heat can leave every part if a
+/// steady state, a reduced model or thermal modes are needed. @throws InputError the same as a simulation would throw
 void require_runnable(const Scenario& scenario, const PlacedMachine& placed);
 
-/// An error of the elastic machine, which knows what is wrong, with where that stands in the scenario.
+/// Adds the position in the scenario to an error of the elastic machine.
 [[nodiscard]] InputError located(const MachineModel& model, const InputError& e);
 
 }  // namespace driftwright::scenarios

@@ -19,7 +19,7 @@ namespace driftwright::scenarios {
 
 namespace {
 
-/// Which output times get whole fields.
+/// The output times at which whole fields are computed.
 class FieldTimes {
  public:
   FieldTimes(const SolverSettings& settings, double end_s) : settings_(settings), end_s_(end_s) {}
@@ -52,7 +52,8 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   fields.take(whole);
 }
 
-/// The source that heats, or cools, most when temperatures leave all bounds: "heat_source spindle is 1.5e+05 W at 6000 rpm; "; "" where none does.
+/// The largest source of heat or cooling when temperatures leave all bounds: "heat_source spindle is 1.5e+05 W at 6000 rpm;
+/// "; "" if there is none.
 std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& felt, const MachineModel& machine,
                          const solver::TemperatureOutOfBounds& failure) {
   effects::Inputs at{.drive = felt.drive(failure.time_s), .time_s = felt.clock_s + failure.time_s};
@@ -64,7 +65,7 @@ std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& f
     at.probe_K.assign(heat.power_W.probes.size(), machine.reference_K);
     try {
       if (const double power_W = sign * heat.power_W(at); power_W > most_W) most_W = power_W, largest = &heat;
-    } catch (const RangeError&) {  // its formula holds elsewhere
+    } catch (const RangeError&) {  // outside the range of its formula
     }
   }
   if (!largest) return "";
@@ -137,8 +138,8 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
   const Eigen::VectorXd start = start_of(machine, model);
   std::vector<SimulatedRun> runs(cyclograms.size());
   double done_s = 0.0;
-  // Runs are independent, so each has a core of its own and the loops inside it stay on that core: no thread waits for
-  // another, which matters on a busy machine. A single run has all cores.
+  // Runs are independent, so each runs on one core, including the loops inside it: no thread waits for
+  // another, which matters on a busy machine. A single run uses all cores.
   parallel_for(cyclograms.size(), [&](std::size_t i) {
     const Cyclogram& cyclogram = *cyclograms[i];
     FieldTimes field_times(settings, cyclogram.duration_s());
@@ -147,7 +148,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
     double last_s = 0.0;
     const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
       watch.take(time_s, state);
-      std::exception_ptr failure;  // none may leave the critical section
+      std::exception_ptr failure;  // no exception may leave the critical section
 #pragma omp critical(simulated)
       try {
         listener.share((done_s += time_s - last_s) / total_s);

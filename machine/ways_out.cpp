@@ -22,7 +22,7 @@ class Paths {
     outside_ = mesh.n_nodes() + static_cast<int>(lumped_.size());
     for (int c = 0; c < mesh.cells.size(); ++c) paths_.add(mesh.cells.nodes(c));
   }
-  /// Some vertex of a body; all of it hangs together or is heated alike.
+  /// Some vertex of a body; its parts are connected or heated alike.
   void connect(const effects::Body& a, int b) {
     for (int vertex : vertices(a)) paths_.add(std::vector<int>{vertex, b});
   }
@@ -67,7 +67,7 @@ class Paths {
   solver::Cliques paths_;
 };
 
-/// Laws that look at temperatures count as open; they vanish at single temperatures at most.
+/// Laws that depend on temperatures count as open; they vanish at single temperatures at most.
 bool is_open(const effects::Law& law) {
   return !law.probes.empty() || !law.thermostat.empty() || law(effects::Inputs{}) != 0.0;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Can heat reach and leave every part of the machine?
+// Checks whether heat can reach and leave every part of the machine.
 
 #include "base/errors.hpp"
 #include "effects/heat_balance.hpp"
@@ -7,13 +7,14 @@
 
 namespace driftwright::scenarios {
 
-/// Looks, without any matrix, whether from each part heat can reach the ambient or a prescribed temperature at standstill: through
-/// cells, contacts, films, links and radiation whose coefficient is not zero there. Steady states and thermal modes want it.
-/// @throws InputError  at `where`, naming the regions or nodes that cannot
+/// Checks, without any matrix, whether heat from each part can reach the ambient or a prescribed temperature at standstill:
+/// through cells, contacts, films, links and radiation whose coefficient is not zero there. Steady states and thermal modes
+/// require this.
+/// @throws InputError  at `where`, naming the regions or nodes from which it cannot
 void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where);
 
-/// Looks whether each part has any exchange or source of heat at all; one that has none keeps its temperature for ever, which
-/// nobody means. @throws InputError  at `where`, naming the regions or nodes
+/// Checks whether each part has any exchange or source of heat at all. A part without one keeps its temperature forever,
+/// which is never intended. @throws InputError at `where`, naming the regions or nodes
 void require_reached(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where);
 
 }  // namespace driftwright::scenarios

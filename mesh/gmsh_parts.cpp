@@ -47,8 +47,8 @@ void set_sizes(std::vector<Part> parts) {  // coarse parts first, so that a shar
   }
 }
 
-/// Curved edges fold a cell that has two faces on one cylinder. Such cells, and they alone, get straight edges: their
-/// mid-side nodes move to the middle of their corners, by the sagitta at most.
+/// Curved edges fold a cell that has two faces on one cylinder. Only such cells get straight edges: their
+/// mid-side nodes move to the middle of their corners, at most by the sagitta.
 void straighten_folded_cells() {
   constexpr double kLeastScaledJacobian = 0.05;
   std::vector<double> parametric, coord;
@@ -89,9 +89,10 @@ void straighten_folded_cells() {
   }
 }
 
-/// How many cells there will be. Gmsh would mesh for hours, and then abort for lack of memory, where a size is small against its part.
+/// The expected number of cells. If a size is too small for its part, Gmsh would mesh for hours and then abort for lack of
+/// memory.
 double require_bearable(const std::vector<Part>& parts) {
-  constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
+  constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // approximate number of tetrahedra of edge h in a cube of edge h
   double n_all = 0.0;
   for (const Part& part : parts) {
     double n_cells = 0.0;
@@ -111,7 +112,7 @@ double require_bearable(const std::vector<Part>& parts) {
   return n_all;
 }
 
-/// Node numbers of the Mesh: one per (part, Gmsh node), so that parts share none.
+/// Node numbers of the Mesh: one per (part, Gmsh node), so that parts share no nodes.
 class NodeTable {
  public:
   NodeTable() {
@@ -168,7 +169,7 @@ GmshSession::~GmshSession() {
 Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<std::string(const OuterFace&)>& name_of) {
   Mesh mesh;
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
-  gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and kind to thin walls
+  gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and suitable for thin walls
   gmsh::option::setNumber("Mesh.Optimize", 1);
   {
     const BoundedTime bounded(most_to_mesh_s(require_bearable(parts)));

@@ -13,8 +13,9 @@
 
 namespace driftwright::mesh {
 
-/// An open Gmsh session, quiet, single-threaded and therefore repeatable. Gmsh has one model a process: other threads that want a
-/// session wait until this one ends, and so does METIS. Gmsh is called while a session lives and not otherwise; never two in one thread.
+/// An open Gmsh session: quiet, single-threaded and therefore repeatable. Gmsh has one model per process, so a session of
+/// another thread, and METIS, wait until this one ends. Call Gmsh only while a session exists, and never open two in one
+/// thread.
 class GmshSession {
  public:
   GmshSession();
@@ -23,11 +24,11 @@ class GmshSession {
   GmshSession& operator=(const GmshSession&) = delete;
 
  private:
-  std::unique_lock<std::mutex> alone_;  ///< first, so that it is given back last
-  int n_threads_;                       ///< of OpenMP, before Gmsh
+  std::unique_lock<std::mutex> alone_;  ///< first member, so that it is released last
+  int n_threads_;                       ///< number of OpenMP threads before the session
 };
 
-/// Runs work that calls Gmsh. Its C++ interface throws a std::string, which no handler of ours would catch.
+/// Runs work that calls Gmsh. Gmsh's C++ interface throws std::string, which no handler of this program catches.
 /// @throws SolveError  with Gmsh's message; other exceptions pass
 template <class Work>
 auto with_gmsh_errors(Work work) {
@@ -38,26 +39,26 @@ auto with_gmsh_errors(Work work) {
   }
 }
 
-/// A part of the machine: which Gmsh volumes it is made of, and how fine its mesh shall be.
+/// A part of the machine: its Gmsh volumes and its mesh size.
 struct Part {
   std::string region;
   std::vector<int> volumes;  ///< Gmsh volume tags after fragmenting
   double mesh_size_m = 0.05;
 };
 
-/// What is known of an outer face of a part before it has a name; lengths in m.
+/// An outer face of a part, before it has a name; lengths in m.
 struct OuterFace {
   std::string region;
   std::array<double, 3> low;  ///< bounding box
   std::array<double, 3> high;
 };
 
-/// Meshes the model and reads it back.
+/// Meshes the Gmsh model and reads the mesh back.
 ///
 /// @param parts    every volume of the model in exactly one part
 /// @param order    1: tet4, 2: tet10 with curved edges
 /// @param name_of  surface name of an outer face
-/// Throws what Gmsh throws: call it inside with_gmsh_errors().
+/// Throws what Gmsh throws, so call it inside with_gmsh_errors().
 /// @throws SolveError  when a cell is inverted
 [[nodiscard]] Mesh mesh_parts(const std::vector<Part>& parts, int order,
                               const std::function<std::string(const OuterFace&)>& name_of);

@@ -12,18 +12,19 @@
 
 namespace driftwright::mesh {
 
-/// Outer faces whose nodes lie in a plane and which look along its normal.
+/// Picks the outer faces whose nodes lie in a plane and whose normal is that of the plane.
 struct PlanePick {
   Eigen::Vector3d through_m, normal;  ///< normal: out of the body, of any length
 };
-/// Outer faces whose corners lie on a cylinder, from outside or inside.
+/// Picks the outer faces whose corners lie on a cylinder, seen from outside or inside.
 struct CylinderPick {
   Eigen::Vector3d through_m, axis;
   double diameter_m;
 };
-/// Outer faces on no surface so far.
+/// Picks the outer faces that belong to no surface yet.
 struct RemainingPick {};
 
+/// A surface to be named, and the faces that it consists of.
 struct SurfacePick {
   std::string name;
   std::string region;  ///< empty: all regions
@@ -31,26 +32,27 @@ struct SurfacePick {
   Where where;
 };
 
-/// Two surfaces of parts that share no node, to be joined.
+/// Two surfaces to be joined, of parts that share no nodes.
 struct JointPick {
   std::string name, side_a, side_b;
   Where where;
 };
 
-/// A solid of a STEP file, by a point in it.
+/// Names the solid of a STEP file that contains a point.
 struct RegionPoint {
   std::string region;
   Eigen::Vector3d at_m;
   Where where;
 };
 
+/// The file and all that the scenario says about it.
 struct ImportedMesh {
   std::string path;
-  double unit_m = 0.0;  ///< of the file's lengths; 0: STEP files say theirs
+  double unit_m = 0.0;  ///< unit of the file's lengths [m]; 0: the unit given in a STEP file
   std::vector<SurfacePick> surfaces;
   std::vector<JointPick> joints;
   std::vector<std::string> region_sets;  ///< .inp: the ELSETs that are regions; empty: those of the *ELEMENT lines
-  // STEP
+  // The next four apply to STEP files only.
   int element_order = 2;
   double mesh_size_m = 0.0;
   std::map<std::string, double> mesh_size_of_region_m;
@@ -58,18 +60,19 @@ struct ImportedMesh {
   Where where;
 };
 
-/// What the map `machine` of a scenario may hold then.
+/// The schema of the map `machine` for an imported mesh.
 [[nodiscard]] const schema::Map& imported_mesh_schema();
 /// Reads the map `machine` of a scenario that has the key `mesh`.
-/// @param folder  of the scenario file, which relative paths start from
+/// @param folder  of the scenario file; relative paths start there
 /// @throws InputError
 [[nodiscard]] ImportedMesh read_imported_mesh(const ConfigMap& in, const std::string& folder);
 
-/// A drawing with all its mesh sizes times `factor` > 0; none for a file that gives nodes, which has no size to change.
+/// The recipe with all mesh sizes of a drawing multiplied by `factor` > 0; none for a file with nodes, whose mesh size is
+/// fixed.
 [[nodiscard]] std::optional<ImportedMesh> with_mesh_size_times(ImportedMesh recipe, double factor);
 
-/// Reads the file by its extension, picks surfaces, makes joints.
-/// @throws InputError  for a file, element or name that cannot be right
+/// Reads the file (the extension gives its format), picks surfaces, makes joints.
+/// @throws InputError  for a file, element or name that is not valid
 /// @throws SolveError  when Gmsh cannot mesh a STEP file
 [[nodiscard]] Mesh import_mesh(const ImportedMesh& recipe);
 

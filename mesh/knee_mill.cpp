@@ -56,7 +56,7 @@ int add_headstock(const KneeMill& m, const Layout& at) {
   const int cavity = occ::addBox(-0.5 * w + t, at.head_back_m + t, at.head_bottom_m + t, w - 2 * t, d - 2 * t, h - 2 * t);
   const int shell = cut(outer, {cavity});
   const int barrel = cylinder(at.quill_back_m, at.head_front_m - 0.5 * t, at.axis_z_m, m.barrel_diameter_m);
-  // A web carries the barrel along its length; without it the barrel would hang from the front wall alone.
+  // A web carries the barrel along its length; otherwise only the front wall would hold it.
   const int web = occ::addBox(-0.5 * t, at.quill_back_m, at.head_bottom_m + 0.5 * t, t,
                               at.head_front_m - 0.5 * t - at.quill_back_m, at.axis_z_m - at.head_bottom_m - 0.5 * t);
   const int body = fuse(shell, {barrel, web});

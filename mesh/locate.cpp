@@ -81,8 +81,8 @@ bool inside_reference(CellShape shape, const Eigen::Vector3d& xi) {
   }
 }
 
-/// The point xi of the reference cell for which x0 + J xi is nearest to p: the nearest of those on its faces that are feasible.
-/// If the interior has one it is the answer, the distance being convex.
+/// The point xi of the reference cell for which x0 + J xi is nearest to p: the nearest of the feasible points on its faces.
+/// If the interior has one, it is the answer, because the distance is convex.
 Eigen::Vector3d nearest_of_affine(CellShape shape, const Eigen::Vector3d& x0, const Eigen::Matrix3d& j,
                                   const Eigen::Vector3d& p) {
   const auto& faces = reference_faces(shape);
@@ -109,8 +109,8 @@ Eigen::Vector3d nearest_of_affine(CellShape shape, const Eigen::Vector3d& x0, co
   return best;
 }
 
-/// Gauss-Newton from a point of the reference cell. Each step goes towards the nearest point of the cell that the tangent at
-/// xi makes, and is halved until the distance falls; the reference cell being convex it never leaves it.
+/// Gauss-Newton from a point of the reference cell. Each step goes towards the nearest point of the cell linearised at
+/// xi, and is halved until the distance decreases. It never leaves the reference cell, which is convex.
 Eigen::Vector3d descend(CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& x, Eigen::Vector3d xi,
                         const Eigen::Vector3d& p) {
   constexpr int kMaxSteps = 100;
@@ -136,7 +136,7 @@ Eigen::Vector3d descend(CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd
   return xi;
 }
 
-/// Where to start: the nearest node or middle of nodes, and the middle of the cell.
+/// Starting points: the nearest node or middle of nodes, and the middle of the cell.
 std::vector<Eigen::Vector3d> starts(CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& x, const Eigen::Vector3d& p) {
   const auto nodes = reference_nodes(shape).first(n_corners_of(shape));
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), nearest = nodes[0];
@@ -188,8 +188,8 @@ MeshPoint nearest_in_cell(const Mesh& mesh, const Cells& cells, int cell, const 
 
 MeshPoint nearest_point(const Mesh& mesh, const Cells& cells, std::span<const int> candidates,
                         const Eigen::Vector3d& point_m) {
-  // Nearest bounding boxes first; a cell whose box is farther than the best point so far cannot win. Curved edges may
-  // bulge out of the box of the nodes a little, hence the margin of a tenth of its diagonal.
+  // Nearest bounding boxes first; a cell whose box is farther than the best point so far cannot be the nearest. Curved edges
+  // may extend slightly out of the box of the nodes; therefore the margin of a tenth of its diagonal.
   std::vector<std::pair<double, int>> by_box;
   by_box.reserve(candidates.size());
   for (int cell : candidates) {

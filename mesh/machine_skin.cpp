@@ -8,7 +8,7 @@
 namespace driftwright::mesh {
 namespace {
 
-/// Triangles of a face; mid-side nodes are corners of them.
+/// The triangles of a face; mid-side nodes are also corners.
 std::vector<std::array<int, 3>> triangles_of(CellShape shape, const std::vector<int>& n) {
   switch (shape) {
     case CellShape::kTri3:

@@ -8,12 +8,12 @@
 
 namespace driftwright::mesh {
 
-/// The machine's outside. Mid-side nodes are corners of triangles, too.
+/// The triangles of the outside. Mid-side nodes are also corners of triangles.
 struct MachineSkin {
   std::vector<std::array<int, 3>> triangle;  ///< nodes, counterclockwise from outside
-  std::vector<int> part;                     ///< of each triangle: the named surface, or behind these the region
-  std::vector<int> surface;                  ///< of each triangle, -1: has no name
-  std::vector<int> region;                   ///< of each triangle
+  std::vector<int> part;     ///< of each triangle: index of its named surface, or number of surfaces + region
+  std::vector<int> surface;  ///< of each triangle; -1: without a name
+  std::vector<int> region;   ///< of each triangle
 };
 /// In the order of the mesh's faces: the same mesh gives the same triangles.
 [[nodiscard]] MachineSkin skin_of(const Mesh& mesh);

@@ -8,9 +8,9 @@
 
 namespace driftwright::mesh {
 
-/// Shapes of cells and facets. Corners first, then the mid-side nodes of the edges (mesh/topology.hpp), in VTK's order. A
-/// wedge has its triangle 012 at the bottom and 345 above it, so that its Jacobian is positive: as VTK's shape functions, Abaqus
-/// and Gmsh have it (VTK's text says the opposite of VTK's functions).
+/// Shapes of cells and facets. Corners come first, then the mid-side nodes of the edges (mesh/topology.hpp), in VTK's order.
+/// A wedge has the triangle 012 at the bottom and 345 above it, so that its Jacobian is positive. VTK's shape functions,
+/// Abaqus and Gmsh use this order (VTK's documentation contradicts VTK's functions).
 enum class CellShape : unsigned char { kTri3, kTri6, kQuad4, kQuad8, kTet4, kTet10, kHex8, kHex20, kWedge6, kWedge15 };
 
 inline constexpr int kMaxNodesPerCell = 20;
@@ -39,11 +39,12 @@ struct Cells {
 
 /// Two surfaces that touch and share no node. Their points are matched by closest distance.
 struct Joint {
-  std::string name;    ///< "<region a>/<region b>", alphabetical; as the scenario says for an imported mesh
+  std::string name;    ///< "<region a>/<region b>", alphabetical; of an imported mesh the name in the scenario
   std::string side_a;  ///< surface name
   std::string side_b;
 };
 
+/// The whole mesh of a machine.
 struct Mesh {
   Eigen::Matrix3Xd coords;  ///< 3 x n_nodes [m], one column per node
   Cells cells;
@@ -54,11 +55,11 @@ struct Mesh {
   std::vector<std::string> notes;  ///< what the reader of a mesh file left out or changed, for the user
 
   [[nodiscard]] int n_nodes() const { return static_cast<int>(coords.cols()); }
-  /// Index of a region or surface, -1 when there is none of that name.
+  /// Index of a region or surface, -1 if there is none of that name; joint(): nullptr.
   [[nodiscard]] int region(const std::string& name) const;
   [[nodiscard]] int surface(const std::string& name) const;
   [[nodiscard]] const Joint* joint(const std::string& name) const;
-  /// Cells of a region, facets of a surface; by index.
+  /// Indices of the cells of a region, or of the facets of a surface, given by its index.
   [[nodiscard]] std::vector<int> cells_in(int region) const;
   [[nodiscard]] std::vector<int> facets_on(int surface) const;
 };

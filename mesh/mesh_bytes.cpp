@@ -7,7 +7,7 @@
 namespace driftwright::mesh {
 namespace {
 
-/// Visits every part of a mesh in one order, for the way there and back.
+/// Visits every part of a mesh in a fixed order, for writing and reading.
 template <class MeshOrConst, class Visitor>
 void each_part(MeshOrConst& mesh, Visitor&& part) {
   for (auto* cells : {&mesh.cells, &mesh.facets}) {
@@ -73,7 +73,7 @@ class Reader {
     coords.resize(3, static_cast<Eigen::Index>(count(3 * sizeof(double))));
     take(coords.data(), static_cast<std::size_t>(coords.size()) * sizeof(double));
   }
-  /// A number of things of that size that follow.
+  /// Reads a count of items of that size that follow.
   std::size_t count(std::size_t size) {
     std::size_t n = 0;
     take(&n, sizeof n);

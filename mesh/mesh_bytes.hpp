@@ -1,5 +1,5 @@
 #pragma once
-// A mesh as bytes, from one process to another on this machine.
+// Converts a mesh to bytes and back, to pass it between processes on the same computer.
 
 #include <string>
 #include <string_view>

@@ -63,7 +63,7 @@ std::vector<Solid> import_solids(const std::string& path, double unit_m) {
     throw;
   } catch (const std::exception& e) {
     throw InputError(fmt::format("{}: Gmsh cannot read it: {}", path, e.what()));
-  } catch (...) {  // OpenCASCADE has exceptions of its own
+  } catch (...) {  // OpenCASCADE has its own exceptions
     throw InputError(path + ": OpenCASCADE cannot read it; is the file damaged?");
   }
   std::vector<Solid> solids;
@@ -78,7 +78,7 @@ std::vector<Solid> import_solids(const std::string& path, double unit_m) {
   return solids;
 }
 
-/// What a point and a solid have in common is the point, or nothing.
+/// The intersection of a point and a solid is the point, or empty.
 bool holds(int solid, const Eigen::Vector3d& at_m) {
   const int point = occ::addPoint(at_m[0], at_m[1], at_m[2]);
   gmsh::vectorpair out;
@@ -169,7 +169,8 @@ void note_lost_volume(const std::vector<Part>& parts, Mesh& mesh) {
 }  // namespace
 
 std::vector<double> suggested_mesh_sizes_m(const std::vector<PartExtent>& parts) {
-  constexpr double kMostCells = 15000, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
+  // Approximate number of tetrahedra of edge h in a cube of edge h.
+  constexpr double kMostCells = 15000, kCellsPerCube = 8.5;
   std::vector<double> sizes_m;
   double n_cells = 0.0;
   for (const PartExtent& part : parts) {  // V/A is a sixth of a cube's edge and half of a plate's thickness
@@ -231,7 +232,7 @@ Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
       }
     }
     if (as_it_comes) make_up_sizes(parts);
-    bounded.reset();  // meshing has a time of its own
+    bounded.reset();  // meshing has its own time limit
     const std::string outer = "outer";
     Mesh mesh = mesh_parts(parts, recipe.element_order, [&](const OuterFace&) { return outer; });
     note_lost_volume(parts, mesh);

@@ -25,8 +25,8 @@ Eigen::Matrix3Xd own_normals(const Mesh& mesh, int facet) {
   return normals;
 }
 
-/// How much a facet's normal counts at its node i. At corners sin(angle) / (edge x edge), by which the mean is exact where the
-/// corners lie on a sphere, whatever the sizes of the facets (Max, J. Graphics Tools 4/2, 1999); at mid-side nodes, between two
+/// Weight of a facet's normal at its node i. At corners sin(angle) / (edge x edge), which makes the mean exact if the
+/// corners lie on a sphere, for any sizes of the facets (Max, J. Graphics Tools 4/2, 1999); at mid-side nodes, between two
 /// facets, the inverse of the size.
 double weight_at(const Mesh& mesh, std::span<const int> nodes, int n_corners, int i) {
   const auto corner = [&](int c) {
@@ -75,7 +75,7 @@ double normal_error(const Eigen::Matrix3Xd& normals_of_facet) {
       turn2 = std::max(turn2, (normals_of_facet.col(i) - normals_of_facet.col(j)).squaredNorm());
     }
   }
-  return turn2 < 1e-24 ? 0.0 : turn2 / 8.0;  // below: rounding of a plane
+  return turn2 < 1e-24 ? 0.0 : turn2 / 8.0;  // below this it is the rounding of a plane
 }
 
 }  // namespace driftwright::mesh

@@ -33,7 +33,7 @@ FaceKey face_key(const Cells& cells, CellFace face) {
 }
 
 FaceTable::FaceTable(const Cells& cells) {
-  // In buckets by the second entry of the key, the lowest corner of a triangle, sorted within: much faster than a tree.
+  // In buckets by the second entry of the key (the lowest corner of a triangle), sorted within: much faster than a tree.
   std::vector<Entry> all;
   int n_nodes = 0;
   for (int node : cells.node) n_nodes = std::max(n_nodes, node + 1);

@@ -13,8 +13,8 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kSameDirection = 1e-3;  // of unit normals
-constexpr double kLeastShare = 0.01;     // of the smaller of two planes: what they have in common less is an edge
+constexpr double kSameDirection = 1e-3;  // difference of unit normals
+constexpr double kLeastShare = 0.01;     // of the smaller of two planes; a smaller common area is an edge
 
 double size_m(const Mesh& mesh) {
   return (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
@@ -59,7 +59,7 @@ class Parts {
   std::vector<int> parent_;
 };
 
-/// Whether a point in a facet's plane lies on the facet: on the inner side of all its edges.
+/// True if a point in a facet's plane lies on the facet: on the inner side of all its edges.
 bool lies_on(const OuterFacet& facet, const Eigen::Vector3d& x_m, double tolerance_m) {
   const std::size_t n = facet.corner_m.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -70,7 +70,7 @@ bool lies_on(const OuterFacet& facet, const Eigen::Vector3d& x_m, double toleran
   return true;
 }
 
-/// Area of those facets of `a` whose centres lie on `b`, or within reach above it.
+/// Area of the facets of `a` whose centres lie on `b`, or within reach above it.
 double area_on_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, const OuterPlane& b, double tolerance_m,
                   double reach_m) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
@@ -93,7 +93,7 @@ double area_on_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, co
   return area_m2;
 }
 
-/// The area that two planes have in common, by the one that knows more of it.
+/// The common area of two planes: the larger of both estimates.
 double common_area_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, const OuterPlane& b, double tolerance_m,
                       double reach_m) {
   return std::max(area_on_m2(facets, a, b, tolerance_m, reach_m), area_on_m2(facets, b, a, tolerance_m, reach_m));

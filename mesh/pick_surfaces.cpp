@@ -14,7 +14,7 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kLeastCosine = 0.7;  ///< between the normal of a face and the one wanted
+constexpr double kLeastCosine = 0.7;  ///< between the normal of a face and the requested one
 
 struct DescribedFacet {
   CellFace face;
@@ -52,7 +52,7 @@ struct Matcher {
       const Eigen::Vector3d d = x - cylinder.through_m;
       return d - axis * axis.dot(d);
     };
-    for (int i = 0; i < f.n_corners; ++i) {  // edges may be straight: their middles lie inside
+    for (int i = 0; i < f.n_corners; ++i) {  // edges may be straight, with their middle inside the cylinder
       if (std::abs(radial(mesh.coords.col(f.nodes[i])).norm() - 0.5 * cylinder.diameter_m) > tolerance_m) return false;
     }
     return std::abs(f.normal.dot(radial(f.centre_m).normalized())) >= kLeastCosine;

@@ -23,8 +23,8 @@ double largest_corner_product(const Eigen::Ref<const Eigen::Matrix3Xd>& x) {
   return largest;
 }
 
-/// det over the product of the edge lengths at a point of a hexahedron or wedge, 1 in the ideal cell. Of the three edges of a
-/// wedge's triangle the two longest count.
+/// det / product of the edge lengths at a point of a hexahedron or wedge; 1 in the ideal cell. Of the three edges of a
+/// wedge's triangle the two longest are used.
 double scaled_at(const Jacobian& j, CellShape shape) {
   const double along_m = j.dx_dxi.col(2).norm();
   const double a_m = j.dx_dxi.col(0).norm(), b_m = j.dx_dxi.col(1).norm();
@@ -48,7 +48,7 @@ CellQuality cell_quality(const Mesh& mesh, int cell) {
   CellQuality quality;
   const auto look_at = [&](const Eigen::Vector3d& xi) {
     const Jacobian j = jacobian(shape_values(shape, xi), x, shape);
-    // Written so that NaN is taken over, too.
+    // Written so that NaN is accepted as the minimum, too.
     if (!(j.det >= quality.min_det_m3)) quality.min_det_m3 = j.det;
     if (n_corners_of(shape) == 4) return;
     if (const double scaled = scaled_at(j, shape); !(scaled >= quality.scaled)) quality.scaled = scaled;

@@ -70,10 +70,10 @@ void check_cells(const RawMesh& raw, const Mesh& mesh) {
   }
 }
 
-/// Neighbours must see the same nodes on what they share, or the field tears there.
+/// Neighbours must have the same nodes on their common face; otherwise the field is discontinuous there.
 void check_conformity(const RawMesh& raw, const Mesh& mesh, const FaceTable& faces) {
   struct Edge {
-    int other, middle, cell;  // other corner, mid-side node or -1, and a cell that says so
+    int other, middle, cell;  // other corner, mid-side node or -1, and a cell with this edge
   };
   std::vector<std::vector<Edge>> edges(mesh.n_nodes());  // by the lower corner
   for (int c = 0; c < mesh.cells.size(); ++c) {

@@ -12,11 +12,11 @@ namespace {
 
 constexpr int kPixels = 700;
 constexpr double kFlattest = 0.25;  // cosine between the outward normal and the direction to the eye
-constexpr double kSlack = 1.0;      // pixels by which a point may lie beside what hides it
+constexpr double kSlack = 1.0;  // pixels by which a point may be farther than the nearest surface and still count as visible
 
-constexpr double kFloor = 0.02;     // of the machine's size that the floor lies beneath it, so that it hides what stands on it
+constexpr double kFloor = 0.02;  // distance of the floor below the machine, as a share of its size; it hides what is on it
 
-/// Depths towards an eye, in pixels.
+/// Depths seen from one direction, in pixels.
 class DepthBuffer {
  public:
   DepthBuffer(const Eigen::Matrix3Xd& corners_m, const Eigen::Vector3d& towards) {
@@ -39,7 +39,8 @@ class DepthBuffer {
     const auto [left, right] = std::minmax({a.x(), b.x(), c.x()});
     const auto [low, high] = std::minmax({a.y(), b.y(), c.y()});
     for (int y = std::max(0, static_cast<int>(std::ceil(low))); y <= std::min(kPixels - 1, static_cast<int>(high)); ++y) {
-      for (int x = std::max(0, static_cast<int>(std::ceil(left))); x <= std::min(kPixels - 1, static_cast<int>(right)); ++x) {
+      for (int x = std::max(0, static_cast<int>(std::ceil(left))); x <= std::min(kPixels - 1, static_cast<int>(right));
+           ++x) {
         const double v = ((x - a.x()) * (c.y() - a.y()) - (y - a.y()) * (c.x() - a.x())) / area;
         const double w = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / area;
         if (v < 0.0 || w < 0.0 || v + w > 1.0) continue;
@@ -79,7 +80,8 @@ std::vector<Eigen::Vector3d> directions() {
 
 std::vector<bool> reachable_nodes(const Mesh& mesh, const MachineSkin& skin) {
   const Eigen::Index n_nodes = mesh.n_nodes();
-  Eigen::Matrix3Xd normal = Eigen::Matrix3Xd::Zero(3, n_nodes);  // of all triangles at a node, by their areas
+  // Sum over all triangles at a node, weighted by their areas.
+  Eigen::Matrix3Xd normal = Eigen::Matrix3Xd::Zero(3, n_nodes);
   for (const auto& t : skin.triangle) {
     const Eigen::Vector3d n =
         (mesh.coords.col(t[1]) - mesh.coords.col(t[0])).cross(mesh.coords.col(t[2]) - mesh.coords.col(t[0]));
@@ -91,8 +93,10 @@ std::vector<bool> reachable_nodes(const Mesh& mesh, const MachineSkin& skin) {
   parallel_for(eyes.size(), [&](std::size_t e) {
     DepthBuffer buffer(mesh.coords, eyes[e]);
     for (const auto& t : skin.triangle) buffer.draw(mesh.coords.col(t[0]), mesh.coords.col(t[1]), mesh.coords.col(t[2]));
-    const double beneath_m = kFloor * (high - low).norm(), beyond_m = 2.0 * beneath_m;  // what stands on the floor is not seen past its edge
-    const double left = low.x() - beyond_m, right = high.x() + beyond_m, front = low.y() - beyond_m, back = high.y() + beyond_m;
+    // Parts on the floor are not visible past its edge.
+    const double beneath_m = kFloor * (high - low).norm(), beyond_m = 2.0 * beneath_m;
+    const double left = low.x() - beyond_m, right = high.x() + beyond_m, front = low.y() - beyond_m,
+                 back = high.y() + beyond_m;
     const double z = low.z() - beneath_m;
     const Eigen::Vector3d a(left, front, z), b(right, front, z), c(right, back, z), d(left, back, z);
     buffer.draw(a, b, c);

@@ -25,12 +25,12 @@
 namespace driftwright::mesh {
 namespace {
 
-std::atomic<bool> all_are_ours = false;  // of the process, as its threads are
-bool is_child = false;                   // set in the child alone
+std::atomic<bool> all_are_ours = false;  // one per process, like its threads
+bool is_child = false;                   // set only in the child
 
 constexpr double kLeastToRead_s = 5, kPerMegabyte_s = 60, kLeastToMesh_s = 10, kCellsPerSecond = 200;
 
-/// What the child says first, and the bytes that follow it.
+/// The first byte from the child; the data follow.
 enum class Answer : char { kMesh, kInputError, kRangeError, kSolveError, kNoMemory, kOther };
 
 bool has_one_thread() {
@@ -40,11 +40,11 @@ bool has_one_thread() {
   return std::distance(begin(task), end(task)) == 1;
 }
 
-/// A process as quiet as a file that is read: no words, no core, no handlers of the parent, no life of its own.
+/// Makes the child silent: no output, no core dump, no exit handlers of the parent; it ends with the parent.
 void become_quiet() {
   is_child = true;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {  // where the parent decides what they mean, it is left to
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {  // ignored here if the parent handles or ignores it
     struct sigaction parents = {};
     sigaction(signal, nullptr, &parents);
     if (parents.sa_handler != SIG_DFL) std::signal(signal, SIG_IGN);
@@ -55,7 +55,7 @@ void become_quiet() {
   if (const int sink = open("/dev/null", O_RDWR); sink >= 0) {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(sink, stream);
   }
-  omp_set_num_threads(1);  // the threads of the pool are not here
+  omp_set_num_threads(1);  // the fork has not copied the pool's threads
 }
 
 void send(int to, std::string_view bytes) {
@@ -90,7 +90,7 @@ void send(int to, Answer answer, std::string_view bytes) {
   } catch (const std::exception& e) {
     send(to, Answer::kOther, e.what());
   } catch (...) {
-    std::abort();  // of no kind that is known
+    std::abort();  // an unknown kind of exception
   }
   _exit(0);
 }
@@ -106,7 +106,7 @@ std::string received(int from) {
   }
 }
 
-/// How a child ended that has not said what it read.
+/// The error for a child that ended without an answer.
 InputError of_death(const std::string& path, int status) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU)
@@ -136,7 +136,7 @@ Mesh read_apart(const std::string& path, const std::function<Mesh()>& read) {
   int ends[2];
   pid_t child = 0;
   {
-    std::unique_lock alone = alone_with_c_random();  // nobody is inside Gmsh
+    std::unique_lock alone = alone_with_c_random();  // no other thread is inside Gmsh
     if (pipe2(ends, O_CLOEXEC) != 0)
       throw InputError(fmt::format("{}: no pipe to a process that would read it: {}", path, std::strerror(errno)));
     child = fork();
@@ -144,7 +144,7 @@ Mesh read_apart(const std::string& path, const std::function<Mesh()>& read) {
       alone.unlock();
       run_child(ends[1], read);
     }
-    close(ends[1]);  // before another thread forks: its child would keep our pipe open
+    close(ends[1]);  // before another thread forks, because its child would keep this pipe open
   }
   const int why_not = errno;
   const std::string bytes = child < 0 ? "" : received(ends[0]);
@@ -177,7 +177,7 @@ Mesh read_apart(const std::string& path, const std::function<Mesh()>& read) {
 BoundedTime::BoundedTime(double most_s) {
   if (!is_child) return;
   rusage used;
-  getrusage(RUSAGE_SELF, &used);  // a child begins at 0
+  getrusage(RUSAGE_SELF, &used);  // a child starts at 0
   rlimit limit;
   getrlimit(RLIMIT_CPU, &limit);
   before_s_ = limit.rlim_cur;

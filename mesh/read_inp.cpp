@@ -83,8 +83,8 @@ class MeshOfDeck {
     deck_.elements = {};
   }
 
-  /// ELSETs of 2-D elements that are faces of 3-D ones are surfaces, as Gmsh writes physical surfaces. Those on *ELEMENT lines only where there are no
-  /// others: Gmsh names there what the user has not named.
+  /// ELSETs of 2-D elements that are faces of 3-D ones become surfaces, because Gmsh writes physical surfaces so. Those on
+  /// *ELEMENT lines are used only if there are no others: Gmsh names there what the user has not named.
   void add_facet_surfaces() {
     if (facet_.empty()) return;
     const FaceTable faces(raw_.cells);
@@ -300,7 +300,7 @@ class MeshOfDeck {
         }
         group = region(name);
       }
-      (void)region(name);  // a set without cells is found later
+      (void)region(name);  // a set without cells is detected later
     }
     for (int c = 0; c < raw_.cells.size(); ++c) {
       if (raw_.cells.group[c] < 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// Abaqus and CalculiX input files: nodes, elements, sets and surfaces. Everything else is skipped.
+// Reads Abaqus and CalculiX input files: nodes, elements, sets and surfaces. Everything else is skipped.
 
 #include <string>
 #include <vector>

@@ -17,7 +17,7 @@
 namespace driftwright::mesh {
 namespace {
 
-/// Our node i is Gmsh's node order[i].
+/// Node i in VTK's order is Gmsh's node order[i].
 struct GmshElement {
   CellShape shape;
   std::vector<int> order;
@@ -146,7 +146,7 @@ class Reader {
         tag, name, n_nodes));
   }
 
-  /// Our number of a node that an element names.
+  /// Our index of a node that an element refers to.
   int number_of(std::size_t tag, std::size_t element) const {
     if (tag >= node_.size() || node_[tag] < 0)
       fail(fmt::format("element {} has node {}, which the file does not hold", element, tag));

@@ -87,7 +87,7 @@ class Groups {
         values_(grid->GetCellData()->GetArray(array)),
         names_(vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray(names))) {}
   [[nodiscard]] bool exist() const { return values_ != nullptr; }
-  /// Whether each cell has one whole number of bearable size.
+  /// True if each cell has one integer of acceptable size.
   [[nodiscard]] bool are_sound(vtkIdType n_cells) const {
     if (!exist()) return true;
     if (values_->GetNumberOfComponents() != 1 || values_->GetNumberOfTuples() != n_cells) return false;
@@ -109,7 +109,7 @@ class Groups {
   vtkStringArray* names_;
 };
 
-/// Turns a wedge that stands on its head into one with a positive Jacobian; true if it did.
+/// Turns an upside-down wedge, so that its Jacobian becomes positive; true if it did.
 bool turn_wedge(const RawMesh& raw, CellShape shape, std::vector<int>& nodes) {
   Eigen::Matrix3Xd x(3, nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = raw.coords.col(nodes[i]);
@@ -128,7 +128,8 @@ void append_text(vtkObject*, unsigned long, void* text, void* message) {
   *static_cast<std::string*>(text) += static_cast<const char*>(message);
 }
 
-/// VTK's own sentences among "ERROR: In vtkXMLDataReader.cxx, line 410\nvtkXMLUnstructuredGridReader (0x55..): sentence\n\n".
+/// Extracts the sentences from VTK's "ERROR: In vtkXMLDataReader.cxx, line 410\nvtkXMLUnstructuredGridReader (0x55..):
+/// sentence\n\n".
 std::string reasons(const std::string& messages) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> found;
@@ -141,7 +142,7 @@ std::string reasons(const std::string& messages) {
   return fmt::format("{}", fmt::join(found, " "));
 }
 
-/// What VTK says beside the reader's own errors, in place of standard error.
+/// Collects VTK's messages, which would otherwise go to standard error.
 class VtkWords {
  public:
   VtkWords() : before_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(words_); }
@@ -155,7 +156,7 @@ class VtkWords {
   vtkNew<vtkStringOutputWindow> words_;
 };
 
-/// Everything that names a place in another array, before VTK is asked to look there.
+/// Checks all indices into other arrays before VTK uses them.
 void require_sound(vtkUnstructuredGrid* grid, const std::function<void(const std::string&)>& fail) {
   const vtkIdType n_points = grid->GetNumberOfPoints(), n_cells = grid->GetNumberOfCells();
   vtkCellArray* cells = grid->GetCells();
@@ -197,7 +198,7 @@ RawMesh read_vtu(const std::string& path) {
   reader->SetParserErrorObserver(on_error);
   reader->SetFileName(path.c_str());
   {
-    static std::mutex one_at_a_time;  // VTK's window of words is the whole process's
+    static std::mutex one_at_a_time;  // VTK's output window belongs to the whole process
     const std::lock_guard alone(one_at_a_time);
     VtkWords words;
     const BoundedTime bounded(most_to_read_s(path));
@@ -206,7 +207,7 @@ RawMesh read_vtu(const std::string& path) {
     } catch (const std::length_error&) {
       fail("VTK cannot read it: a count in it cannot be right");
     }
-    if (words.text().find("ERROR: In ") != std::string::npos) errors += words.text();  // and not for warnings alone
+    if (words.text().find("ERROR: In ") != std::string::npos) errors += words.text();  // not for warnings alone
   }
   vtkUnstructuredGrid* grid = reader->GetOutput();
   if (!errors.empty()) fail("VTK cannot read it: " + reasons(errors));

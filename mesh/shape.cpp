@@ -34,7 +34,7 @@ ShapeValues simplex_values(CellShape shape, const Eigen::Vector3d& xi) {
   return s;
 }
 
-/// One direction's factor of a shape function and its slope, for a node at 0, 1/2 or 1 of the unit interval.
+/// The factor of a shape function for one direction, and its slope, for a node at 0, 1/2 or 1 of the unit interval.
 struct Factor {
   double value, slope;
 };
@@ -43,8 +43,8 @@ Factor factor(double xi, double at) {
   return at == 0.0 ? Factor{1.0 - xi, -1.0} : Factor{xi, 1.0};
 }
 
-/// Quads and hexahedra: products P of a factor per direction; quadratic corners have P (Σ r_i r - dimension + 1) on top, with
-/// r = 2 xi - 1 and r_i = +-1 at the corner.
+/// Quads and hexahedra: products P of one factor per direction; quadratic corners have the additional factor (Σ r_i r -
+/// dimension + 1), with r = 2 xi - 1 and r_i = +-1 at the corner.
 ShapeValues box_values(CellShape shape, const Eigen::Vector3d& xi) {
   const int dimension = dimension_of(shape), n_corners = n_corners_of(shape);
   const auto nodes = reference_nodes(shape);
@@ -156,8 +156,8 @@ std::span<const QuadraturePoint> quadrature(CellShape shape, int degree) {
   return (*list)[degree];
 }
 
-// Degrees of N N' det(dx/dxi). With straight edges the determinant is constant in a tetrahedron, bilinear in a plane quad, of
-// degree 2 in each direction of a hexahedron, and of degree 1 in the triangle and 2 along the axis of a wedge.
+// Degrees of N N' det(dx/dxi). With straight edges the determinant is constant in a tetrahedron, bilinear in a plane quad,
+// of degree 2 in each direction of a hexahedron, and of degree 1 in the triangle and 2 along the axis of a wedge.
 std::span<const QuadraturePoint> mass_rule(CellShape shape) {
   static const QuadratureRule wedge6 = wedge_rule(3, 4), wedge15 = wedge_rule(5, 6);
   switch (shape) {

@@ -13,7 +13,7 @@
 namespace driftwright::mesh {
 namespace {
 
-/// The instances of the exchange structure (ISO 10303-21) that have to do with units, by their names such as "#36", without blanks.
+/// The instances of the exchange structure (ISO 10303-21) that concern units, by their names such as "#36", without blanks.
 std::map<std::string, std::string> unit_instances(const std::string& text) {
   std::map<std::string, std::string> instances;
   for (std::size_t begin = 0, end = 0; (end = text.find(';', begin)) != std::string::npos; begin = end + 1) {
@@ -28,7 +28,7 @@ std::map<std::string, std::string> unit_instances(const std::string& text) {
   return instances;
 }
 
-/// Of the instance of a unit of length; 0 for one that is not known.
+/// The length of a unit of length; 0 if the unit is unknown.
 double metres_of(const std::string& instance) {
   static const std::map<std::string, double> prefixes = {{"$", 1.0},        {".KILO.", 1e3},   {".DECI.", 1e-1},
                                                          {".CENTI.", 1e-2}, {".MILLI.", 1e-3}, {".MICRO.", 1e-6}};

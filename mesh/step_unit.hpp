@@ -1,12 +1,12 @@
 #pragma once
-// The unit of length that a STEP file says it is in.
+// Reads the unit of length of a STEP file.
 
 #include <string>
 
 namespace driftwright::mesh {
 
-/// @returns  metres; 1e-3 of a file in mm
-/// @throws InputError  where parts of the file are in several units, or in one that is no SI unit and no inch or foot
+/// @returns  the unit [m]; 1e-3 for a file in mm
+/// @throws InputError  if parts of the file have different units, or a unit other than SI units, inch and foot
 [[nodiscard]] double unit_of_step_m(const std::string& path);
 
 }  // namespace driftwright::mesh

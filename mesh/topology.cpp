@@ -10,7 +10,7 @@ namespace {
 using Edge = std::array<int, 2>;
 
 constexpr std::array<Edge, 6> kTetrahedronEdges = {
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};  // first three: triangle
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};  // the first three: triangle
 constexpr std::array<Edge, 4> kQuadEdges = {{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
 constexpr std::array<Edge, 12> kHexahedronEdges = {
     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};

@@ -1,5 +1,5 @@
 #pragma once
-// Which nodes of a cell lie on its edges and faces.
+// The edges and faces of each cell shape.
 
 #include <Eigen/Core>
 #include <array>

@@ -14,8 +14,9 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kLargestMachine_m = 20.0;    // in m; a machine in mm would have to be smaller than 20 mm
-constexpr double kSmallestMachine_m = 0.020;  // a drawing below this is in another unit than it says
+// A larger body cannot be in m; a machine in mm would then be smaller than 20 mm.
+constexpr double kLargestMachine_m = 20.0;
+constexpr double kSmallestMachine_m = 0.020;  // a smaller drawing is in another unit than it states
 
 const std::map<std::string, double> kUnits_m = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}};
 
@@ -54,10 +55,10 @@ UnnamedGeometry drawing(const std::string& path, const std::string& unit) {
   Mesh as_it_says, in_m;
   try {
     as_it_says = drawing_in(path, 0.0);
-  } catch (const InputError&) {  // a machine of a millimetre may be too small for the mesher's tolerances
+  } catch (const InputError&) {  // a body of a millimetre may be too small for the mesher's tolerances
     try {
       if (is_tried_in_m(in_m)) return {std::move(in_m), "m", true, true};
-    } catch (const InputError&) {  // told as it is below
+    } catch (const InputError&) {  // reported below
     }
     throw;
   }
@@ -88,7 +89,7 @@ UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string
   try {
     Mesh in_m = import_in(path, 1.0);
     if (size_m(in_m) <= kLargestMachine_m) return {std::move(in_m), "m", true};
-  } catch (const InputError&) {  // too large to be in m, or damaged: then it is said in mm, too
+  } catch (const InputError&) {  // too large to be in m, or damaged; in the latter case the attempt in mm fails, too
   }
   return {import_in(path, 1e-3), "mm", true};
 }

@@ -9,12 +9,11 @@
 
 #include "base/characters.hpp"
 #include "nc/places.hpp"
+#include "nc/units.hpp"
 #include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kMillimetre_m = 1e-3;
 
 /// Lines of a text with their ends.
 std::vector<std::string> lines_of(const std::string& bytes) {
@@ -33,14 +32,14 @@ std::string line_end(const std::vector<std::string>& lines, std::size_t i) {
   return like.ends_with("\r\n") ? "\r\n" : "\n";
 }
 
-/// Where a block number and '*' belong in lines of ours, as the program has them.
+/// The form of block number and '*' in inserted lines, as in the program.
 struct BlockStyle {
   bool numbered = false;
   std::string letter = {};  ///< before the number: "N" or none
   bool star = false;
 };
 
-/// Where the digits of a line's block number stand, or none.
+/// Position of the digits of a line's block number, or none.
 std::optional<std::pair<std::size_t, std::size_t>> block_number(const std::string& line, const std::string& letter) {
   std::size_t i = line.find_first_not_of(" \t/");
   if (i == std::string::npos || line.compare(i, letter.size(), letter) != 0) return std::nullopt;
@@ -73,7 +72,7 @@ class Writer {
 
   void put(std::size_t step, const std::vector<std::string>& lines) { insert(index(step), lines); }
 
-  /// All axes at once, before a block, without any motion.
+  /// Sets all axes at once, before a block, without motion.
   void set_all(std::size_t step, const std::array<double, 3>& shift_m) {
     const NcModes& modes = steps_[step].before;
     const std::array<double, 3> from_m = written_m_;
@@ -81,7 +80,7 @@ class Writer {
     insert(index(step), offset_lines(options_, options_.axes, from_m, written_m_, modes));
   }
 
-  /// What is in force once more, behind a block that has taken it away.
+  /// Sets the present corrections again, after a block that has removed them.
   void renew(std::size_t step) {
     const NcStep& own = steps_[step];
     std::array<bool, 3> axes = {false, false, false};
@@ -106,7 +105,8 @@ class Writer {
     }
   }
 
-  /// Where a line stands: those before it at its place; of a block run more than once, in which of its runs.
+  /// Position of an inserted line: the lines before it at its place; for a block that runs several times, the run in which
+  /// it applies.
   struct Mark {
     std::size_t step = 0, nth = 0;
     std::optional<std::size_t> group = {};
@@ -134,7 +134,7 @@ class Writer {
     return {change.step, nth, groups.size() - 1};
   }
 
-  /// The counters of blocks that are run more than once, from zero, in front of the program.
+  /// Sets the counters of blocks that run several times to zero, before the program.
   void begin_counters(std::size_t front) {
     std::vector<std::string>& place = before_.at(index(front));
     std::size_t at = 0;
@@ -155,9 +155,9 @@ class Writer {
 
   CorrectedNcProgram result(const std::vector<Mark>& marks) const {
     CorrectedNcProgram program;
-    std::vector<int> first_inserted(lines_.size());  // line in the result of the first line put before line i
+    std::vector<int> first_inserted(lines_.size());  // line in the result of the first line inserted before line i
     int n = 1;
-    long number = -1;  // of the block before
+    long number = -1;  // of the previous block
     for (std::size_t i = 0; i <= lines_.size(); ++i) {
       if (i < lines_.size()) first_inserted[i] = n;
       for (const std::string& line : before_[i]) {
@@ -170,7 +170,7 @@ class Writer {
     for (const Mark& mark : marks) {
       const std::size_t line = index(mark.step);
       std::size_t n_before = mark.nth;
-      if (mark.group) {  // behind the counter, the groups before it and its own `if`
+      if (mark.group) {  // after the counter, the groups before it and its own `if`
         n_before += 2;
         for (std::size_t g = 0; g < *mark.group; ++g) n_before += counted_.at(line)[g].lines.size() + 2;
       } else if (line == n_counters_.first) {
@@ -191,7 +191,7 @@ class Writer {
 
   std::size_t index(std::size_t step) const { return static_cast<std::size_t>(steps_[step].where.line) - 1; }
 
-  /// A line of the program, its block number raised where ours have taken it.
+  /// A line of the program, with its block number increased if an inserted line has taken it.
   std::string numbered(const std::string& line, long& number) const {
     const auto place = style_.numbered ? block_number(line, style_.letter) : std::nullopt;
     if (!place) return line;
@@ -216,7 +216,7 @@ class Writer {
     return straight_lines(options_.dialect, step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before);
   }
 
-  /// Commands the axes once more to where they stand, unless the block itself brings them all by rapid.
+  /// Commands the axes to their present position once more, unless the block itself moves them all by rapid.
   std::vector<std::string> again(const NcOffsetChange& change, const std::array<bool, 3>& axes) const {
     const NcStep& step = steps_[change.step];
     const bool on_its_way = change.share > 0.0;
@@ -237,13 +237,13 @@ class Writer {
   }
 
   std::vector<std::string> lines_;
-  std::vector<std::vector<std::string>> before_;  // of each line, and behind the last
+  std::vector<std::vector<std::string>> before_;  // inserted before each line, and after the last
   const std::vector<NcStep>& steps_;
   const NcOffsetOptions& options_;
   BlockStyle style_;
   std::array<double, 3> written_m_ = {0, 0, 0};  // corrections in force
   std::map<int, std::vector<std::string>> renewed_;
-  std::map<std::size_t, std::vector<Counted>> counted_;  // of each line that is run more than once
+  std::map<std::size_t, std::vector<Counted>> counted_;  // of each line that runs several times
   std::pair<std::size_t, std::size_t> n_counters_ = {0, 0};
 };
 
@@ -282,7 +282,7 @@ bool moves(const NcStep& step) {
   return step.kind != NcStepKind::kNone;
 }
 
-/// A work offset that nobody names is the one left in force by whoever ran before: G54 after a start, otherwise unknown.
+/// A work offset that the program does not name is the one left by an earlier program: G54 after a start, otherwise unknown.
 void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
   if (options.dialect != NcDialect::kLinuxCnc || !options.absolute || options.work_offset == 540) return;
   for (const NcStep& step : steps) {
@@ -296,8 +296,8 @@ void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions&
   }
 }
 
-/// The step that the first offset stands before: the first that moves or turns cutter compensation on, which forbids offsets, or the last before it
-/// that is run once only.
+/// The step before which the first offset is inserted: the first that moves or turns on cutter compensation, which forbids
+/// offsets, or the last step before it that runs only once.
 std::size_t front_of(const std::vector<NcStep>& steps, NcDialect dialect) {
   std::size_t first = 0;
   while (first + 1 < steps.size() && !moves(steps[first]) && !steps[first].compensated) ++first;
@@ -312,7 +312,8 @@ std::size_t front_of(const std::vector<NcStep>& steps, NcDialect dialect) {
                                                    siemens ? "G710 or G71" : "G21 or G20"));
 }
 
-/// A G92 gives the place where the tool stands another number: it keeps a correction that the axis has, and loses one that it has not come to.
+/// A G92 gives the present position another number: it keeps a correction that the axis has, and loses one that it has not
+/// moved to yet.
 void check_own_shifts(const std::vector<NcStep>& steps, std::size_t front, const NcOffsetOptions& options) {
   if (!options.shares_g92) return;
   for (std::size_t i = front; i < steps.size(); ++i) {
@@ -327,7 +328,7 @@ void check_own_shifts(const std::vector<NcStep>& steps, std::size_t front, const
   }
 }
 
-/// The line that takes corrections back stands before the last block.
+/// The line that removes corrections is inserted before the last block.
 void check_end(const NcStep& last, std::vector<std::string>& notes) {
   if (last.before.compensated || last.compensated)
     throw InputError(
@@ -347,7 +348,7 @@ void check_end(const NcStep& last, std::vector<std::string>& notes) {
   notes.push_back(fmt::format("line {}: the last block moves; it goes without corrections", last.where.line));
 }
 
-/// What stands in front of the program, for who runs it.
+/// The comment at the start of the program, for its user.
 std::string remark(const NcOffsetOptions& options) {
   if (options.absolute) {
     std::string values;

@@ -22,7 +22,7 @@ struct NcDrilling {
   double dwell_s = 0.0;                      ///< at the bottom
 };
 
-/// Moves as the cycle does. Before the first hole a rapid up to the R level if the axis stands below it; for each hole a
+/// Executes the cycle. Before the first hole a rapid up to the R level if the axis is below it; for each hole a
 /// rapid across, a rapid to the R level, then
 ///   81  feed to the bottom, rapid to clear           82  the same with a dwell at the bottom
 ///   83  pecks of Q: feed, rapid to R, rapid back to 0.254 mm above the depth reached; at the bottom rapid to clear

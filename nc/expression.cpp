@@ -16,8 +16,8 @@
 namespace driftwright {
 namespace {
 
-constexpr double kSame = 1e-4;        // LinuxCNC's EQ and NE
-constexpr int kDeepestBracket = 100;  // brackets in brackets
+constexpr double kSame = 1e-4;        // tolerance of LinuxCNC's EQ and NE
+constexpr int kDeepestBracket = 100;  // nested brackets
 
 struct Operator {
   const char* text;
@@ -83,7 +83,7 @@ double one_of(double a, double b) {
   return (a != 0.0) != (b != 0.0) ? 1.0 : 0.0;
 }
 
-/// Longer ones first where one begins with another.
+/// Longer operators first, if one begins with another.
 const std::vector<Operator>& operators(NcSyntax syntax) {
   static const std::vector<Operator> kLinuxCnc = {
       {"**", 5, power}, {"*", 4, times},    {"/", 4, checked_quotient}, {"MOD", 4, modulus}, {"+", 3, plus},

@@ -11,11 +11,10 @@
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
 
 std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector<std::string>& lines) {
   std::vector<HeidenhainLine> blocks;
@@ -60,8 +59,8 @@ std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector
 struct IsoWord {
   char letter = ' ';
   double value = 0.0;
-  bool incremental = false;  ///< behind G91
-  bool computed = false;     ///< of a Q parameter
+  bool incremental = false;  ///< after G91
+  bool computed = false;     ///< contains a Q parameter
   int number = 0;            ///< of Q200=, P01
   std::string text = {};
 };
@@ -77,7 +76,7 @@ class HeidenhainReader {
       run_.count(line.where);
       run_.begin(line.where, line.deletable);
       if (run_.motion_word && *run_.motion_word > 30)
-        run_.step().before.motion = 20;  // as after an arc: a line of ours wants a word behind it
+        run_.step().before.motion = 20;  // as after an arc: an inserted line requires a motion word in the next block
       const bool ends = line.text[0] == '%'   ? percent(line)
                         : line.text[0] == 'D' ? function(line)
                         : line.text[0] == 'Q' ? formula(line)
@@ -429,7 +428,7 @@ class HeidenhainReader {
     if (has(b, 'H')) {
       const IsoWord& h = b.words.at('H');
       angle = h.incremental ? from + h.value * kDegree : h.value * kDegree;
-      if (h.incremental) turns = std::max(1, static_cast<int>(std::ceil(std::abs(h.value) / 360.0 - 1e-9)));
+      if (h.incremental) turns = tnc_.turns_of(h.value);
     }
     const double radius_m = has(b, 'R') ? (b.words.at('R').incremental ? distance_m : 0.0) + length_m(b, 'R') : distance_m;
     target_m[u] = tnc_.pole_m[u] + radius_m * std::cos(angle);
@@ -488,7 +487,7 @@ class HeidenhainReader {
     } else {
       fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
     }
-    run_.motion_word = word;  // it goes on
+    run_.motion_word = word;  // it stays in force
     if (code >= 10) run_.step().plain = false;
   }
 

@@ -13,7 +13,7 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kDeepestSubprogram = 8;  // subprograms within subprograms, as the control has it
+constexpr std::size_t kDeepestSubprogram = 8;  // nested subprograms, the limit of the control
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) 
 }
 
 void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, int times) {
-  const std::size_t own = at - 1;  // the reader stands behind it
+  const std::size_t own = at - 1;  // the reader is one line after it
   if (times == 0) {
     if (returns_.size() >= kDeepestSubprogram)
       fail(line, fmt::format("subprograms are nested more than {} deep", kDeepestSubprogram));
@@ -176,7 +176,7 @@ bool HeidenhainRun::m_word(int m) {
     case 5:
       run_.motion.turning = false;
       return false;
-    case 6:  // the tool call has had its time
+    case 6:  // the tool call has already counted its time
       run_.motion.turning = false;
       run_.halt("M6");
       return false;
@@ -230,10 +230,17 @@ void HeidenhainRun::line_to(const std::array<double, 3>& target_m, bool rapid) {
 void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise,
                               int turns) {
   run_.arc_to(target_m, centre_m, clockwise, turns);
-  run_.motion_word = 10;  // a line of ours goes on at the feed
+  run_.motion_word = 10;  // an inserted line continues at the feed
   const auto [u, v] = plane_axes(run_.normal);
   const double ru = target_m[u] - centre_m[u], rv = target_m[v] - centre_m[v], r = std::hypot(ru, rv);
   direction = clockwise ? std::array<double, 2>{rv / r, -ru / r} : std::array<double, 2>{-rv / r, ru / r};
+}
+
+int HeidenhainRun::turns_of(double angle_deg) const {
+  constexpr double kMostTurns = 1e5;
+  if (!(std::abs(angle_deg) <= 360.0 * kMostTurns))
+    run_.fail(fmt::format("the polar angle is {:g} degrees; at most {:.0f} are allowed", angle_deg, 360.0 * kMostTurns));
+  return std::max(1, static_cast<int>(std::ceil(std::abs(angle_deg) / 360.0 - 1e-9)));
 }
 
 void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
@@ -306,7 +313,7 @@ void HeidenhainRun::drill(const HeidenhainCycle& c) {
         feed(q(206));
         motion.feed_to(at_level(depth_m));
         if (depth_m <= bottom_m) break;
-        if (n_broken < breaks) {  // chips are broken on the way, and cleared after so many
+        if (n_broken < breaks) {  // chips are broken on the way, and cleared after that many
           ++n_broken;
           motion.rapid_to(at_level(depth_m + break_m));
         } else {

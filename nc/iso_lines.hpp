@@ -1,5 +1,5 @@
 #pragma once
-// The lines of an RS-274 program before they are run.
+// Splits an RS-274 program into lines, before it is run.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,10 @@
 
 namespace driftwright {
 
+/// One line with its kind.
 struct IsoLine {
   enum Kind {
-    kBlock,     ///< words with numbers: `block` has them
+    kBlock,     ///< words with plain numbers, in `block`
     kComputed,  ///< words with parameters or expressions
     kFlow,      ///< an O word
     kPercent,
@@ -18,19 +19,19 @@ struct IsoLine {
   Kind kind = kBlock;
   Where where = {};
   std::string text = {};          ///< upper case, without blanks, comments and block number
-  std::vector<int> columns = {};  ///< of each of its characters, from 1, and behind them
+  std::vector<int> columns = {};  ///< column of each of its characters and of the end, from 1
   NcBlock block = {};
-  std::string label = {};    ///< of an O word: "100", "<NAME>"; "" where it is computed
-  std::string keyword = {};  ///< "SUB", "IF" ...; "" for a number alone
-  std::size_t rest = 0;      ///< where in `text` the label (computed) or what follows the keyword begins
+  std::string label = {};    ///< of an O word: "100", "<NAME>"; "" if computed
+  std::string keyword = {};  ///< "SUB", "IF" ...; "" for a number without keyword
+  std::size_t rest = 0;      ///< index in `text` where the computed label, or the part after the keyword, begins
 };
 
-/// All that hold something; behind the second '%' there are none.
+/// All lines that are not empty, up to the second '%'.
 /// @throws InputError  file, line and column: for a file that cannot be opened, a '(' without ')', a letter without a number
 /// Source: LinuxCNC documentation, "G-code Overview", Format of a line, Numbers, Comments, File requirements.
 [[nodiscard]] std::vector<IsoLine> read_iso_lines(const std::string& path);
 
-/// The words of a line from text[at], where numbers alone stand behind the letters. @throws InputError
+/// The words of a line from text[at] on, where all values are plain numbers. @throws InputError
 [[nodiscard]] std::vector<NcWord> plain_words(const IsoLine& line);
 
 }  // namespace driftwright

@@ -11,12 +11,11 @@
 #include "nc/drilling.hpp"
 #include "nc/iso_origin.hpp"
 #include "nc/iso_source.hpp"
+#include "nc/units.hpp"
 #include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kMillimetre_m = 1e-3;
 
 /// The work offset's number P: 1 for G54 ... 9 for G59.3.
 int number_of(NcCode system) {
@@ -24,14 +23,14 @@ int number_of(NcCode system) {
 }
 
 bool is_drilling(std::optional<NcCode> motion) {
-  return motion && *motion >= 730 && *motion != 800;
+  return motion && is_canned_cycle(*motion);
 }
 
 class IsoReader {
  public:
   explicit IsoReader(NcRun& run) : run_(run), motion_(run.motion), origin_(run) {}
 
-  /// What the machine itself knows of a parameter, or none.
+  /// The value of a parameter that the machine itself provides, or none.
   std::optional<NcValue> parameter(const std::string& name) {
     static const std::map<std::string, int> kPositions = {{"<_X>", 0}, {"<_Y>", 1}, {"<_Z>", 2}};
     const auto here = [&](int axis) { return NcValue{motion_.position_m[axis] / run_.unit_m, run_.knows_place(axis)}; };
@@ -62,7 +61,7 @@ class IsoReader {
     return NcValue{0.0, false};
   }
 
-  /// @returns whether the program goes on
+  /// @returns true  if the program continues
   bool read(const NcBlock& block) {
     const std::string& line = block.where.excerpt;
     const auto first = line.find_first_not_of(" \t");
@@ -84,6 +83,13 @@ class IsoReader {
         language && (*language != 2910 || run_.settings().control != NcControl::kSiemens))
       run_.fail(fmt::format("{}: Siemens programs are in ISO code (G291) as a whole or not at all here",
                             nc_word_name('G', *language)));
+    for (const NcCode cancel : {500, 501}) {  // alone they end scaling and mirroring, which do not begin here
+      if (contains(g, cancel) && words.has_any("SXYZIJKPR"))
+        run_.fail(
+            fmt::format("{}: with other words in its block it does more than end scaling or mirroring, which is not "
+                        "followed here; write it in a block without S, X, Y, Z, I, J, K, P and R",
+                        nc_word_name('G', cancel)));
+    }
     if (contains(g, 200)) run_.unit_m = run_.feed_unit_m = kInch_m;
     if (contains(g, 210)) run_.unit_m = run_.feed_unit_m = kMillimetre_m;
     set_feed(g, words);
@@ -94,10 +100,10 @@ class IsoReader {
     set_modes(g, words);
     if (const auto reference = of_group(g, "reference point")) go_to_reference(*reference, words);
     move(g, words);
-    if (motion_.feed_mode == NcFeedMode::InverseTime) motion_.feed = 0.0;  // an F holds for its own block
+    if (motion_.feed_mode == NcFeedMode::InverseTime) motion_.feed = 0.0;  // an F applies to its own block only
     words.reject_unused();
     NcStep& step = run_.step();
-    step.motion_word = of_group(g, "motion").has_value();
+    step.motion_word = of_group(g, "motion").has_value() || contains(g, 800);
     step.unit_word = contains(g, 200) || contains(g, 210);
     step.system = of_group(g, "coordinate system");
     if (step.system && run_.settings().control == NcControl::kSiemens) step.resets = {true, true, true};
@@ -108,7 +114,7 @@ class IsoReader {
   }
 
  private:
-  /// What lines of ours want to know of a block.
+  /// Stores the properties of a block that inserted lines need.
   void look_at(const NcBlock& block) {
     NcStep& step = run_.step();
     step.plain = true;
@@ -180,7 +186,7 @@ class IsoReader {
     if (contains(g, 990)) to_initial_level_ = false;
   }
 
-  /// Where the block's X, Y, Z point to; the axes it does not name stay.
+  /// Target of the block's X, Y, Z; axes that it does not name keep their position.
   std::array<double, 3> take_target(NcWords& words, bool absolute) {
     std::array<double, 3> target_m = motion_.position_m;
     NcStep& step = run_.step();
@@ -193,7 +199,7 @@ class IsoReader {
     return target_m;
   }
 
-  /// G10 L2 Pn, L20 Pn: a work offset; the tool table's L1, L10, L11 move nothing here.
+  /// G10 L2 Pn, L20 Pn: sets a work offset; L1, L10, L11 of the tool table move nothing here.
   void set_offset(NcWords& words) {
     const auto l = words.take('L');
     if (!l) run_.fail("G10 without its L");
@@ -272,6 +278,8 @@ class IsoReader {
     if (named) {
       if (!is_drilling(named) || !is_drilling(modal)) drilling_ = {};
       modal = named;
+    } else if (contains(g, 800)) {
+      modal = 800;
     }
     const bool arc = modal == 20 || modal == 30, probe = modal && *modal >= 382 && *modal <= 385;
     if (!words.has_any("XYZ") && !(arc && (named || words.has_any("IJKR"))) && !(named && is_drilling(modal))) {
@@ -335,7 +343,7 @@ class IsoReader {
     run_.arc_to(target_m, centre_m, clockwise, turns);
   }
 
-  struct Sticky {  // words of a series of canned cycles that hold until they are changed; lengths as written [m]
+  struct Sticky {  // words of a series of canned cycles that apply until they are changed; lengths as written [m]
     std::optional<NcCode> code;
     std::optional<double> bottom_m, retract_m, peck_m, dwell_s, initial_m;
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Programs of words as RS-274 (ISO 6983) and LinuxCNC know them, and Siemens' ISO mode: nc/program.hpp says which.
+// Reads programs in RS-274 (ISO 6983) as LinuxCNC knows it, and in Siemens' ISO mode. nc/program.hpp lists the words.
 
 #include "nc/run.hpp"
 

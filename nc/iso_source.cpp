@@ -13,7 +13,7 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kDeepestSubroutine = 10;  // subroutines within subroutines, as LinuxCNC has it
+constexpr std::size_t kDeepestSubroutine = 10;  // nested subroutines, LinuxCNC's limit
 constexpr int kLocals = 30;
 
 struct File {
@@ -50,7 +50,7 @@ class IsoSource::Impl {
       switch (line.kind) {
         case IsoLine::kPercent: {
           if (frames_.size() > 1) fail(line, 0, "'%' within a subroutine");
-          NcBlock end;  // means the same as M2: nothing after it is read
+          NcBlock end;  // has the effect of M2: nothing after it is read
           end.where = line.where;
           end.words.push_back({.letter = '%', .value = 0.0, .text = "%", .column = line.columns[0]});
           return end;
@@ -88,7 +88,8 @@ class IsoSource::Impl {
     return *files_.emplace(path, std::move(file)).first->second;
   }
 
-  // --- numbers ------------------------------------------------------------------------------------------------------------------
+  // --- numbers
+  // ------------------------------------------------------------------------------------------------------------------
 
   NcValue look_up(const std::string& name) {
     if (name[0] == '<') {
@@ -128,7 +129,7 @@ class IsoSource::Impl {
     }
   }
 
-  /// Behind an O word's keyword. @returns whether it is true; notes where that is decided at the machine
+  /// The condition after an O word's keyword. @returns its value; notes if the value is known only at the machine
   bool condition(const IsoLine& line) {
     std::size_t i = line.rest;
     if (i >= line.text.size() || line.text[i] != '[') fail(line, i, "a condition in [ ] is expected");
@@ -144,7 +145,7 @@ class IsoSource::Impl {
     NcBlock block;
     block.where = line.where;
     const std::string& text = line.text;
-    std::vector<std::pair<std::string, NcValue>> assigned;  // hold from the next line on
+    std::vector<std::pair<std::string, NcValue>> assigned;  // apply from the next line on
     for (std::size_t i = 0; i < text.size();) {
       const std::size_t begin = i;
       if (text[i] == '#') {
@@ -177,7 +178,7 @@ class IsoSource::Impl {
     return block;
   }
 
-  /// Takes M98 and M99 out of a block. @returns what is left to run, if anything
+  /// Executes M98 and M99 of a block. @returns the rest of the block, if anything remains
   std::optional<NcBlock> ready(const IsoLine& line, NcBlock block) {
     const auto find = [&](char letter, double number) {
       return std::find_if(block.words.begin(), block.words.end(),
@@ -202,7 +203,8 @@ class IsoSource::Impl {
     return block;
   }
 
-  // --- what runs when -----------------------------------------------------------------------------------------------------------
+  // --- order of execution
+  // -------------------------------------------------------------------------------------------------------
 
   void enter(const IsoLine& line, Frame next) {
     if (frames_.size() > kDeepestSubroutine)
@@ -244,7 +246,7 @@ class IsoSource::Impl {
     frames_.pop_back();
   }
 
-  /// The line with one of these keywords and this label: onward from `from`, or backward.
+  /// The line with one of these keywords and this label: forward from `from`, or backward.
   std::size_t find(const IsoLine& line, std::size_t from, const std::set<std::string>& keywords, bool onward) {
     const std::vector<IsoLine>& lines = frame().file->lines;
     const auto is_it = [&](const IsoLine& l) {
@@ -263,7 +265,7 @@ class IsoSource::Impl {
   void flow(const IsoLine& line) {
     const std::string& k = line.keyword;
     std::size_t& at = frame().at;
-    if (k.empty()) return;  // the program's number
+    if (k.empty()) return;  // the program number
     if (k == "SUB") {
       at = find(line, at, {"ENDSUB"}, true) + 1;
     } else if (k == "CALL") {
@@ -276,7 +278,7 @@ class IsoSource::Impl {
       frames_.pop_back();
     } else if (k == "IF") {
       if (!condition(line)) skip_branch(line);
-    } else if (k == "ELSEIF" || k == "ELSE") {  // behind the branch that was run
+    } else if (k == "ELSEIF" || k == "ELSE") {  // reached after the branch that was run
       at = find(line, at, {"ENDIF"}, true) + 1;
     } else if (k == "DO") {
       frame().dos.insert(line.label);
@@ -315,7 +317,7 @@ class IsoSource::Impl {
     }
   }
 
-  /// The line that closes the loop of that label: ENDWHILE, or the WHILE of a DO. LinuxCNC leaves no REPEAT early.
+  /// The line that closes the loop of that label: ENDWHILE, or the WHILE of a DO. LinuxCNC cannot leave a REPEAT early.
   std::size_t loop_end(const IsoLine& line) {
     if (frame().dos.contains(line.label)) return find(line, frame().at, {"WHILE"}, true);
     return find(line, frame().at, {"ENDWHILE"}, true);

@@ -10,11 +10,10 @@
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
 
 /// Upper case but for texts in quotation marks, without block number and comment, blanks one by one. @param number  whether there was one
 std::string plain(const std::string& line, bool& deletable) {
@@ -43,7 +42,7 @@ std::string plain(const std::string& line, bool& deletable) {
   return text;
 }
 
-/// Blocks: lines that end with '~' go on, and CYCL DEF 7.1 belongs to 7.0.
+/// Splits the lines into blocks: lines that end with '~' continue, and CYCL DEF 7.1 belongs to 7.0.
 std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector<std::string>& lines) {
   std::vector<HeidenhainLine> blocks;
   bool goes_on = false;
@@ -54,7 +53,7 @@ std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector
     std::string text = plain(line, deletable);
     if (text.empty() || text.starts_with('*')) continue;
     const auto last = line.find_last_not_of(" \t\r");
-    const bool more = line[last] == '~';  // behind a comment, too
+    const bool more = line[last] == '~';  // also after a comment
     while (!text.empty() && (text.back() == ' ' || text.back() == '~')) text.pop_back();
     const bool sub_line = text.starts_with("CYCL DEF ") && [&] {
       const std::size_t dot = text.find('.');
@@ -82,7 +81,7 @@ std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector
   return blocks;
 }
 
-/// What stands behind the first word of a path block.
+/// The words after the first word of a path block.
 struct Path {
   std::array<std::optional<double>, 3> at = {}, by = {};  ///< X and IX, as written
   std::optional<double> pr, pa, ipr, ipa, radius, length, angle, mb;
@@ -105,7 +104,7 @@ class KlartextReader {
       const HeidenhainLine& line = lines_[tnc_.at++];
       run_.count(line.where);
       run_.begin(line.where, line.deletable);
-      run_.step().motion_word = true;  // each path block says what it is
+      run_.step().motion_word = true;  // each path block names its motion
       run_.step().last_line = line.last_line;
       const bool ends = block(line);
       run_.step().ends_program = ends;
@@ -127,7 +126,7 @@ class KlartextReader {
 
   bool ignored(const std::string& word) const { return run_.settings().ignored.contains(word); }
 
-  /// @returns whether it ends the program
+  /// @returns true  if it ends the program
   bool block(const HeidenhainLine& line) {
     const std::string& t = line.text;
     if (begins(t, "BEGIN PGM")) {
@@ -175,7 +174,8 @@ class KlartextReader {
     fail(line, fmt::format("{} is not known here; if it has no effect on times and speeds, name it under `ignore`", word));
   }
 
-  // --- words of a path block ----------------------------------------------------------------------------------------------------
+  // --- words of a path block
+  // ----------------------------------------------------------------------------------------------------
 
   Path path_words(const HeidenhainLine& line, std::size_t i) {
     const std::string& t = line.text;
@@ -250,7 +250,7 @@ class KlartextReader {
     }
   }
 
-  /// @returns whether one ends the program
+  /// @returns true  if one ends the program
   bool m_words(const HeidenhainLine& line, const Path& p) {
     bool ends = false;
     for (const int m : p.m) {
@@ -261,7 +261,7 @@ class KlartextReader {
         ends = tnc_.m_word(m) || ends;
       }
     }
-    if (run_.step().kind == NcStepKind::kDrilling) run_.motion_word = 0;  // cycles leave by rapid
+    if (run_.step().kind == NcStepKind::kDrilling) run_.motion_word = 0;  // cycles end with a rapid
     return ends;
   }
 
@@ -306,7 +306,7 @@ class KlartextReader {
     step.named[u] = step.named[v] = true;
     step.absolute = step.absolute && !p.ipa && !p.ipr;
     if (p.ipa) {
-      turns = std::max(1, static_cast<int>(std::ceil(std::abs(*p.ipa) / 360.0 - 1e-9)));
+      turns = tnc_.turns_of(*p.ipa);
       if (!clockwise) clockwise = *p.ipa < 0.0;
     }
     return target_m;
@@ -413,7 +413,8 @@ class KlartextReader {
     if (line.text == "CC") tnc_.pole_m = run_.motion.position_m;
   }
 
-  // --- the rest -----------------------------------------------------------------------------------------------------------------
+  // --- the rest
+  // -----------------------------------------------------------------------------------------------------------------
 
   void call_label(const HeidenhainLine& line) {
     std::string label = line.text.substr(9);
@@ -472,7 +473,7 @@ class KlartextReader {
     return false;
   }
 
-  /// Words and their values behind a cycle's title, such as X+10 of cycle 7.
+  /// Words and their values after a cycle's title, such as X+10 of cycle 7.
   void define_cycle(const HeidenhainLine& line) {
     const std::string& t = line.text;
     std::size_t i = 9;
@@ -518,7 +519,7 @@ class KlartextReader {
       int n = 0;
       while (k < t.size() && is_digit(t[k])) n = 10 * std::min(n, 100000) + (t[k++] - '0');
       while (k < t.size() && t[k] == ' ') ++k;
-      if (k == q + 2 || k >= t.size() || t[k] != '=') continue;  // of the title
+      if (k == q + 2 || k >= t.size() || t[k] != '=') continue;  // part of the title
       ++k;
       cycle.q[n] = tnc_.value(line, t, k);
       tnc_.set_q(fmt::format("Q{}", n), cycle.q[n]);
@@ -531,7 +532,7 @@ class KlartextReader {
                      number));
   }
 
-  /// Behind the words of a title: where the first value begins.
+  /// Index after the words of a title: where the first value begins.
   static std::size_t title_end(const std::string& t, std::size_t i) {
     while (i < t.size()) {
       const std::size_t begin = t.find_first_not_of(' ', i);

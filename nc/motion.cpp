@@ -82,29 +82,18 @@ void NcMotion::feed_to(const std::array<double, 3>& target_m) {
 }
 
 void NcMotion::arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, int normal,
-                      bool clockwise, int turns) {
+                      bool clockwise, int turns, double rounding_m) {
   ArcPath path;
   try {
-    path = arc_path(position_m, target_m, centre_m, normal, clockwise, turns);
+    path = arc_path(position_m, target_m, centre_m, normal, clockwise, turns, rounding_m);
   } catch (const RangeError& e) {
     throw InputError(where, e.what());
   }
-  const auto [u, v] = plane_axes(normal);
   PathPiece piece;
-  const double radius_m = std::hypot(position_m[u] - centre_m[u], position_m[v] - centre_m[v]);
-  const double rise = (target_m[normal] - position_m[normal]) / path.length_m,
-               level = std::sqrt(std::max(0.0, 1.0 - rise * rise));
-  const auto tangent = [&](const std::array<double, 3>& at_m) {
-    std::array<double, 3> t = {0, 0, 0};
-    const double ru = (at_m[u] - centre_m[u]) / radius_m, rv = (at_m[v] - centre_m[v]) / radius_m;
-    t[u] = level * (clockwise ? rv : -rv);
-    t[v] = level * (clockwise ? -ru : ru);
-    t[normal] = rise;
-    return t;
-  };
-  piece.begins = tangent(position_m);
-  piece.ends = tangent(target_m);
-  piece.radius_m = radius_m / std::max(level * level, 1e-12);
+  piece.begins = path.begins;
+  piece.ends = path.ends;
+  const double level = 1.0 - path.begins[normal] * path.begins[normal];  // share in the plane, squared
+  piece.radius_m = path.radius_m / std::max(level, 1e-12);
   feed_along(path.length_m, path.travel_m, piece);
   position_m = target_m;
 }

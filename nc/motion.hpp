@@ -1,6 +1,7 @@
 #pragma once
-// The machine that an NC program drives: where its axes stand, how its spindle turns, and what each move takes. It keeps
-// every speed as programmed; times of real motion come of the path that it notes (nc/planned_motion.hpp). Overrides are not modelled.
+// The state of the machine that an NC program drives: positions of its axes, its spindle, and the duration of each move. All
+// speeds are as programmed; nc/planned_motion.hpp computes the times of real motion from the recorded path. Overrides are
+// not modelled.
 
 #include <array>
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace driftwright {
 
-/// One stretch of a program: a line, an arc or a standstill of the axes, at one spindle speed.
+/// One piece of a program with one spindle speed: a line, an arc or a standstill of the axes.
 struct NcMove {
   double duration_s = 0.0;
   double speed_rpm = 0.0;                      ///< of the spindle in either sense, >= 0
@@ -21,11 +22,12 @@ struct NcMove {
 
 enum class NcFeedMode { PerMinute, InverseTime, PerRevolution };
 
+/// Executes moves and records them.
 class NcMotion {
  public:
   explicit NcMotion(std::optional<double> rapid_m_s) : rapid_m_s_(rapid_m_s) {}
 
-  Where where;  ///< of the block in hand, for messages
+  Where where;  ///< of the current block, for messages
   std::array<double, 3> position_m = {0, 0, 0};
   NcFeedMode feed_mode = NcFeedMode::PerMinute;
   double feed = 0.0;  ///< [m/s], [1/s] (moves per second) or [m/rev], by the mode; 0: none
@@ -34,22 +36,23 @@ class NcMotion {
 
   [[nodiscard]] double speed_rpm() const { return turning ? programmed_rpm : 0.0; }
 
-  /// A straight line at the speed of rapids along it. @throws InputError  when there is none
+  /// A straight line at rapid speed. @throws InputError  without a rapid speed
   void rapid_to(const std::array<double, 3>& target_m);
   /// A straight line at the feed. @throws InputError  without a feed, or per revolution of a spindle at rest
   void feed_to(const std::array<double, 3>& target_m);
-  /// An arc at the feed (see nc_arc.hpp). @throws InputError  as feed_to, and for an impossible arc
+  /// An arc at the feed (see nc/arc.hpp). @throws InputError  as feed_to, and for an impossible arc
   void arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, int normal, bool clockwise,
-              int turns);
+              int turns, double rounding_m);
   void wait(double duration_s);
 
-  /// How far corners may be cut from here on: < 0 as far as speed asks for (G64), 0 not at all (G61), else the tolerance (G64 P).
+  /// How far corners may be rounded from here on: < 0 as far as speed requires (G64), 0 not at all (G61), else the tolerance
+  /// (G64 P).
   double blend_m = -1.0;
-  /// The axes stand before what comes next: a spindle, a tool, an offset waits for them.
+  /// The axes stop before what comes next: a spindle, a tool or an offset waits for them.
   void stop();
 
   [[nodiscard]] const std::vector<NcMove>& moves() const { return moves_; }
-  /// Of each move its path.
+  /// The path of each move.
   [[nodiscard]] const std::vector<PathPiece>& path() const { return path_; }
 
  private:

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "nc/units.hpp"
+
 namespace driftwright {
 namespace {
 
-constexpr double kMillimetre_m = 1e-3;
 constexpr const char* kLetters = "XYZ";
 
 /// "0.0125", "-3", "10": no trailing zeros, no exponent.
@@ -50,7 +51,7 @@ std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std:
     case NcDialect::kLinuxCnc:
       if (options.shares_g92 && !options.absolute) {
         words = "G92";
-        for (int axis = 0; axis < 3; ++axis) {  // where the tool stands has another number then
+        for (int axis = 0; axis < 3; ++axis) {  // the present position then has another number
           if (axes[axis] && to_m[axis] != from_m[axis])
             words += fmt::format(" {}[#{}{}]", kLetters[axis], 5420 + axis, with_sign(from_m[axis] - to_m[axis], unit_m));
         }
@@ -93,7 +94,7 @@ std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std:
       }
       if (words == "G54 G91") break;
       lines.push_back(words);
-      if (options.absolute != before.absolute) lines.emplace_back(before.absolute ? "G90" : "G91");  // as it was
+      if (options.absolute != before.absolute) lines.emplace_back(before.absolute ? "G90" : "G91");  // restores the mode
       break;
     case NcDialect::kKlartext: {
       lines.emplace_back("CYCL DEF 7.0 DATUM SHIFT");

@@ -12,7 +12,7 @@ std::array<NcEntry, 3> entries(const NcStep& step, const NcStep* next_motion) {
     return result;
   const std::optional<int>& motion = step.before.motion;
   const bool straight = motion && (*motion == 0 || *motion == 10), arc = motion && (*motion == 20 || *motion == 30);
-  // A line of its own leaves G0 or G1 in force: nobody may go on with another motion word that is not written.
+  // An inserted line leaves G0 or G1 in force, so the next motion block must name its motion word.
   const bool restores = straight || (next_motion && next_motion->motion_word);
   const bool in_feed = (straight && *motion == 10) || arc;
   const bool feeds = step.before.feed_mode == NcFeedMode::PerMinute && step.before.has_feed;

@@ -8,11 +8,12 @@
 namespace driftwright {
 namespace {
 
-constexpr double kNormalShare = 0.8660254037844386;  // of the acceleration, beside 0.5 along the path
+// Share of the acceleration for the normal direction; 0.5 remains along the path.
+constexpr double kNormalShare = 0.8660254037844386;
 constexpr double kKinkShare = 0.25;
 constexpr double kPi = std::numbers::pi;
 
-/// The most along a direction that no axis exceeds.
+/// The largest value along a direction that exceeds no axis' limit.
 double along(const std::array<double, 3>& limit, const std::array<double, 3>& direction) {
   double most = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -21,16 +22,16 @@ double along(const std::array<double, 3>& limit, const std::array<double, 3>& di
   return most;
 }
 
-/// What stands of a piece between its corners.
+/// The part of a piece between its corners.
 struct Stretch {
   double length_m = 0.0;
   double velocity_m_s = 0.0, acceleration_m_s2 = 0.0;
-  double end_m_s = 0.0;   ///< most at its end, into the corner behind it
+  double end_m_s = 0.0;   ///< largest speed at its end, into the next corner
   double corner_s = 0.0;  ///< time of that corner's arc
   double corner_m = 0.0;  ///< length of that corner's arc
 };
 
-/// Time of a straight line of motion from v0 to v1 at a, at most v. @param jerk_m_s3  0: none
+/// Time of a straight motion from v0 to v1 with the acceleration a and the largest speed v. @param jerk_m_s3  0: no limit
 double time_along(double length_m, double v0, double v1, double v, double a, double jerk_m_s3) {
   if (!(length_m > 0.0)) return 0.0;
   const double reached = std::min(v, std::sqrt(std::max(0.0, a * length_m + 0.5 * (v0 * v0 + v1 * v1))));
@@ -38,7 +39,7 @@ double time_along(double length_m, double v0, double v1, double v, double a, dou
   const double up_m = (peak * peak - v0 * v0) / (2.0 * a), down_m = (peak * peak - v1 * v1) / (2.0 * a);
   double time_s = (peak - v0) / a + (peak - v1) / a + std::max(0.0, length_m - up_m - down_m) / peak;
   if (jerk_m_s3 > 0.0) {
-    // A change of speed by dv takes a / jerk more, or 2 sqrt(dv / jerk) where a is not reached.
+    // A change of speed by dv takes a / jerk longer, or 2 sqrt(dv / jerk) if a is not reached.
     for (const double dv : {peak - v0, peak - v1}) {
       if (dv > 1e-9) time_s += dv >= a * a / jerk_m_s3 ? 0.5 * a / jerk_m_s3 : std::sqrt(dv / jerk_m_s3) - 0.5 * dv / a;
     }
@@ -83,7 +84,7 @@ class Planner {
     Stretch& s = stretches_[i];
     s.length_m = p.length_m;
     if (!(p.length_m > 0.0)) return;
-    if (p.radius_m > 0.0) {  // every axis of the plane is met in turn
+    if (p.radius_m > 0.0) {  // the direction passes through every axis of the plane
       double a = std::numeric_limits<double>::infinity(), v = a;
       for (int axis = 0; axis < 3; ++axis) {
         if (std::abs(p.begins[axis]) < 1e-9 && std::abs(p.ends[axis]) < 1e-9) continue;
@@ -100,7 +101,7 @@ class Planner {
     }
   }
 
-  /// From piece i to the next: how fast, and by which arc.
+  /// The corner from piece i to the next: its speed, and its arc.
   void corner(std::size_t i) {
     const PathPiece &p = pieces_[i], &next = pieces_[i + 1];
     Stretch& s = stretches_[i];
@@ -109,7 +110,7 @@ class Planner {
     double dot = 0.0;
     for (int axis = 0; axis < 3; ++axis) dot += p.ends[axis] * next.begins[axis];
     const double a = std::min(s.acceleration_m_s2, t.acceleration_m_s2), wanted = std::min(s.velocity_m_s, t.velocity_m_s);
-    const double kink = std::acos(std::clamp(dot, -1.0, 1.0));  // by which the direction turns
+    const double kink = std::acos(std::clamp(dot, -1.0, 1.0));  // angle by which the direction turns
     const double jump = 2.0 * std::sin(0.5 * kink);
     const double at_once = jump > 1e-9 ? kKinkShare * a * limits_.cycle_s / jump : std::numeric_limits<double>::infinity();
     if (at_once >= wanted) {
@@ -117,8 +118,9 @@ class Planner {
       return;
     }
     s.end_m_s = at_once;
-    if (p.blend_m == 0.0 || kink > kPi - 1e-3 || p.radius_m > 0.0 || next.radius_m > 0.0) return;  // lines alone
-    // The corner's arc turns through its plane: what every axis of it can do counts.
+    if (p.blend_m == 0.0 || kink > kPi - 1e-3 || p.radius_m > 0.0 || next.radius_m > 0.0)
+      return;  // arcs exist between lines only
+    // The corner's arc turns through its plane: the limits of every axis of the plane apply.
     double turning = a, fastest = wanted;
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(p.ends[axis]) < 1e-9 && std::abs(next.begins[axis]) < 1e-9) continue;
@@ -143,7 +145,7 @@ class Planner {
     t.length_m -= d_m;
   }
 
-  /// Lowered so that the path can be stopped at the end of what is looked ahead.
+  /// End velocities, lowered so that the path can be stopped at the end of the pieces looked ahead.
   std::vector<double> end_velocities() const {
     const std::size_t n = pieces_.size();
     std::vector<double> ends(n, 0.0);

@@ -49,7 +49,7 @@ void NcRun::end() {
     if (step.kind == NcStepKind::kMachine || ((step.deletable || !step.certain) && step.named[axis])) {
       known_[axis] = false;
     } else if (step.named[axis] && step.absolute && !(step.kind == NcStepKind::kDrilling && axis == normal)) {
-      known_[axis] = true;  // the level at the end of a drilling series is that of its start or R: no news
+      known_[axis] = true;  // a drilling series ends at its start level or R, so it changes nothing here
     }
   }
 }
@@ -102,12 +102,12 @@ void NcRun::go(NcStepKind kind, const std::array<double, 3>& target_m) {
 
 void NcRun::arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise, int turns) {
   step().kind = NcStepKind::kArc;
-  motion.arc_to(target_m, centre_m, normal, clockwise, turns);
+  motion.arc_to(target_m, centre_m, normal, clockwise, turns, rounding_m());
 }
 
 std::array<double, 3> NcRun::centre_of(const std::array<double, 3>& target_m, double radius_m, bool clockwise) const {
   try {
-    return arc_centre(motion.position_m, target_m, radius_m, normal, clockwise);
+    return arc_centre(motion.position_m, target_m, radius_m, normal, clockwise, rounding_m());
   } catch (const RangeError& e) {
     fail(e.what());
   }

@@ -27,7 +27,7 @@ char upper(char c) {
   throw InputError(where, message);
 }
 
-/// Upper case but for strings, tabs as blanks, without the comment.
+/// Upper case except for strings, tabs as blanks, without the comment.
 std::string plain(const std::string& text) {
   std::string kept;
   bool quoted = false;
@@ -101,7 +101,7 @@ void match_loops(std::vector<SiemensLine>& lines) {
     fail(lines[open.back().second], lines[open.back().second].begin, fmt::format("{} is not closed", open.back().first));
 }
 
-/// The end of the brackets that open at text[i]: behind ')'.
+/// Index after the brackets that open at text[i].
 std::size_t behind_bracket(const SiemensLine& line, std::size_t i) {
   int depth = 0;
   bool quoted = false;
@@ -115,11 +115,11 @@ std::size_t behind_bracket(const SiemensLine& line, std::size_t i) {
   fail(line, begin, "'(' without ')'");
 }
 
-/// The end of an assigned value: blanks end it, but not within brackets, around operators or within strings.
+/// Index after an assigned value: blanks end it, except within brackets, around operators and within strings.
 std::size_t behind_value(const SiemensLine& line, std::size_t i) {
   const std::string& text = line.text;
   const std::string operators = "+-*/";
-  bool wants = true;  // an operand is required
+  bool wants = true;  // an operand is required next
   while (i < text.size()) {
     if (text[i] == ' ') {
       ++i;

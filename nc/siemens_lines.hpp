@@ -1,5 +1,5 @@
 #pragma once
-// Lines of Siemens programs and their words, before they mean anything.
+// Splits Siemens programs into lines and words, without interpreting them.
 
 #include <string>
 #include <utility>
@@ -9,17 +9,20 @@
 
 namespace driftwright {
 
+/// One line.
 struct SiemensLine {
   Where where = {};
-  std::string text = {};    ///< without its comment; as long as it was in front, so that columns are those of the file
-  std::size_t begin = 0;    ///< behind block number, '/' and label
-  std::string label = {};   ///< upper case
+  std::string text = {};   ///< without its comment, but with all characters before it, so that columns are those of the file
+  std::size_t begin = 0;   ///< index after block number, '/' and label
+  std::string label = {};  ///< upper case
   std::string number = {};  ///< such as "N100"
   bool deletable = false;   ///< '/'
-  /// IF: its ELSE or ENDIF; ELSE: ENDIF; WHILE, FOR, LOOP, REPEAT: the line that closes it; and that one: the one that opens it.
+  /// Index of a related line. IF: its ELSE or ENDIF; ELSE: ENDIF; WHILE, FOR, LOOP, REPEAT: the closing line; a closing
+  /// line: the opening one.
   std::size_t partner = 0;
 };
 
+/// One word.
 struct SiemensWord {
   enum Kind { kNumber, kAssignment, kCall, kKeyword };  // X10; X=..., R1=...; CYCLE81(...); TRANS
   Kind kind = kNumber;
@@ -32,18 +35,18 @@ struct SiemensWord {
   [[nodiscard]] double number() const;
 };
 
-/// The lines that hold something. @throws InputError  for a loop or branch that is not closed
+/// The lines that are not empty. @throws InputError  for a loop or branch that is not closed
 [[nodiscard]] std::vector<SiemensLine> siemens_lines(const std::string& path, const std::vector<std::string>& text);
 
-/// @throws InputError  for what is no word
+/// The words of a line. @throws InputError  for text that is not a word
 [[nodiscard]] std::vector<SiemensWord> siemens_words(const SiemensLine& line);
 
-/// The name that begins at text[at], upper case, or ""; `at` then stands behind it.
+/// The name that begins at text[at], upper case, or ""; `at` is then the index after it.
 [[nodiscard]] std::string siemens_name(const std::string& text, std::size_t& at);
 
 [[nodiscard]] bool is_r_parameter(const std::string& name);
 
-/// Arguments of a call and their columns.
+/// The arguments of a call and their columns.
 [[nodiscard]] std::vector<std::pair<std::string, std::size_t>> siemens_arguments(const SiemensWord& call);
 
 }  // namespace driftwright

@@ -11,11 +11,10 @@
 #include "nc/expression.hpp"
 #include "nc/siemens_lines.hpp"
 #include "nc/tapping.hpp"
+#include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
-
-constexpr double kInch_m = 0.0254, kMillimetre_m = 1e-3;
 
 const std::set<std::string>& keywords_without_effect() {
   static const std::set<std::string> kWords = {
@@ -82,9 +81,9 @@ const char* hint_of(int g) {
 }
 
 struct Repetition {
-  std::size_t first = 0, last = 0;  ///< lines, both run
+  std::size_t first = 0, last = 0;  ///< lines, both included
   int left = 0;
-  std::size_t back = 0;  ///< where it goes on
+  std::size_t back = 0;  ///< line at which it continues
 };
 
 class SiemensReader {
@@ -141,7 +140,8 @@ class SiemensReader {
     }
   }
 
-  // --- what runs when -----------------------------------------------------------------------------------------------------------
+  // --- order of execution
+  // -------------------------------------------------------------------------------------------------------
 
   std::size_t place_of(const SiemensLine& line, const std::string& label, std::size_t column, int direction) const {
     const auto is_it = [&](const SiemensLine& l) { return l.label == label || (!l.number.empty() && l.number == label); };
@@ -160,7 +160,7 @@ class SiemensReader {
                                      : "in the program"));
   }
 
-  /// "GOTOF LABEL" at text[from]. @returns whether there is one, and goes there
+  /// Executes "GOTOF LABEL" at text[from]. @returns true  if there is one
   bool jump(const SiemensLine& line, std::size_t from) {
     const std::string& text = line.text;
     std::size_t i = from;
@@ -188,7 +188,7 @@ class SiemensReader {
     }
   }
 
-  /// @returns whether the line is about what runs when, and has been done
+  /// Executes a line that controls the order of execution. @returns true  if it is one
   bool statement(const SiemensLine& line) {
     std::size_t i = line.begin;
     const std::string word = siemens_name(line.text, i);
@@ -337,7 +337,8 @@ class SiemensReader {
     }
   }
 
-  // --- one block ----------------------------------------------------------------------------------------------------------------
+  // --- one block
+  // ----------------------------------------------------------------------------------------------------------------
 
   struct Block {
     const SiemensLine* line = nullptr;
@@ -347,7 +348,7 @@ class SiemensReader {
     bool in_machine = false;
   };
 
-  /// @returns whether the program goes on
+  /// @returns true  if the program continues
   bool block(const SiemensLine& line) {
     ++at_;
     const std::vector<Word> words = siemens_words(line);
@@ -417,7 +418,7 @@ class SiemensReader {
     return static_cast<int>(x);
   }
 
-  /// @returns whether it ends the program
+  /// @returns true  if it ends the program
   bool keyword(const SiemensLine& line, const Word& word, Block& b, std::string& frame) {
     const std::string& name = word.name;
     if (name == "RET") return true;
@@ -446,7 +447,8 @@ class SiemensReader {
     return false;
   }
 
-  // --- what it means ------------------------------------------------------------------------------------------------------------
+  // --- interpretation
+  // -----------------------------------------------------------------------------------------------------------
 
   [[nodiscard]] static bool has(const Block& b, const char* name) { return b.words.contains(name); }
   double number(const Block& b, const char* name) { return value_of(*b.line, *b.words.at(name)); }
@@ -456,11 +458,18 @@ class SiemensReader {
       fail(*b.line, b.words.at(name)->column, fmt::format("{}: the value must be zero or above", b.words.at(name)->text));
     return x;
   }
+  int count(const Block& b, const char* name) {
+    const double x = number(b, name);
+    if (!(x >= 0.0 && x <= 1e5 && x == std::floor(x)))
+      fail(*b.line, b.words.at(name)->column,
+           fmt::format("{}: the value must be a whole number from 0 to 100000", b.words.at(name)->text));
+    return static_cast<int>(x);
+  }
   static bool contains(const std::vector<int>& codes, int code) {
     return std::find(codes.begin(), codes.end(), code) != codes.end();
   }
 
-  /// @returns whether it ends the program
+  /// @returns true  if it ends the program
   bool do_block(const Block& b) {
     NcStep& step = run_.step();
     bool dwell = false, motion_named = false;
@@ -469,7 +478,7 @@ class SiemensReader {
       if (g <= 3) {
         motion_named = true;
         run_.motion_word = 10 * g;
-      } else if (g == 63) {  // tapping with a floating chuck: a feed move, which the spindle follows
+      } else if (g == 63) {  // tapping with a floating chuck: a feed move that the spindle follows
         motion_named = true;
         run_.motion_word = 10;
       } else if (g == 331 || g == 332) {
@@ -548,7 +557,7 @@ class SiemensReader {
     }
   }
 
-  /// @returns whether one ends the program
+  /// @returns true  if one ends the program
   bool m_words(const Block& b) {
     bool ends = false;
     for (const int m : b.m) {
@@ -599,7 +608,7 @@ class SiemensReader {
     }
   }
 
-  /// TRANS X Y Z and the others, in a block of their own.
+  /// TRANS X Y Z and similar words, in a separate block.
   void shift(const Block& b, const std::string& frame) {
     shifted_ = true;
     run_.step().plain = false;
@@ -618,7 +627,7 @@ class SiemensReader {
     }
     if (run_.compensated) run_.fail(fmt::format("{} is not allowed with G41 or G42 on", frame));
     const bool was_transformed = run_.transformed;
-    if (!additive) run_.transformed = false;  // TRANS, ROT, MIRROR take all frames programmed before away
+    if (!additive) run_.transformed = false;  // TRANS, ROT, MIRROR remove all frames programmed before
     if (any && (kind == "ROT" || kind == "ROTS" || kind == "MIRROR")) {
       run_.transformed = true;
       run_.note(frame, "the path is counted as written, and no correction changes while it is in force");
@@ -669,7 +678,7 @@ class SiemensReader {
       if (machine) run_.fail("SUPA, G53 or G153 has no straight move; write X, Y or Z with it");
       return;
     }
-    if (!run_.motion_word) run_.motion_word = 10;  // the control's own after a start
+    if (!run_.motion_word) run_.motion_word = 10;  // the control's default after a start
     if (machine) {
       if (arc) run_.fail("SUPA, G53 and G153 are allowed only with G0 and G1");
       const std::array<double, 3>& zero_m = run_.machine_zero("SUPA");
@@ -704,7 +713,7 @@ class SiemensReader {
     const bool clockwise = run_.motion_word == 20;
     const auto [u, v] = plane_axes(run_.normal);
     const std::array<double, 3> target_m = target(b);
-    const int turns = has(b, "TURN") ? 1 + static_cast<int>(not_negative(b, "TURN")) : 1;
+    const int turns = has(b, "TURN") ? 1 + count(b, "TURN") : 1;
     std::array<double, 3> centre_m = run_.motion.position_m;
     if (has(b, "CR")) {
       centre_m = run_.centre_of(target_m, number(b, "CR") * run_.unit_m, clockwise);
@@ -727,11 +736,12 @@ class SiemensReader {
     if (!has(b, pitch_name)) run_.fail(fmt::format("G{} has no pitch {}", g, pitch_name));
     tap_to(run_, target(b), std::abs(number(b, pitch_name)) * run_.unit_m, run_.motion.programmed_rpm);
     run_.step().motion_word = true;
-    run_.step().no_place = true;  // the thread is bound to the spindle's angle
+    run_.step().no_place = true;  // the thread depends on the spindle's angle
     run_.motion_word = 10;
   }
 
-  // --- drilling cycles ----------------------------------------------------------------------------------------------------------
+  // --- drilling cycles
+  // ----------------------------------------------------------------------------------------------------------
 
   struct Cycle {
     int code = 81;
@@ -786,7 +796,7 @@ class SiemensReader {
 
   static std::optional<double> of(const Cycle& c, std::size_t i) { return i < c.p.size() ? c.p[i] : std::nullopt; }
 
-  /// Where the drill goes: down along the axis across the plane, from the place where it stands.
+  /// The drill moves down along the axis normal to the plane, from its present position.
   void drill(const Cycle& c) {
     const auto need = [&](std::size_t i, const char* name) {
       const auto x = of(c, i);
@@ -837,7 +847,8 @@ class SiemensReader {
     motion.rapid_to(at(retract_m));
   }
 
-  /// CYCLE83(RTP, RFP, SDIS, DP, DPR, FDEP, FDPR, DAM, DTB, DTS, FRF, VARI): depths that shrink by DAM, not below DAM.
+  /// CYCLE83(RTP, RFP, SDIS, DP, DPR, FDEP, FDPR, DAM, DTB, DTS, FRF, VARI): each depth is smaller by DAM than the previous,
+  /// but at least DAM.
   template <class At>
   void peck(const Cycle& c, double reference_m, double safe_m, double bottom_m, const At& at) {
     NcMotion& motion = run_.motion;
@@ -868,7 +879,7 @@ class SiemensReader {
         const double hole_m = reference_m - bottom_m;
         motion.rapid_to(at(depth_m + (hole_m <= 0.030 ? 0.6e-3 : hole_m / 50.0)));
       } else {
-        motion.feed_to(at(depth_m + 1e-3));  // to break the chip
+        motion.feed_to(at(depth_m + 1e-3));  // breaks the chip
       }
       const double least_m = degression < 0.0 ? 0.0 : degression * run_.unit_m;
       const double next_m = degression < 0.0 ? bite_m * -degression : bite_m - least_m;

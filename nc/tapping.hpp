@@ -1,5 +1,5 @@
 #pragma once
-// Tapping: a feed along the thread, one pitch a turn.
+// Tapping: a feed move along the thread, one pitch per turn.
 
 #include "nc/run.hpp"
 

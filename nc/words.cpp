@@ -9,13 +9,14 @@
 namespace driftwright {
 namespace {
 
-const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may name one
+const std::map<NcCode, const char*>& g_groups() {  // a block may contain one word of each group
   static const std::map<NcCode, const char*> groups = [] {
     std::map<NcCode, const char*> g;
     const auto add = [&](const char* group, std::initializer_list<NcCode> codes) {
       for (NcCode c : codes) g[c] = group;
     };
-    add("motion", {0, 10, 20, 30, 382, 383, 384, 385, 730, 800, 810, 820, 830, 840, 850});
+    add("motion", {0, 10, 20, 30, 382, 383, 384, 385, 730, 810, 820, 830, 840, 850});
+    add("end of cycles", {800});
     add("plane", {170, 180, 190});
     add("distance", {900, 910});
     add("arc centre", {901, 911});
@@ -29,6 +30,9 @@ const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may 
     add("spindle mode", {970});
     add("polar", {150});
     add("rotation", {690});
+    add("scaling", {500});
+    add("mirror", {501});
+    add("modal macro", {670});
     add("reference point", {280, 300});
     add("dwell", {40});
     add("settings", {100});
@@ -53,8 +57,8 @@ const char* hint(char letter, NcCode code) {
     if (code >= 50 && code <= 53) return "splines are not computed here; let the CAM system write lines and arcs";
     if (code == 330 || code == 331 || code == 760) return "threading is not computed here; write G1 with G95";
     if (code == 923) return "what G92.1 and G92.2 have stored is not followed here; write G92 or G52 once more";
-    if (code == 680 || code == 510 || code == 500 || code == 160)
-      return "rotation, scaling and polar coordinates are not computed here";
+    if (code == 680 || code == 510 || code == 511 || code == 160)
+      return "rotation, scaling, mirroring and polar coordinates are not computed here";
     if (code == 960) return "constant surface speed is not computed here; write the spindle speeds with G97";
     if (code == 650 || code == 660) return "macros are not run here; let the post-processor write them out";
     if (code == 740 || (code >= 860 && code <= 890))
@@ -62,6 +66,14 @@ const char* hint(char letter, NcCode code) {
   }
   if (letter == 'M' && code == 970) return "subprograms are called by M98 here";
   return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
+}
+
+/// Of one group; or an end of cycles beside a cycle. Beside another motion word G80 ends the cycle and the other is the motion, as in
+/// the first block of many posts: G0 G17 G21 G40 G49 G80 G90.
+bool contradict(NcCode a, NcCode b, const std::map<NcCode, const char*>& groups) {
+  const auto ends_cycle = [&](NcCode c) { return std::string(groups.at(c)) == "end of cycles"; };
+  return std::string(groups.at(a)) == groups.at(b) || (ends_cycle(a) && is_canned_cycle(b)) ||
+         (ends_cycle(b) && is_canned_cycle(a));
 }
 
 bool is_call(NcCode m) {
@@ -79,6 +91,10 @@ std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::stri
     if (g_groups().at(c) == group) return c;
   }
   return std::nullopt;
+}
+
+bool is_canned_cycle(NcCode g) {
+  return g >= 730 && g <= 890 && g != 800;
 }
 
 bool contains(const std::vector<NcCode>& codes, NcCode code) {
@@ -162,7 +178,7 @@ std::vector<NcCode> NcWords::take_codes(char letter, const std::set<std::string>
       continue;
     }
     for (NcCode other : codes) {
-      if (std::string(groups.at(other)) == group->second) {
+      if (contradict(code, other, groups)) {
         fail(i, fmt::format("it contradicts {} in the same block (group: {})", nc_word_name(letter, other), group->second));
       }
     }

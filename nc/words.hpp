@@ -1,5 +1,5 @@
 #pragma once
-// The G and M words that NC programs may hold here, and the words of one block as they are used up.
+// The G and M words that the program knows, and the words of one block as they are used up.
 
 #include <optional>
 #include <set>
@@ -13,38 +13,42 @@ namespace driftwright {
 /// The number of a G or M word times ten: G5.1 is 51.
 using NcCode = int;
 
-/// "G5.1" of ('G', 51).
+/// Name of a word: "G5.1" for ('G', 51).
 [[nodiscard]] std::string nc_word_name(char letter, NcCode code);
 
-/// The code of that group of G words (such as "motion") among `codes`.
+/// The code in `codes` that belongs to that group of G words (such as "motion").
 [[nodiscard]] std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group);
+
+/// G73, G81 to G89.
+[[nodiscard]] bool is_canned_cycle(NcCode g);
 
 [[nodiscard]] bool contains(const std::vector<NcCode>& codes, NcCode code);
 
-/// The words of a block, and which of them have been used. The block must outlive it.
+/// The words of a block, with a mark on each used one. The block must outlive it.
 class NcWords {
  public:
-  /// @throws InputError  for a letter other than G and M that stands there twice
+  /// @throws InputError  for a letter other than G and M that occurs twice
   explicit NcWords(const NcBlock& block);
 
-  /// Whether there is an unused word of that letter, or of any of those.
+  /// True if there is an unused word of that letter, or of one of those letters.
   [[nodiscard]] bool has(char letter) const { return find(letter) < used_.size(); }
   [[nodiscard]] bool has_any(const std::string& letters) const;
-  /// An unused word's value, now used.
+  /// Takes an unused word's value and marks it as used.
   std::optional<double> take(char letter);
-  /// Whether an unused word's value is known before the program runs; true where there is none.
+  /// True if an unused word's value is known before the program runs; true without such a word.
   [[nodiscard]] bool certain(char letter) const;
-  /// All unused words of those letters, now used.
+  /// Marks all unused words of those letters as used.
   void take_all(const std::string& letters);
-  /// The same of a word that is there. @throws InputError  for a value below zero; for one that is no count from 1 to 100000
+  /// As take(), for a word that exists. @throws InputError for a value below zero; for one that is not a count from 1 to
+  /// 100000
   double take_not_negative(char letter);
   int take_count(char letter);
   /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E. So are M codes that
   /// are not known here: unknown() has them.
-  /// @throws InputError  for a G code that is not known here, with a hint, and for two of one group
+  /// @throws InputError  for a G code that is not known here, with a hint, for two of one group, and for G80 beside a canned cycle
   std::vector<NcCode> take_codes(char letter, const std::set<std::string>& ignored);
   [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
-  /// @throws InputError  for the first word that nobody has used
+  /// @throws InputError  for the first unused word
   void reject_unused() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes as text that markup and JSON take.
+// Bytes as base64 text, for markup and JSON.
 
 #include <string>
 #include <string_view>

@@ -14,7 +14,7 @@ std::string seven_digits(double number) {
   return std::isfinite(number) ? fmt::format("{:.7g}", number) : "";
 }
 
-/// Numbers one by one with commas between; rows of them with semicolons.
+/// Numbers joined by commas; rows of numbers joined by semicolons.
 template <class Text>
 std::string listed(const std::vector<double>& numbers, const char* between, const Text& text) {
   std::vector<std::string> words;

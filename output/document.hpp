@@ -1,9 +1,9 @@
 #pragma once
-// One document of results: what a study found, said once, as plain data. The terminal's text, JSON, CSV and HTML are renderings of it
-// (document_text, document_json, document_csv, document_html), so that the same numbers stand in all four.
+// One document of results: the findings of a study as plain data. The terminal's text, JSON, CSV and HTML are renderings
+// of it (document_text, document_json, document_csv, document_html), so that all four show the same numbers.
 //
-// What carries a key is for programs too; what has none (explanations, pictures) is for people alone. A `detail` stands in files, not on the
-// terminal, unless details are asked for. Numbers stand in the unit that they are shown in.
+// Content with a key is also for programs; content without one (explanations, pictures) is for people only. A `detail`
+// appears in files, and on the terminal only on request. Numbers are kept in the unit that they are shown in.
 
 #include <concepts>
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace driftwright::output {
 
-/// How people see a number; programs get six significant digits of it in JSON, seven in CSV as in records.
+/// How a number is shown to people; programs get six significant digits of it in JSON, and seven in CSV, as in records.
 struct Digits {
   enum class Kind {
-    kDecimals,     ///< n behind the point
-    kSignificant,  ///< n in all, as short as they can be written
-    kScientific,   ///< n behind the point, with an exponent
-    kPercent,      ///< of a share: its hundredfold with n decimals
+    kDecimals,     ///< n after the point
+    kSignificant,  ///< n in all, without trailing zeros
+    kScientific,   ///< n after the point, with an exponent
+    kPercent,      ///< of a share: a hundred times its value, with n decimals
   };
   int n = 1;
   Kind kind = Kind::kDecimals;
-  bool has_sign = false;  ///< "+" before what is above 0
+  bool has_sign = false;  ///< "+" before positive numbers
 };
 [[nodiscard]] constexpr Digits decimals(int n) {
   return {.n = n};
@@ -50,14 +50,14 @@ struct Datum {
   using Held = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>,
                             std::vector<double>, std::vector<std::vector<double>>, std::vector<std::int64_t>>;
   Held held = {};
-  std::optional<Digits> digits = {};  ///< in place of its column's
+  std::optional<Digits> digits = {};  ///< instead of its column's
 
   Datum();
   Datum(const Datum& other);
   Datum(Datum&& other) noexcept;
   Datum& operator=(const Datum& other);
   Datum& operator=(Datum&& other) noexcept;
-  ~Datum();  // these in document.cpp: tables of rows in braces would else be most of what is compiled
+  ~Datum();  // defined in document.cpp: inline, tables of rows in braces would take most of the compile time
   Datum(std::same_as<bool> auto yes) : held(yes) {}
   template <std::integral T>
   requires(!std::same_as<T, bool>) Datum(T count) : held(static_cast<std::int64_t>(count)) {}
@@ -74,9 +74,9 @@ struct Datum {
   Datum(std::vector<std::int64_t> counts) : held(std::move(counts)) {}
 };
 
-/// A key of several words, "before.peak_um", is a JSON object within an object.
+/// A single number, word or list. A key of several words, "before.peak_um", becomes a JSON object within an object.
 struct Value {
-  std::string key = {};  ///< with its unit: "duration_min"
+  std::string key = {};  ///< includes the unit: "duration_min"
   std::string words = {};
   Datum datum = {};
   std::string unit = {};  ///< "": none
@@ -85,23 +85,23 @@ struct Value {
 };
 
 struct Column {
-  std::string key = {};    ///< as a value's
-  std::string title = {};  ///< without the unit; "": for programs alone
+  std::string key = {};    ///< as of a Value
+  std::string title = {};  ///< without the unit; "": the column is for programs only
   std::string unit = {};   ///< "": none
   Digits digits = {};
 };
-/// A JSON list of objects; a CSV.
+/// A table: a list of objects in JSON, a file in CSV.
 struct Table {
   std::string key = {};
-  std::string title = {};    ///< a few words; "": the section's title does
+  std::string title = {};    ///< a few words; "": the section's title is enough
   std::string caption = {};  ///< sentences that explain it, on the page
   std::vector<Column> columns = {};
-  std::vector<std::vector<Datum>> rows = {};  ///< each as long as columns
+  std::vector<std::vector<Datum>> rows = {};  ///< each row as long as `columns`
   bool detail = false;
-  std::string file = {};  ///< of its CSV; "": tables/<keys>.csv
+  std::string file = {};  ///< name of its CSV; "": tables/<keys>.csv
 };
 
-/// What the reader should take home.
+/// The main conclusion for the reader.
 struct Verdict {
   enum class Kind { kGood, kBad, kNeutral };
   std::string key = "verdict";
@@ -119,16 +119,16 @@ struct Text {
 /// Remarks of one sort, a sentence each without its full stop.
 struct Notes {
   std::string key = {};   ///< "warnings"
-  std::string sort = {};  ///< "warning", which stands before each; "": nothing does
+  std::string sort = {};  ///< "warning", written before each line; "": nothing
   std::vector<std::string> lines = {};
 };
-/// Text whose line breaks and blanks count.
+/// Text whose line breaks and blanks are kept.
 struct Preformatted {
   std::string title = {};
   std::string text = {};
 };
 
-/// A drawing that is made already, for the page.
+/// A finished drawing, for the page.
 struct Picture {
   std::string title = {};
   std::string svg = {};  ///< an <svg> element with a viewBox, as draw_machine() makes it
@@ -136,8 +136,8 @@ struct Picture {
 
 using Block = std::variant<Value, Table, Verdict, Text, Notes, Preformatted, Plot, Bars, Picture>;
 
-/// One of several alike, such as the results of one cyclogram: an element of the JSON list of its section's key, and the first cell of each
-/// row of its tables in CSV, under the item's key.
+/// Marks a section as one of several of the same kind, such as the results of one cyclogram. In JSON the section is an
+/// element of the list of its key; in CSV the item's name is the first cell of each row, under the item's key.
 struct Item {
   std::string key = {};   ///< "cyclogram"
   std::string name = {};  ///< "warm_up"
@@ -148,27 +148,27 @@ struct Section {
   std::string title = {};  ///< "": no heading
   std::optional<Item> item = {};
   std::vector<Block> blocks = {};
-  std::vector<Section> sections = {};  ///< behind the blocks
-  bool detail = false;                 ///< all of it
+  std::vector<Section> sections = {};  ///< after the blocks
+  bool detail = false;                 ///< the whole section
 };
 
 struct Document {
   Provenance made_by = {};
   std::string title = {};
-  std::string subtitle = {};  ///< what is worth knowing before all numbers; may be empty
+  std::string subtitle = {};  ///< what to know before all numbers; may be empty
   Section body = {};
 };
 
-/// Makes adding to a section short: `add(s, Value{...})`.
+/// A short way to add a block to a section: `add(s, Value{...})`.
 inline void add(Section& section, Block block) {
   section.blocks.push_back(std::move(block));
 }
 
-/// A datum as people see it: "12.3", "yes", "a, b"; "-" for nothing.
+/// A datum as shown to people: "12.3", "yes", "a, b"; "-" for nothing.
 [[nodiscard]] std::string shown(const Datum& datum, const Digits& digits);
-/// As programs read it in CSV: seven significant digits; "" for nothing.
+/// A datum as written to CSV: seven significant digits; "" for nothing.
 [[nodiscard]] std::string written(const Datum& datum);
-/// A unit as people see it: µm for um, °C for degC.
+/// A unit as shown to people: µm for um, °C for degC.
 [[nodiscard]] std::string shown_unit(const std::string& unit);
 /// A column's title with its unit: "peak [µm]".
 [[nodiscard]] std::string heading_of(const Column& column);

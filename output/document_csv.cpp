@@ -19,7 +19,7 @@ std::string line_of(const std::vector<std::string>& cells) {
   return fmt::format("{}\n", fmt::join(quoted, ","));
 }
 
-/// Where in the document something stands.
+/// The position of a table or value in the document.
 struct Place {
   std::string keys;         ///< "cyclograms_iso_230_3"
   std::vector<Item> items;  ///< outermost first

@@ -1,5 +1,5 @@
 #pragma once
-// A document for spreadsheets and data frames: each table a CSV, all single values one more.
+// Renders a document for spreadsheets and data frames: one CSV for each table, and one for all single values.
 
 #include <string>
 #include <vector>
@@ -13,12 +13,13 @@ struct CsvFile {
   std::string text = {};
 };
 
-/// Headers are the keys, as in JSON; numbers have seven significant digits. Tables of one key in sections of items are one file, with the items'
-/// names in front. `tables/values.csv` holds the values: key, value, unit, words. All begin with a comment that says who made them.
-/// @throws std::logic_error  where tables of one file have other columns
+/// Headers are the keys, as in JSON; numbers have seven significant digits. Tables with the same key in sections of items
+/// become one file, with the items' names in the first columns. `tables/values.csv` holds the values: key, value, unit,
+/// words. All files begin with a comment that says what made them.
+/// @throws std::logic_error  if tables of one file have different columns
 [[nodiscard]] std::vector<CsvFile> document_csv(const Document& document);
 
-/// One table as such a file, for those too long for a document.
+/// One table as such a file, for tables that are too long for a document.
 [[nodiscard]] std::string table_csv(const Table& table, const Provenance& made_by);
 
 }  // namespace driftwright::output

@@ -40,7 +40,7 @@ class Page {
   [[nodiscard]] std::vector<html::ReportBlock> blocks() && { return std::move(blocks_); }
 
  private:
-  /// Values that follow each other are one table.
+  /// Consecutive values form one table.
   void add(const Value& value) {
     if (value.words.empty()) return;
     const std::string unit =

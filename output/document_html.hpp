@@ -1,5 +1,5 @@
 #pragma once
-// A document as one HTML page: all of it, with its pictures.
+// Renders a document as one HTML page, with its pictures.
 
 #include <string>
 #include <vector>

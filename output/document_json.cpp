@@ -21,7 +21,7 @@ Json json_of(const Datum& datum) {
       datum.held);
 }
 
-/// "a.b" within the object.
+/// Sets "a.b" within the object.
 void put(Json& object, const std::string& key, Json value) {
   const std::size_t dot = key.find('.');
   if (dot != std::string::npos) return put(object[key.substr(0, dot)], key.substr(dot + 1), std::move(value));

@@ -8,7 +8,7 @@
 namespace driftwright::output {
 namespace {
 
-/// Characters of UTF-8 text.
+/// Number of characters of a UTF-8 text.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -19,7 +19,7 @@ std::string padded(const std::string& text, std::size_t width, bool to_the_right
   return to_the_right ? blanks + text : text + blanks;
 }
 
-/// The words of a heading in lines of at most that width, where words are not longer.
+/// The words of a heading in lines of at most that width, unless a word is longer.
 std::vector<std::string> lines_of(const std::string& heading, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream words(heading);
@@ -124,7 +124,7 @@ class Writer {
       cells.erase(cells.find_last_not_of(' ') + 1);
       line((table.title.empty() ? "" : "  ") + cells);
     };
-    for (std::size_t k = 0; k < n_heading; ++k) {  // headings stand on the same last line
+    for (std::size_t k = 0; k < n_heading; ++k) {  // headings end on the same line
       row([&](const Printed& p) {
         const std::size_t above = n_heading - p.heading.size();
         return k < above ? std::string() : p.heading[k - above];
@@ -148,8 +148,8 @@ class Writer {
     text_ += text.text;
     if (!text.text.ends_with('\n')) text_ += '\n';
   }
-  void add(const Value&) {}  // in flush()
-  void add(const Plot&) {}   // pictures are no text
+  void add(const Value&) {}  // printed by flush()
+  void add(const Plot&) {}   // pictures cannot be shown as text
   void add(const Bars&) {}
   void add(const Picture&) {}
 

@@ -16,7 +16,7 @@ namespace {
 
 using compensation::FailSafe;
 
-/// Names of arguments beside the readings, and of the component's pins, parameters and variables.
+/// Names that readings must not have: other arguments, and the component's pins, parameters and variables.
 const std::vector<std::string> kTaken = {"s",
                                          "dt_s",
                                          "enable",
@@ -44,7 +44,7 @@ const std::vector<std::string> kTaken = {"s",
                                          "heartbeat_is_late",
                                          "setting_is_wrong"};
 
-/// A name that C allows, and HAL: underscores one at a time.
+/// A name that C and HAL allow; HAL allows no two underscores in a row.
 std::string c_name(const std::string& name) {
   std::string result = name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ? "x_" : "";
   for (char ch : name) {
@@ -54,16 +54,16 @@ std::string c_name(const std::string& name) {
   return result;
 }
 
-/// HAL's names have 47 characters at most, of which "doubt-" and what the component is loaded as take their share.
+/// HAL's names have at most 47 characters; "doubt-" and the name of the loaded component take part of them.
 constexpr std::size_t kLongestPin = 28;
 
-/// What the readings are called, in the order of the guards.
+/// The names of the readings, in the order of the guards.
 std::vector<std::string> reading_names(const FailSafe& safe, std::size_t longest = std::string::npos) {
   std::vector<std::string> names, taken = kTaken;
   for (const FailSafe::Guard& g : safe.guards) {
     const std::string plain = c_name(fmt::format("{}_{}", g.input, g.unit)).substr(0, longest);
     std::string name = plain;
-    for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k)  // "a b" beside "a-b"
+    for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k)  // "a b" and "a-b" give the same name
       name = fmt::format("{}_{}", plain, k);
     names.push_back(name);
     taken.push_back(name);
@@ -73,11 +73,11 @@ std::vector<std::string> reading_names(const FailSafe& safe, std::size_t longest
 
 std::string c_number(double x) {
   if (std::isinf(x)) return x > 0.0 ? "HUGE_VAL" : "-HUGE_VAL";
-  const std::string text = fmt::format("{:.17g}", x);  // read back to the last bit
+  const std::string text = fmt::format("{:.17g}", x);  // reads back exactly
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-/// Text as it may stand in a C comment or in a string of a component.
+/// Text that is safe in a C comment or in a string of a component.
 std::string quoted(std::string text) {
   for (char& ch : text) {
     if (ch == '"' || ch == '\\') ch = '\'';
@@ -92,7 +92,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// `static const TYPE NAME[] = {rows};`, with one row of zeros where there is none: C knows no empty arrays.
+/// `static const TYPE NAME[] = {rows};`, with one row of zeros for an empty table: C has no empty arrays.
 std::string table(const std::string& type, const std::string& name, std::vector<std::string> rows) {
   if (rows.empty()) rows = {"{0}"};
   return fmt::format("static const {} {}[] = {{\n  {}\n}};\n", type, name, fmt::join(rows, ",\n  "));

@@ -1,5 +1,5 @@
 #pragma once
-// Fields on a mesh at a series of times, as ParaView opens them.
+// Writes fields on a mesh at a series of times, for ParaView.
 
 #include <Eigen/Core>
 #include <memory>
@@ -16,13 +16,13 @@ namespace driftwright::output {
 
 using solver::StressField;
 
-/// Writes one format; FieldSeries has checked what it gets. One source per format: vtk_fields, xdmf_fields.
+/// Writer of one format; FieldSeries checks the arguments before. One source file per format: vtk_fields, xdmf_fields.
 class FieldWriter {
  public:
   virtual ~FieldWriter() = default;
   /// The file that ParaView opens, in the folder of results.
   [[nodiscard]] virtual std::string file_to_open() const = 0;
-  /// @param i  the how manieth time, from 0
+  /// @param i  number of the time, from 0
   virtual void write(std::size_t i, double time_s, const Eigen::VectorXd& temperature_degC,
                      const Eigen::Matrix3Xd& displacement_um, const StressField* stress) = 0;
   virtual void finish(const std::vector<double>& times_s) = 0;
@@ -32,21 +32,22 @@ class FieldWriter {
 ///
 /// Point arrays `temperature_degC` and `displacement_um` (3 components, X Y Z of the machine), with stresses also
 /// `stress_MPa` (6 components: XX, YY, ZZ, XY, YZ, XZ) and `von_mises_MPa`; cell array `region` (index into the region
-/// names); names of regions and of what made the file. Coordinates are in m and 64 bits wide, the point arrays 32 bits:
+/// names); the region names and what made the file. Coordinates are in m with 64 bits; the point arrays have 32 bits,
 /// seven digits. The same input gives the same bytes.
 class FieldSeries {
  public:
-  /// @param folder  where files go; must outlive the series
-  /// @param mesh    its cells are written, its facets are not; need not outlive the call
+  /// @param folder  folder for the files; must outlive the series
+  /// @param mesh    its cells are written, its facets are not; it need not outlive the call
   /// @throws InputError  when a file cannot be written
   FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh, FieldsFormat format = FieldsFormat::kVtu);
 
   /// Writes the fields at one time.
-  /// @param time_s            later than that of the call before [s]
+  /// @param time_s            later than in the previous call [s]
   /// @param temperature_degC  n_nodes [degC]
   /// @param displacement_um   3 x n_nodes, one column per node [um]
-  /// @param stress            of n_nodes, or nullptr; the same choice for all times
-  /// @throws std::logic_error  when a shape does not fit the mesh, time does not increase, or stress comes or goes
+  /// @param stress            of n_nodes, or nullptr; either always or never
+  /// @throws std::logic_error  when a shape does not fit the mesh, time does not increase, or stress is given only
+  /// sometimes
   /// @throws InputError        when a file cannot be written
   void write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
              const StressField* stress = nullptr);

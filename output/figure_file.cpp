@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kHead = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 constexpr double kTitle = 34, kLine = 24, kLetter = 7.4, kMargin = 16;
 
-/// Width and height by its viewBox.
+/// Width and height from its viewBox.
 std::array<double, 2> size_of(const std::string& svg) {
   const std::size_t at = svg.find("viewBox=\"");
   std::array<double, 2> size = {1000, 600};
@@ -24,7 +24,7 @@ std::array<double, 2> size_of(const std::string& svg) {
   return size;
 }
 
-/// `text` behind the name of the first tag, and no size of its own.
+/// Inserts `text` after the name of the first tag, and removes the tag's own size.
 std::string with_attribute(std::string svg, const std::string& text) {
   for (const char* key : {" width=\"", " height=\""}) {
     const std::size_t at_key = svg.find(key);

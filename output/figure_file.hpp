@@ -1,5 +1,5 @@
 #pragma once
-// Figures of a page as SVG files of their own: with title and legend, which the page has as text beside them.
+// Figures of a page as separate SVG files, with title and legend, which the page has as text beside them.
 
 #include <set>
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace driftwright::output {
 
-/// An <svg> element as a file: by itself it needs a namespace, and a size.
+/// An <svg> element as a file of its own, with the namespace and size that a file needs.
 [[nodiscard]] std::string svg_file(const std::string& svg);
 /// A plot drawn by draw_svgs() with its title above and its legend below it.
 [[nodiscard]] std::string plot_file(const Plot& plot, const std::string& svg);
 
-/// Gives each figure a name of its own.
+/// Collects figures and gives each a unique name.
 class FigureFiles {
  public:
   void add(const std::string& title, std::string svg);

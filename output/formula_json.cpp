@@ -85,7 +85,7 @@ FailSafe fail_safe_of(const Json& s) {
                            .others_coefficient = value<std::vector<double>>(g, "others_coefficient"),
                            .most_apart = finite(g, "most_apart")});
     const FailSafe::Guard& guard = safe.guards.back();
-    if (!(guard.low <= guard.high))  // they are equal where a drive was 0 in all training runs
+    if (!(guard.low <= guard.high))  // equal if a drive was 0 in all training runs
       throw InputError(fmt::format("guard '{}' has `low` {} above `high` {}", guard.input, guard.low, guard.high));
     if (!guard.others_coefficient.empty() && !(guard.most_apart > 0.0))
       throw InputError(fmt::format("guard '{}' has `most_apart` {}; it must be above 0", guard.input, guard.most_apart));

@@ -30,7 +30,7 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its errors unless told not to; here they become exceptions.
+/// HDF5 prints its errors by default; here they become exceptions.
 class QuietErrors {
  public:
   QuietErrors() {
@@ -46,7 +46,7 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// The innermost reason of the last HDF5 error; the system's message alone where it holds one.
+/// The innermost reason of the last HDF5 error; only the system's message if there is one.
 std::string last_reason() {
   std::string reason = "HDF5 gives no reason";
   H5Ewalk2(
@@ -78,9 +78,9 @@ void check(herr_t status, const std::filesystem::path& file) {
 
 constexpr hsize_t kMaxRowsInChunk = 65536;
 constexpr unsigned kDeflateLevel = 4;
-constexpr unsigned kChunksInNode = 2;  // half the default 64 chunks in an index node would be 2 kB of zeros per array
+constexpr unsigned kChunksInNode = 2;  // chunks in an index node: half the default of 64 would waste 2 kB of zeros per array
 
-/// Writes rows of `type` as they lie in memory.
+/// Writes rows of `type` in their memory layout.
 void write_rows(hid_t file, const std::filesystem::path& path, const std::string& dataset, hid_t type, const void* values,
                 std::size_t n_values, std::size_t n_columns) {
   if (n_columns == 0 || n_values == 0 || n_values % n_columns != 0) {
@@ -94,7 +94,7 @@ void write_rows(hid_t file, const std::filesystem::path& path, const std::string
   const Id how(checked(H5Pcreate(H5P_DATASET_CREATE), path), H5Pclose);
   check(H5Pset_obj_track_times(how, false), path);
   check(H5Pset_chunk(how, n_dimensions, chunk.data()), path);
-  check(H5Pset_shuffle(how), path);  // like bytes of numbers side by side, which deflate packs better
+  check(H5Pset_shuffle(how), path);  // groups equal bytes of the numbers, which deflate packs better
   check(H5Pset_deflate(how, kDeflateLevel), path);
   const Id link(checked(H5Pcreate(H5P_LINK_CREATE), path), H5Pclose);
   check(H5Pset_create_intermediate_group(link, 1), path);
@@ -110,19 +110,19 @@ struct Hdf5File::Handle {
 };
 
 Hdf5File::Hdf5File(std::filesystem::path file) : path_(std::move(file)) {
-  // After a full disk a file cannot be closed, and HDF5 would print about it when the program ends. Here every identifier
-  // is closed anyway. (Fails when it is set already.)
+  // After a full disk a file cannot be closed, and HDF5 would print a message about it at the end of the program. This
+  // class closes every identifier itself. (The call fails if it was made before.)
   H5dont_atexit();
   const QuietErrors quiet;
   const Id how(checked(H5Pcreate(H5P_FILE_CREATE), path_), H5Pclose);
-  check(H5Pset_obj_track_times(how, false), path_);  // of the top group
+  check(H5Pset_obj_track_times(how, false), path_);  // of the root group
   check(H5Pset_istore_k(how, kChunksInNode), path_);
   file_ = std::make_unique<Handle>(
       Handle{Id(checked(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, how, H5P_DEFAULT), path_), H5Fclose)});
 }
 
 Hdf5File::~Hdf5File() {
-  const QuietErrors quiet;  // nothing more can be done here
+  const QuietErrors quiet;  // a destructor cannot report errors
   file_.reset();
 }
 

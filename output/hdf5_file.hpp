@@ -1,5 +1,5 @@
 #pragma once
-// An HDF5 file that arrays are written to one after the other.
+// Writes arrays into an HDF5 file, one after the other.
 
 #include <filesystem>
 #include <memory>
@@ -12,14 +12,14 @@ namespace driftwright::output {
 /// same bytes. One thread at a time.
 class Hdf5File {
  public:
-  /// Makes the file, replacing one. @throws InputError  naming the file and the reason
+  /// Creates the file or replaces it. @throws InputError  naming the file and the reason
   explicit Hdf5File(std::filesystem::path file);
   ~Hdf5File();
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
 
   /// Writes an array of `values.size() / n_columns` rows; with one column it has one dimension, otherwise two.
-  /// @param dataset    its name from the file's top, "mesh/region"; groups on the way are made
+  /// @param dataset    path of the array in the file, "mesh/region"; missing groups are created
   /// @param values     row after row, at least one row
   /// @throws std::logic_error  when the values do not fill whole rows
   /// @throws InputError        naming the file and the reason, such as a full disk

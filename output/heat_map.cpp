@@ -30,7 +30,7 @@ Rgb color_of(double value, double limit) {
   return tone < 0.0 ? mixed(kPale, kGood, -tone) : mixed(kPale, kBad, tone);
 }
 
-/// Dark on pale colours, white on dark ones.
+/// Dark text on pale colours, white text on dark ones.
 const char* ink_on(const Rgb& c) {
   return 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2] > 140.0 ? "#1d2329" : "#ffffff";
 }
@@ -44,13 +44,14 @@ std::string number_text(double value) {
   return value < 9.95 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
 }
 
-/// As many letters as there is room for.
+/// As many letters as fit.
 std::string cut(const std::string& text, double room, double letter = kLetter) {
   const auto n = static_cast<std::size_t>(std::max(1.0, room / letter));
   std::size_t letters = 0, bytes = 0;
   for (; bytes < text.size() && letters < n; ++letters) {
     do ++bytes;
-    while (bytes < text.size() && (static_cast<unsigned char>(text[bytes]) & 0xC0U) == 0x80U);  // UTF-8's further bytes
+    while (bytes < text.size() &&
+           (static_cast<unsigned char>(text[bytes]) & 0xC0U) == 0x80U);  // continuation bytes of UTF-8
   }
   return bytes == text.size() ? text : text.substr(0, bytes > 1 ? bytes - 1 : bytes) + "…";
 }
@@ -77,7 +78,7 @@ std::string draw_heat_map(const HeatMap& map) {
       kWidth, bottom + 2.0 * kRow);
   for (std::size_t c = 0; c < map.columns.size(); ++c) {
     const double x = left + column * static_cast<double>(c);
-    std::size_t end = c;  // of the group that begins here
+    std::size_t end = c;  // end of the group that begins here
     const bool begins = c == 0 || map.columns[c - 1].group != map.columns[c].group;
     while (begins && end < map.columns.size() && map.columns[end].group == map.columns[c].group) ++end;
     if (begins) {
@@ -105,7 +106,7 @@ std::string draw_heat_map(const HeatMap& map) {
           number_text(value));
     }
   }
-  // The scale: a quarter of the limit to four times it.
+  // The colour scale: from a quarter of the limit to four times it.
   const double y = bottom + 14.0;
   double x = left;
   for (const double share : {0.25, 0.5, 1.0, 2.0, 4.0}) {

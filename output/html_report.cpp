@@ -115,7 +115,7 @@ std::string html(const Verdict& verdict) {
                      verdict.text.empty() ? "" : fmt::format("<p>{}</p>", escaped(verdict.text)));
 }
 
-constexpr std::size_t kWide = 8;  // columns that a page still holds at its own size
+constexpr std::size_t kWide = 8;  // most columns that fit a page at normal size
 
 std::string html(const Table& table, std::size_t& n_folded) {
   const bool has_headers = !table.headers.empty();
@@ -125,7 +125,7 @@ std::string html(const Table& table, std::size_t& n_folded) {
       throw std::logic_error(fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(), n_columns));
     }
   }
-  std::vector<std::string> attribute;  // of the cells of each column
+  std::vector<std::string> attribute;  // for the cells of each column
   for (std::size_t c = 0; c < n_columns; ++c) {
     attribute.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
   }
@@ -204,7 +204,7 @@ Rendered render_html(const Report& report) {
   std::string body;
   std::size_t n_drawn = 0, n_folded = 0;
   FigureFiles figures;
-  bool in_plots = false;  // plots that follow each other share a grid, so that halves pair up
+  bool in_plots = false;  // consecutive plots share a grid, so that half-width plots pair up
   for (const ReportBlock& block : report.blocks) {
     const auto* plot = std::get_if<Plot>(&block);
     if ((plot != nullptr) != in_plots) body += in_plots ? "</div>\n" : "<div class=\"plots\">\n";

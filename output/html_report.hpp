@@ -1,5 +1,5 @@
 #pragma once
-// A report as one HTML file that needs nothing else: text, tables and plots, for the screen and for paper.
+// A report as one HTML file without other files: text, tables and plots, for screen and paper.
 
 #include <string>
 #include <variant>
@@ -20,7 +20,7 @@ struct Preformatted {
   std::string text = {};
 };
 
-/// What the reader should take home, in a coloured box.
+/// The main conclusion for the reader, in a coloured box.
 struct Verdict {
   enum class Kind { kGood, kBad, kNeutral };
   Kind kind = Kind::kNeutral;
@@ -29,15 +29,15 @@ struct Verdict {
 };
 
 /// Cells are text, formatted by the caller (the same number of decimals down a column, units in the header).
-/// Columns whose filled cells all begin like a number are aligned right.
+/// Columns in which all filled cells begin like a number are aligned right.
 struct Table {
   std::string caption = {};
-  std::vector<std::string> headers = {};            ///< none: the first cells say what stands in the others
+  std::vector<std::string> headers = {};            ///< none: the first cells are the headings of the others
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
-  bool folded = false;  ///< on the screen its caption alone stands there until it is asked for; on paper it is whole
+  bool folded = false;  ///< on the screen only the caption is shown until the reader opens it; on paper the whole table
 };
 
-/// An <svg> element as it is.
+/// An <svg> element, used as it is.
 struct Picture {
   std::string title = {};
   std::string svg = {};
@@ -45,9 +45,9 @@ struct Picture {
 
 using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars, Picture>;
 
-/// A figure of a report as a file of its own.
+/// A figure of a report as a separate file.
 struct Figure {
-  std::string name;  ///< of its title, unlike all others of the report; without extension
+  std::string name;  ///< made from its title, unique in the report; without extension
   std::string svg;   ///< a whole SVG file, with title and legend
 };
 
@@ -58,15 +58,14 @@ struct Rendered {
 
 struct Report {
   std::string title = {};
-  std::string subtitle = {};  ///< say version and scenario here
+  std::string subtitle = {};  ///< should name version and scenario
   std::vector<ReportBlock> blocks = {};
 };
 
-/// The page and its figures. All text is escaped; nothing is loaded from elsewhere. The same report gives
-/// the same bytes.
+/// The page and its figures. All text is escaped, and nothing is loaded from elsewhere. The same report gives the same
+/// bytes.
 /// @throws std::runtime_error  when plots cannot be drawn, see draw_svgs()
-/// @throws std::logic_error    when a table's row has another length than its headers, or a plot is
-/// ill-formed
+/// @throws std::logic_error    when a table's row has another length than its headers, or a plot is ill-formed
 [[nodiscard]] Rendered render_html(const Report& report);
 
 }  // namespace driftwright::output::html

@@ -20,7 +20,8 @@ using schema::Map;
 using schema::Value;
 using ValueKind = Value::Kind;
 
-/// Spellings of units that people write. A schema cannot do dimensional analysis; it refuses, of these, the ones that UDUNITS cannot convert.
+/// Common spellings of units. A schema cannot do dimensional analysis; it refuses those of this list that UDUNITS cannot
+/// convert.
 constexpr const char* kSpellings[] = {
     "1",     "%",        "percent",   "m",       "dm",      "cm",        "mm",        "um",     "µm",     "nm",     "km",
     "inch",  "in",       "s",         "ms",      "us",      "µs",        "ns",        "min",    "h",      "hour",   "day",
@@ -48,7 +49,7 @@ bool is_of_kind(const std::string& spelling, const std::string& unit) {
   }
 }
 
-/// As a regular expression, all its characters being themselves.
+/// As a regular expression that matches exactly this text.
 std::string literal(const std::string& text) {
   std::string escaped;
   for (char c : text) {
@@ -58,7 +59,7 @@ std::string literal(const std::string& text) {
   return escaped;
 }
 
-/// "<number> <unit>": any unit save the spellings of another kind. One kind of unit is one definition.
+/// "<number> <unit>": any unit except the spellings of another kind. One definition per kind of unit.
 Json quantity_definition(const std::string& unit) {
   if (unit.empty()) return {{"type", {"string", "number"}}, {"pattern", fmt::format("^{}", kNumber)}};
   std::vector<std::string> wrong;
@@ -72,7 +73,7 @@ Json quantity_definition(const std::string& unit) {
 
 class Writer {
  public:
-  /// Of several maps the one whose condition holds.
+  /// One of several maps: the one whose condition holds.
   Json of(const std::vector<Map>& maps) {
     const bool by_one_word = std::all_of(
         maps.begin(), maps.end(), [&](const Map& m) { return !m.when_word.empty() && m.when_key == maps.front().when_key; });
@@ -163,7 +164,7 @@ class Writer {
     if (ways.size() > 1) {
       json["anyOf"] = ways;
     } else if (ways[0].contains("$ref")) {
-      json["allOf"] = ways;  // beside a reference nothing counts
+      json["allOf"] = ways;  // keywords beside a reference are ignored
     } else {
       for (const auto& [name, value] : ways[0].items()) {
         if (!json.contains(name)) json[name] = value;
@@ -207,13 +208,13 @@ class Writer {
     if (!definitions_.contains(name)) definitions_[name] = quantity_definition(value.unit);
     Json json = {{"$ref", "#/definitions/" + name}};
     if (value.unit != "1" || (value.low == -kNoLimit && value.high == kNoLimit)) return json;
-    Json bounds = Json::object();  // of a plain number; what stands in quotes or has a unit is for the reader to judge
+    Json bounds = Json::object();  // of a plain number; the reader checks quoted numbers and numbers with units
     if (value.low > -kNoLimit) bounds["minimum"] = value.low;
     if (value.high < kNoLimit) bounds["maximum"] = value.high;
     return {{"allOf", {json, bounds}}};
   }
 
-  /// YAML makes of some words what is none.
+  /// YAML reads some words as other values, such as booleans.
   static Json words(const std::vector<std::string>& options) {
     Json list = Json::array();
     for (const std::string& option : options) {

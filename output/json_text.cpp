@@ -13,7 +13,7 @@ nlohmann::ordered_json rounded(nlohmann::ordered_json value) {
   if (value.is_number_float()) {
     const double number = value.get<double>();
     if (!std::isfinite(number)) return nullptr;
-    // dump() then writes the shortest text that reads back as this; strtod, as stod refuses the smallest of numbers
+    // dump() then writes the shortest text that reads back as this number. strtod, since stod refuses denormal numbers.
     return std::strtod(fmt::format("{:.5e}", number).c_str(), nullptr);
   }
   if (value.is_structured()) {

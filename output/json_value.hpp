@@ -1,5 +1,5 @@
 #pragma once
-// Values of a JSON file with the key named where one is missing or of another kind.
+// Reads values of a JSON file; errors name the key that is missing or of the wrong kind.
 
 #include <fmt/format.h>
 
@@ -13,12 +13,12 @@ namespace driftwright::output {
 
 using Json = nlohmann::ordered_json;
 
-/// null where it is no finite number.
+/// A JSON number; null if `x` is not finite.
 [[nodiscard]] inline Json number(double x) {
   return std::isfinite(x) ? Json(x) : Json(nullptr);
 }
 
-/// @throws InputError  naming the key, here and below
+/// The value of a key. @throws InputError  naming the key, here and below
 template <class T>
 [[nodiscard]] T value(const Json& j, const char* key) {
   if (!j.is_object() || !j.contains(key)) throw InputError(fmt::format("key `{}` is missing", key));
@@ -39,7 +39,7 @@ template <class T>
   if (!(x > 0.0)) throw InputError(fmt::format("key `{}` is {}; it must be above 0", key, x));
   return x;
 }
-/// `missing` where it is null.
+/// The value of a key; `missing` if it is null.
 [[nodiscard]] inline double number_or(const Json& j, const char* key, double missing) {
   return j.is_object() && j.contains(key) && j.at(key).is_null() ? missing : finite(j, key);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// A machine as one picture: its surface in colour from two opposite sides, how it bends, and where sensors and indicators sit. An <svg> element with the
-// views as PNG inside it.
+// One picture of a machine: its coloured surface from two opposite sides, its deformation, and the positions of sensors
+// and indicators. It is an <svg> element with the views as PNG inside.
 
 #include <optional>
 #include <string>
@@ -14,20 +14,20 @@ namespace driftwright::output {
 struct PictureMark {
   std::string name;
   Eigen::Vector3d at_m;
-  bool is_indicator = false;  ///< a ring in place of a dot
+  bool is_indicator = false;  ///< drawn as a ring instead of a dot
 };
 
-/// A quantity on the nodes, as colour.
+/// A quantity on the nodes, shown as colour.
 struct PictureField {
   std::string label;      ///< with its unit: "temperature [°C]"
-  Eigen::VectorXd value;  ///< n_nodes; NaN, grey: has none. One node at least has a value
+  Eigen::VectorXd value;  ///< n_nodes; NaN is drawn grey. At least one node must have a value
 };
 
 struct MachinePicture {
   const mesh::Mesh* mesh = nullptr;
-  /// None: surfaces in colours of their own, with their names.
+  /// None: each surface has its own colour, with its name.
   std::optional<PictureField> field = {};
-  bool by_region = false;  ///< without a field: regions in colours of their own in place of surfaces
+  bool by_region = false;                ///< without a field: one colour per region instead of per surface
   Eigen::Matrix3Xd displacement_m = {};  ///< 3 x n_nodes, shown magnified; empty: none
   std::vector<PictureMark> marks = {};
 };

@@ -12,13 +12,13 @@ namespace {
 using compensation::Observer;
 using compensation::ObserverSettings;
 
-/// Columns one after another.
+/// Writes the columns one after another.
 Json matrix_json(const Eigen::MatrixXd& m) {
   return {{"rows", m.rows()}, {"columns", m.cols()}, {"values", std::vector<double>(m.data(), m.data() + m.size())}};
 }
 
 Eigen::MatrixXd matrix_of(const Json& j) {
-  constexpr Eigen::Index kMost = 100'000;  // of rows or columns; a reduced model has a hundred
+  constexpr Eigen::Index kMost = 100'000;  // limit of rows or columns; a reduced model has about a hundred
   const auto rows = value<Eigen::Index>(j, "rows"), columns = value<Eigen::Index>(j, "columns");
   const auto values = value<std::vector<double>>(j, "values");
   if (rows < 0 || columns < 0 || rows > kMost || columns > kMost ||
@@ -64,7 +64,7 @@ std::vector<effects::Effect> effects_of(const Json& list) {
   }
   std::vector<effects::Effect> effects;
   if (list.empty()) return effects;
-  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  std::vector<scenarios::FormerWord> former;  // words of an earlier release
   const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
   for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) effects.push_back(effects::read_effect(entry));
   return effects;
@@ -74,7 +74,7 @@ std::vector<effects::Effect> effects_of(const Json& list) {
 
 Json observer_json(const Observer& observer, const std::vector<effects::Effect>& effects) {
   Observer::State s = observer.state();
-  s.system.parts.clear();  // what its bodies are made of, which nobody asks an observer
+  s.system.parts.clear();  // properties of the bodies, which an observer does not need
   Json arrays = Json::object(), laws = Json::array();
   Json system = scenarios::write_system(s.system, s.start, [&](const std::string& name, const Eigen::MatrixXd& values) {
     arrays[name] = matrix_json(values);
@@ -108,7 +108,7 @@ Observer observer_of(const Json& j) {
     return Observer::of_state(std::move(s));
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("`system`: {}", e.what()));
-  } catch (const std::logic_error& e) {  // laws of another machine
+  } catch (const std::logic_error& e) {  // the laws belong to another machine
     throw InputError(fmt::format("`effects` and `system` do not fit each other: {}", e.what()));
   }
 }

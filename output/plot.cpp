@@ -20,15 +20,15 @@
 namespace driftwright::output {
 namespace {
 
-// Okabe & Ito without yellow, which is faint on white.
+// Okabe & Ito's colours without yellow, which is faint on white.
 constexpr std::array kPalette = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
 constexpr std::array kBandColors = {"#DCEFE6", "#FBEBCB"};
 
-// Size of a plot [px]. Two halves and the gap between them are as wide as a whole one.
+// Size of a plot [px]. Two half-width plots with the gap between them are as wide as a full one.
 constexpr int kWidth = 960, kHalfWidth = 472, kHeight = 340, kHalfHeight = 300;
-constexpr double kCharacterWidth = 6.6;  // mean, of the font below [px]
+constexpr double kCharacterWidth = 6.6;  // mean width of a character of the font below [px]
 
-/// A file without a name or a place: gone with this object, whatever becomes of the process.
+/// A file without a name; the system removes it with this object or with the process.
 class NamelessFile {
  public:
   explicit NamelessFile(const char* what) : handle_(memfd_create(what, MFD_CLOEXEC)) {
@@ -61,7 +61,7 @@ class NamelessFile {
   int handle_;
 };
 
-/// A gnuplot string literal: nothing but the quote itself is special in it.
+/// A gnuplot string literal, in which only the quote itself is special.
 std::string quoted(const std::string& text) {
   std::string literal = "'";
   for (const char c : text) {
@@ -128,8 +128,7 @@ std::string style_of(const Series& s, Series::Style style, const std::string& co
   throw std::logic_error("a series of unknown style");
 }
 
-/// Rows of labels above the frame, so that neighbours do not run into each other: a row for each mark, from
-/// zero.
+/// The row of each mark's label above the frame, from zero, chosen so that neighbouring labels do not overlap.
 std::vector<int> label_rows(const std::vector<SectionMark>& marks, const Range& x, double frame_width) {
   std::vector<double> row_end;  // [px]
   std::vector<int> rows;
@@ -158,7 +157,7 @@ void check(const Plot& plot) {
   }
 }
 
-/// Commands that draw one plot to standard output.
+/// The gnuplot commands that draw one plot to standard output.
 std::string script(const Plot& plot) {
   Range x, y;
   for (const Series& s : plot.series) {
@@ -193,7 +192,7 @@ std::string script(const Plot& plot) {
   out += "set grid lt 1 lw 0.6 lc rgb '#dddddd'\nset minussign\n";
   out += fmt::format("set xrange [{:.12g}:{:.12g}]\nset yrange [{:.12g}:{:.12g}]\n", x.low, x.high, y.low, y.high);
   out += fmt::format("set xlabel {} offset 0, 0.4 textcolor rgb '#333333'\n", quoted(plot.x_label));
-  // A label rather than gnuplot's ylabel, which long tick labels push out of the picture.
+  // A label instead of gnuplot's ylabel, which long tick labels push out of the picture.
   out += fmt::format("set label {} at screen {:.4f}, graph 0.5 center rotate by 90 textcolor rgb '#333333'\n",
                      quoted(plot.y_label), 18.0 / width);
   for (std::size_t b = 0; b < plot.bands.size(); ++b) {
@@ -242,8 +241,8 @@ std::string script(const Plot& plot) {
   return out + curves + "\nunset output\n";
 }
 
-/// What gnuplot draws by `commands`. Nothing of it touches a disk: neither a full one nor a missing TMPDIR matters.
-/// @throws InputError  when it is missing or killed; std::runtime_error  when it does not take the commands
+/// The output of gnuplot for `commands`. It uses no disk, so a full disk or a missing TMPDIR does not matter.
+/// @throws InputError  when gnuplot is missing or killed; std::runtime_error  when it rejects the commands
 std::string drawn_by_gnuplot(const std::string& commands) {
   NamelessFile input("plots.gp"), output("plots.svg"), messages("messages");
   input.write_from_start("set encoding utf8\n" + commands);
@@ -274,7 +273,7 @@ std::string drawn_by_gnuplot(const std::string& commands) {
   return output.text();
 }
 
-/// The documents of a stream of them, each to its end. @throws InputError  where one is missing or cut short
+/// Splits a stream of documents. @throws InputError  if one is missing or incomplete
 std::vector<std::string> whole_documents(const std::string& stream, std::size_t n_wanted) {
   constexpr std::string_view kBegin = "<svg", kEnd = "</svg>";
   std::vector<std::string> found;
@@ -300,8 +299,8 @@ std::string with_inserted(const std::string& text, std::string_view after, const
   return out.append(text, from);
 }
 
-/// The <svg> element of gnuplot, fit to stand in a page with others: no prologue, every id and every
-/// reference to one with `prefix`, no line that names gnuplot's version.
+/// gnuplot's <svg> element, prepared for a page with others: without prologue, with `prefix` on every id and every
+/// reference to one, and without the line that names gnuplot's version.
 std::string embeddable(std::string svg, const std::string& prefix) {
   const std::size_t title = svg.find("<title>"), title_end = svg.find("</desc>");
   if (title < title_end && title_end != std::string::npos) svg.erase(title, title_end + 7 - title);

@@ -1,5 +1,5 @@
 #pragma once
-// Line plots, drawn by gnuplot as SVG elements that can stand together in one page.
+// Line plots, drawn by gnuplot as SVG elements that fit together in one page.
 
 #include <span>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace driftwright::output {
 
-/// One curve. Values are drawn as they are: no sample is left out, NaN leaves a gap.
+/// One curve. Values are drawn as they are: no sample is left out, and NaN leaves a gap.
 struct Series {
   enum class Style {
     kLine,
@@ -19,8 +19,8 @@ struct Series {
   std::vector<double> x = {};
   std::vector<double> y = {};  ///< same length
   Style style = Style::kLine;
-  double width = 2.0;  ///< of the line, or the diameter of a point is 2 x this [px]
-  int color = -1;      ///< index into the palette, for the same thing in several plots; -1 = by order in the plot
+  double width = 2.0;  ///< width of the line; a point's diameter is twice this [px]
+  int color = -1;      ///< index into the palette, to mark the same quantity in several plots; -1: by order in the plot
 };
 
 /// A horizontal strip behind the curves, such as a tolerance; a dashed line when low == high.
@@ -47,28 +47,27 @@ struct Plot {
   bool half_width = false;  ///< two of these share a row
 };
 
-/// Values of the same kind side by side, one line each; bars begin at zero, those of negative values are not drawn.
+/// Values of the same kind as horizontal bars, one per line. Bars begin at zero; negative values have no bar.
 struct Bars {
   std::string caption = {};
   struct Bar {
     std::string label = {};
     double value = 0.0;
-    std::string text = {};  ///< behind the bar: the value with its unit
+    std::string text = {};  ///< text after the bar: the value with its unit
   };
   std::vector<Bar> bars = {};
 };
 
-/// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). Their
-/// ids differ, also between plots. gnuplot runs once for all of them; the same plots give the same bytes.
-/// @throws InputError          when gnuplot is missing, is killed, or draws a plot not to its end
-/// @throws std::runtime_error  when it does not take our commands, with what it said
+/// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). Their ids are
+/// unique across plots. gnuplot runs once for all of them; the same plots give the same bytes.
+/// @throws InputError          when gnuplot is missing, is killed, or does not finish a plot
+/// @throws std::runtime_error  when gnuplot rejects our commands, with its message
 /// @throws std::logic_error    when x and y of a series differ in length, or a band's limits are not finite
 [[nodiscard]] std::vector<std::string> draw_svgs(std::span<const Plot> plots);
 
-/// How a series is drawn: as it asks, but dashed where a line would have the colour of an earlier one.
+/// The style in which a series is drawn: its own, but dashed for a line with the colour of an earlier one.
 [[nodiscard]] Series::Style drawn_style(const Plot& plot, std::size_t series);
-/// "#rrggbb" of a series and of a band, for legends. Colours are distinguished by the colour-blind too (Okabe &
-/// Ito 2008).
+/// "#rrggbb" of a series and of a band, for legends. Colour-blind readers can distinguish the colours (Okabe & Ito 2008).
 [[nodiscard]] std::string series_color(const Plot& plot, std::size_t series);
 [[nodiscard]] std::string band_color(std::size_t band);
 

@@ -22,7 +22,7 @@ using namespace compensation;
 
 constexpr const char* kFormat = "driftwright predictor 1";
 
-/// A predictor is what was judged, or none.
+/// Requires that the predictor in the file is complete and unchanged since it was judged.
 void require_whole(const Json& file) {
   if (!is_whole(file))
     throw InputError(
@@ -56,7 +56,7 @@ std::shared_ptr<const Predictor> earlier_runs_of(const Json& j, const std::strin
   return std::make_shared<EarlierRunsPredictor>(runs, target);
 }
 
-/// What the predictor itself is made of, under the name of its kind.
+/// The content of the predictor, and the name of its kind.
 std::pair<std::string, Json> made_of(const Predictor& p, const std::vector<effects::Effect>& effects) {
   if (const DriftModel* formula = as_formula(p)) return {"formula", formula_json(*formula)};
   if (const auto* observer = dynamic_cast<const Observer*>(&p)) return {"observer", observer_json(*observer, effects)};
@@ -66,7 +66,7 @@ std::pair<std::string, Json> made_of(const Predictor& p, const std::vector<effec
   throw std::logic_error("a predictor of a kind that no file holds");
 }
 
-/// @param file  which holds what the predictor is made of under its kind
+/// @param file  holds the predictor's content under the name of its kind
 std::shared_ptr<const Predictor> predictor_of(const Json& file, const DeployedPredictor& d) {
   const std::vector<std::string> kinds = {"formula", "observer", "constant", "earlier_runs"};
   const auto kind = value<std::string>(file, "predictor");
@@ -85,7 +85,7 @@ std::shared_ptr<const Predictor> predictor_of(const Json& file, const DeployedPr
   return earlier_runs_of(j, d.target);
 }
 
-/// A formula reads what its fail-safe has looked at.
+/// Requires that the fail-safe guards every input of a formula.
 void require_guards(const DeployedPredictor& d) {
   if (!d.fail_safe) return;
   if (d.fail_safe->from_start != d.from_start)

@@ -1,5 +1,5 @@
 #pragma once
-// A predictor as a file: what `validate` has fitted and judged is what `compensate` reads, to the last digit.
+// A predictor as a file: `validate` writes what it fitted and judged, and `compensate` reads the same numbers.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,17 +12,18 @@ namespace driftwright::output {
 
 struct PredictorFile {
   compensation::DeployedPredictor predictor;
-  /// Under which conditions it was judged, and the verdict: as `validate` wrote it (docs/how-to/validation.md). null where nobody has judged it.
+  /// The conditions under which it was judged, and the verdict, as `validate` wrote them (docs/how-to/validation.md);
+  /// null if nothing has judged it.
   nlohmann::ordered_json judged;
 };
 
-/// @param effects  of the machine whose model it uses; empty for one that uses none
-/// @throws std::logic_error  for a predictor of a kind that no file holds
+/// @param effects  effects of the machine whose model it uses; empty for a predictor without a model
+/// @throws std::logic_error  for a kind of predictor that files do not support
 [[nodiscard]] nlohmann::ordered_json predictor_json(const PredictorFile& file, const std::vector<effects::Effect>& effects,
                                                     const Provenance& made_by);
 
-/// @param path  of a JSON file as predictor_json() makes it
-/// @throws InputError  for a file that is none, naming the key
+/// @param path  a JSON file as predictor_json() makes it
+/// @throws InputError  for a file that is no predictor, naming the key
 [[nodiscard]] PredictorFile read_predictor(const std::string& path);
 
 }  // namespace driftwright::output

@@ -22,7 +22,8 @@ Json allowing_null(Json schema) {
   return {{"anyOf", {std::move(schema), {{"type", "null"}}}}};
 }
 
-/// The path of the object around a key, and the key's own name with its brackets: {"gain.channels[]", "name"}.
+/// Splits a path into that of the surrounding object and the key's own name with its brackets: {"gain.channels[]",
+/// "name"}.
 std::pair<std::string, std::string> divided(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   return dot == std::string::npos ? std::pair{std::string(), path} : std::pair{path.substr(0, dot), path.substr(dot + 1)};
@@ -78,7 +79,7 @@ class Writer {
         return object(key.path);
       case ResultKind::kLike: {
         if (!definitions_.contains(key.like)) {
-          definitions_[key.like] = nullptr;  // it may hold itself
+          definitions_[key.like] = nullptr;  // set first, since it may contain itself
           definitions_[key.like] = object(key.like);
         }
         return {{"type", "array"}, {"items", {{"$ref", "#/definitions/" + pointer(key.like)}}}};
@@ -87,7 +88,7 @@ class Writer {
     throw std::logic_error("a kind of result that nobody describes");
   }
 
-  /// Brackets are not allowed in the fragment of an address.
+  /// A JSON pointer as an address fragment, in which brackets are not allowed.
   static std::string pointer(std::string path) {
     for (std::size_t at = 0; (at = path.find(kEntries, at)) != std::string::npos;) path.replace(at, 2, "%5B%5D");
     return path;

@@ -38,7 +38,7 @@ fs::path plain_path(const fs::path& target) {
   return path.filename().empty() ? path.parent_path() : path;
 }
 
-/// The files that a folder's manifest lists, the manifest among them; none when it has no manifest of ours.
+/// The files in a folder's manifest, and the manifest itself; none if it has no manifest of ours.
 std::set<std::string> listed_files(const fs::path& folder) {
   std::ifstream in(folder / kManifestName);
   nlohmann::ordered_json manifest;
@@ -55,7 +55,7 @@ std::set<std::string> listed_files(const fs::path& folder) {
   return listed;
 }
 
-/// Everything in a folder, at any depth, that is no folder and not listed in its manifest; relative, sorted.
+/// All files in a folder, at any depth, that are not listed in its manifest; relative paths, sorted.
 std::vector<fs::path> foreign_files(const fs::path& folder) {
   const std::set<std::string> ours = listed_files(folder);
   std::vector<fs::path> foreign;
@@ -73,7 +73,7 @@ bool contains(const fs::path& folder, const fs::path& path) {
   return end == folder.end();
 }
 
-/// Throws where replacing the folder would do harm that not even --force can be meant to do.
+/// Throws if replacing the folder would do harm that even --force cannot intend.
 void refuse_dangerous_target(const fs::path& target) {
   const char* home = std::getenv("HOME");
   if (contains(target, fs::current_path()) ||
@@ -108,11 +108,11 @@ std::vector<fs::path> create_parents(const fs::path& folder) {
   return missing;
 }
 
-/// Removes `<target>.partial-<pid>` (and what commit() had set aside) of processes that are gone, and of our
-/// own pid: in a container every run may have the same one.
+/// Removes `<target>.partial-<pid>` (and what commit() had set aside) of processes that have ended, and of our own pid:
+/// in a container every run may have the same pid.
 void remove_stale(const fs::path& target) {
   const std::string prefix = target.filename().string() + ".partial-";
-  std::error_code ignored;  // another user's need not stop us
+  std::error_code ignored;  // files of another user are skipped
   for (const auto& entry : fs::directory_iterator(target.parent_path())) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(prefix)) continue;
@@ -124,17 +124,16 @@ void remove_stale(const fs::path& target) {
   }
 }
 
-/// On the disk, so that a power cut after the swap leaves whole files. @throws InputError  where the disk says no
+/// Syncs to disk, so that files are complete after a power cut. @throws InputError  if the disk reports an error
 void sync(const fs::path& path) {
   const int handle = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) throw cannot("open", path, errno);
   const int failed = fsync(handle) != 0 ? errno : 0;
   close(handle);
-  if (failed != 0 && failed != EINVAL)
-    throw cannot("write", path, failed);  // EINVAL: a file system that has nothing to write to
+  if (failed != 0 && failed != EINVAL) throw cannot("write", path, failed);  // EINVAL: this file system does not support it
 }
 
-/// Puts `work` where `target` is. Returns the folder that then holds what the target held, if there was one.
+/// Puts `work` in the place of `target`. Returns the folder with the previous content of the target, if there was one.
 fs::path swap_in(const fs::path& work, const fs::path& target) {
   if (!fs::exists(target)) {
     fs::rename(work, target);
@@ -142,7 +141,7 @@ fs::path swap_in(const fs::path& work, const fs::path& target) {
   }
   if (renameat2(AT_FDCWD, work.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return work;
   if (errno != EINVAL && errno != ENOSYS) throw cannot("replace", target, errno);
-  const fs::path old = work.string() + "-old";  // a file system that cannot exchange in one step
+  const fs::path old = work.string() + "-old";  // for file systems that cannot exchange two folders in one step
   fs::rename(target, old);
   try {
     fs::rename(work, target);
@@ -195,9 +194,9 @@ ResultsFolder::ResultsFolder(const fs::path& target, bool force, Provenance made
 
 ResultsFolder::~ResultsFolder() {
   if (committed_) return;
-  std::error_code ignored;  // nothing more can be done here, and a destructor does not throw
+  std::error_code ignored;  // a destructor cannot report errors
   fs::remove_all(work_, ignored);
-  for (auto p = created_parents_.rbegin(); p != created_parents_.rend(); ++p) fs::remove(*p, ignored);  // empty ones only
+  for (auto p = created_parents_.rbegin(); p != created_parents_.rend(); ++p) fs::remove(*p, ignored);  // only empty ones
 }
 
 fs::path ResultsFolder::path(const fs::path& relative) {
@@ -246,7 +245,7 @@ void ResultsFolder::commit() {
       if (!fs::exists(fs::symlink_status(target_ / file))) fs::rename(old / file, target_ / file);
     }
   }
-  std::error_code ignored;  // the results are in place; what is left of the old ones goes with the next run
+  std::error_code ignored;  // the results are in place; the next run removes what is left of the old ones
   fs::remove_all(old, ignored);
 }
 

@@ -30,7 +30,8 @@ std::string opening(const RowsIdentity& identity) {
 
 bool is_rows_file(const fs::path& path) {
   const std::string name = path.filename().string();
-  return (name.starts_with("sweep") || name.starts_with("pieces")) && (name.ends_with(".csv") || name.ends_with(".csv.partial"));
+  return (name.starts_with("sweep") || name.starts_with("pieces")) &&
+         (name.ends_with(".csv") || name.ends_with(".csv.partial"));
 }
 
 std::vector<fs::path> rows_files(const fs::path& folder) {
@@ -47,12 +48,12 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A row with its hash behind it, as a line.
+/// A row as a line, with its hash at the end.
 std::string line_of(const std::string& row) {
   return fmt::format("{}\t{}\n", row, content_hash(row));
 }
 
-/// The row of a line, if it is as it was written.
+/// The row of a line, if its hash matches.
 std::optional<std::string> row_of(const std::string& line) {
   const std::size_t tab = line.rfind('\t');
   if (tab == std::string::npos || line.substr(tab + 1) != content_hash(std::string_view(line).substr(0, tab)))
@@ -89,13 +90,13 @@ void remove_rows(const fs::path& folder) {
     if (flock(handle, LOCK_EX | LOCK_NB) == 0) fs::remove(file, ignored);
     close(handle);
   }
-  fs::remove(folder, ignored);  // fails where something is left in it
+  fs::remove(folder, ignored);  // fails if other files remain in it
 }
 
 RowsUnderWay::RowsUnderWay(const fs::path& folder, const std::string& name, RowsIdentity identity)
     : file_(folder / name), partial_(folder / (name + ".partial")), identity_(std::move(identity)) {
   std::error_code failed;
-  for (int attempt = 0; handle_ < 0 && attempt < 3; ++attempt) {  // another process may take the empty folder away between
+  for (int attempt = 0; handle_ < 0 && attempt < 3; ++attempt) {  // another process may remove the empty folder in between
     fs::create_directories(folder, failed);
     if (failed) throw InputError(fmt::format("cannot create '{}': {}", folder.string(), failed.message()));
     handle_ = open(partial_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -108,8 +109,8 @@ RowsUnderWay::RowsUnderWay(const fs::path& folder, const std::string& name, Rows
   }
   const std::string text = text_of(partial_), start = opening(identity_);
   const bool is_ours = text.starts_with(start);
-  dropped_stale_ = !is_ours && !start.starts_with(text);        // a start cut short is nobody's
-  const std::size_t keep = is_ours ? text.rfind('\n') + 1 : 0;  // a line cut short goes
+  dropped_stale_ = !is_ours && !start.starts_with(text);        // an incomplete start is not stale
+  const std::size_t keep = is_ours ? text.rfind('\n') + 1 : 0;  // drops an incomplete line
   if (ftruncate(handle_, static_cast<off_t>(keep)) != 0) {
     close(handle_);
     throw cannot("write", partial_);

@@ -14,9 +14,9 @@ using schema::Map;
 using schema::Value;
 using ValueKind = Value::Kind;
 
-constexpr std::size_t kMostWords = 12;  // that a cell lists
+constexpr std::size_t kMostWords = 12;  // most words that a cell lists
 
-/// The end of a link to a heading, as GitHub makes it.
+/// The anchor of a heading, as GitHub makes it.
 std::string anchor(const std::string& heading) {
   std::string text;
   for (char c : heading) {
@@ -99,7 +99,7 @@ class Tables {
                         escaped(key.meaning));
     for (const Value& way : key.values) {
       const bool is_list = way.kind == ValueKind::kList;
-      std::set<std::string> written;  // keys that several forms share
+      std::set<std::string> written;  // keys that several forms share are written once
       for (const Map& map : maps_of(way)) {
         if (has_table_.contains(map.name) || map.when_key == "type") continue;
         Map rest = map;
@@ -143,7 +143,7 @@ class Tables {
     return "";
   }
 
-  /// With links to the tables of its forms.
+  /// Links to the tables of its forms.
   [[nodiscard]] std::string of_maps(const Value& value, const std::string& word) const {
     const std::vector<Map>& maps = maps_of(value);
     if (maps.front().when_key == "type") return fmt::format("[{}]({})", word, page_of_effects_);
@@ -156,7 +156,7 @@ class Tables {
 
   std::string page_of_effects_;
   std::set<std::string> has_table_, written_;
-  std::vector<std::string> groups_;  // of the table under way
+  std::vector<std::string> groups_;  // of the current table
 };
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 namespace driftwright::output {
 
-/// A table of the keys of each file, then one for each map that its keys hold; keys of maps within these are written as sweeps address them, `column.wall`,
-/// entries of lists as `rings[].at`, keys that are names as `<cyclogram>.rows`.
-/// @param page_of_effects  page that has the table of the maps chosen by `type`
+/// A table of the keys of each file, then one for each map within it. Keys of inner maps are written as sweeps address
+/// them, `column.wall`, entries of lists as `rings[].at`, and keys that are names as `<cyclogram>.rows`.
+/// @param page_of_effects  page with the tables of the maps that `type` selects
 [[nodiscard]] std::string schema_tables(const std::vector<schema::Map>& files, const std::string& page_of_effects);
 
 }  // namespace driftwright::output

@@ -17,7 +17,7 @@ using compensation::kLineA;
 using compensation::kLineB;
 using compensation::kLineIndex;
 
-/// Rows that halstreamer may be ahead of the encoder.
+/// Rows that halstreamer may buffer ahead of the encoder.
 constexpr std::int64_t kHalDepth = 16384;
 
 std::ofstream open(const std::string& path) {

@@ -14,10 +14,10 @@
 namespace driftwright::output {
 namespace {
 
-constexpr int kFiner = 2;  // samples a pixel along each side
+constexpr int kFiner = 2;  // samples per pixel along each side
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-/// What the eye sees at each sample.
+/// The nearest triangle at each sample.
 struct Samples {
   int width, height;
   std::vector<float> depth;
@@ -60,7 +60,7 @@ Projection project(const ColouredSurface& surface, const View& view, int width, 
   return p;
 }
 
-/// Fills a triangle's samples; light comes from the eye, from above and from its right.
+/// Fills a triangle's samples; light comes from the eye, from above and from the right.
 void fill(Samples& samples, const ColouredSurface& surface, int index, const Projection& p, int finer) {
   const auto& t = surface.triangle[static_cast<std::size_t>(index)];
   std::array<Eigen::Vector2d, 3> q;
@@ -85,7 +85,7 @@ void fill(Samples& samples, const ColouredSurface& surface, int index, const Pro
         return ((q[j] - q[i]).x() * (s - q[i]).y() - (q[j] - q[i]).y() * (s - q[i]).x()) / area;
       };
       const double w2 = part(0, 1), w0 = part(1, 2), w1 = 1.0 - w0 - w2;
-      constexpr double kRounding = -1e-9;  // no gap between neighbours
+      constexpr double kRounding = -1e-9;  // leaves no gap between neighbouring triangles
       if (w0 < kRounding || w1 < kRounding || w2 < kRounding) continue;
       const auto here = static_cast<float>(w0 * depth[0] + w1 * depth[1] + w2 * depth[2]);
       const std::size_t at = samples.at(x, y);
@@ -101,7 +101,7 @@ void fill(Samples& samples, const ColouredSurface& surface, int index, const Pro
   }
 }
 
-/// Darkens samples where another part, or a face that turns away, begins: the eye reads a body by its edges.
+/// Darkens samples at the border of another part, or of a face at another angle, so that the shape can be seen.
 void draw_edges(Samples& samples, const ColouredSurface& surface) {
   std::vector<Eigen::Vector3d> normal;
   for (const auto& t : surface.triangle) {
@@ -128,7 +128,7 @@ void draw_edges(Samples& samples, const ColouredSurface& surface) {
     if (!is_edge[i]) continue;
     if (samples.triangle[i] < 0) {
       samples.colour[i] = {0.25F, 0.25F, 0.25F};
-      samples.triangle[i] = 0;  // an outline is opaque
+      samples.triangle[i] = 0;  // makes an outline opaque
     } else {
       for (float& k : samples.colour[i]) k *= 0.45F;
     }
@@ -150,7 +150,7 @@ std::string png_of(const Samples& samples, int width, int height) {
         for (int c = 0; c < 3; ++c) sum[c] += samples.colour[at][c];
       }
       auto* pixel =
-          static_cast<unsigned char*>(image->GetScalarPointer(x, height - 1 - y, 0));  // VTK counts rows from below
+          static_cast<unsigned char*>(image->GetScalarPointer(x, height - 1 - y, 0));  // VTK counts rows from the bottom
       for (int c = 0; c < 3; ++c) {
         const float mean = n > 0 ? sum[c] / static_cast<float>(n) : 0.0F;
         pixel[c] = static_cast<unsigned char>(std::lround(255.0F * std::clamp(mean, 0.0F, 1.0F)));

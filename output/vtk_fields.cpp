@@ -20,7 +20,7 @@
 namespace driftwright::output {
 namespace {
 
-/// Adds a named array of the given type, replacing one of that name, and returns it for filling.
+/// Adds a named array of the given type, replacing one of that name, and returns it to be filled.
 template <typename Array>
 Array* add_array(vtkFieldData* data, const char* name, int n_components, vtkIdType n_tuples) {
   vtkNew<Array> array;
@@ -70,7 +70,7 @@ void build_grid(const mesh::Mesh& mesh, bool with_facets, vtkUnstructuredGrid* g
   }
 }
 
-/// Through memory, so that writing to disk is checked in one place.
+/// Writes to memory first, so that writing to disk is checked in one place.
 void write_grid(vtkUnstructuredGrid* grid, const std::filesystem::path& file) {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetInputData(grid);

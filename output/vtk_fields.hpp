@@ -12,13 +12,13 @@
 
 namespace driftwright::output {
 
-/// Fields as one file fields/fields_<0000...>.vtu per time, each with the mesh, and fields.pvd. Field arrays of each file:
-/// `region_names`, `TimeValue` [s] and `made_by`. Callers use FieldSeries.
+/// Writes fields as one file fields/fields_<0000...>.vtu per time, each with the mesh, and fields.pvd. Field arrays of
+/// each file: `region_names`, `TimeValue` [s] and `made_by`. Callers use FieldSeries.
 [[nodiscard]] std::unique_ptr<FieldWriter> make_vtu_writer(ResultsFolder& folder, const mesh::Mesh& mesh);
 
-/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`; then its facets as 2-D
-/// cells with the cell array `surface` (-1 on cells) and the field array `surface_names`, sides of joints among them, so that
-/// mesh::read_vtu() has the same mesh again. Facets have region -1 and quality NaN.
+/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`; then its facets as
+/// 2-D cells with the cell array `surface` (-1 on cells) and the field array `surface_names`, including sides of joints,
+/// so that mesh::read_vtu() reads the same mesh again. Facets have region -1 and quality NaN.
 /// @param quality  one value per cell, or empty to leave the array out
 /// @param file     a path from ResultsFolder::path()
 /// @throws std::logic_error    when `quality` has another length
@@ -28,7 +28,7 @@ void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const s
 /// VTK's number of a shape, such as 24 of a quadratic tetrahedron.
 [[nodiscard]] int vtk_cell_type(mesh::CellShape shape);
 
-/// A number per region.
+/// One number per region.
 struct RegionField {
   std::string name;           ///< of the cell array, with its unit
   std::vector<double> value;  ///< in the order of Mesh::regions

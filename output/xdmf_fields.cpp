@@ -16,7 +16,7 @@ constexpr const char* kXdmfName = "fields.xdmf";
 
 struct XdmfShape {
   const char* name;
-  int number;  ///< in a topology of mixed shapes
+  int number;  ///< of the shape, in a mixed topology
 };
 
 XdmfShape xdmf_shape(mesh::CellShape shape) {
@@ -42,7 +42,7 @@ XdmfShape xdmf_shape(mesh::CellShape shape) {
   throw std::logic_error("a facet among the cells of a mesh");
 }
 
-/// Text of an attribute. XML knows no other control characters than these, so that others become '?'.
+/// Text of an attribute. XML allows no control characters except these; others become '?'.
 std::string attribute_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -98,7 +98,8 @@ class XdmfWriter : public FieldWriter {
   void finish(const std::vector<double>& times_s) override {
     file_.close();
     const Provenance& made_by = folder_.made_by();
-    // Information stands inside the domain: ParaView's XDMF 3 readers take the first element below Xdmf for the domain.
+    // Information is placed inside the domain: ParaView's XDMF 3 readers take the first element below Xdmf for the
+    // domain.
     std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"2.2\">\n  <Domain>\n";
     xml += fmt::format("    <Information Name=\"made_by\" Value={}/>\n",
                        attribute_text(fmt::format("Driftwright {}, {}", made_by.version, made_by.scenario)));
@@ -106,7 +107,7 @@ class XdmfWriter : public FieldWriter {
                        attribute_text(fmt::format("{}", fmt::join(region_names_, "\n"))));
     xml += "    <Grid Name=\"fields\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
     for (std::size_t i = 0; i < times_s.size(); ++i) {
-      // The same words for the mesh at each time: by them ParaView knows that it has read it.
+      // The same text for the mesh at each time: from that ParaView knows that it has already read it.
       xml += fmt::format("      <Grid Name=\"machine\" GridType=\"Uniform\">\n        <Time Value=\"{}\"/>\n{}", times_s[i],
                          mesh_xml_);
       xml += attribute(i, "temperature_degC", "Scalar", 1) + attribute(i, "displacement_um", "Vector", 3);

@@ -1,4 +1,4 @@
-// The module driftwright.core: the library's API as it is. driftwright/__init__.py makes pandas tables of its records.
+// The module driftwright.core: the library's API, unchanged. driftwright/__init__.py converts its records to pandas tables.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -42,7 +42,7 @@ Record record_of(const std::string& source, const std::vector<double>& time_s,
   return record;
 }
 
-/// Tells a Python function what is being done.
+/// A listener that calls a Python function with the current work.
 Listener listener_of(const py::object& progress) {
   if (progress.is_none()) return {};
   const auto function = std::make_shared<py::object>(progress);

@@ -24,7 +24,7 @@ Eigen::Index index_of(const AddedPlaces& added, const Body& body) {
   return -1;
 }
 
-/// w: mean temperature of a body = w'z. Of the system's own unknowns and those added.
+/// w: mean temperature of a body = w'z, for the system's own and the added unknowns.
 Eigen::VectorXd mean_weights(const ReducedSystem& system, const AddedPlaces& added, const Body& body) {
   const Eigen::Index n = system.size();
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(n + static_cast<Eigen::Index>(added.nodes.size()));
@@ -38,7 +38,7 @@ Eigen::VectorXd mean_weights(const ReducedSystem& system, const AddedPlaces& add
   return weights;
 }
 
-/// A form of the system's own unknowns as one of all.
+/// Extends a quadratic form of the system's own unknowns by zeros for the added ones.
 Eigen::MatrixXd grown(const Eigen::MatrixXd& a, Eigen::Index n) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
   all.topLeftCorner(a.rows(), a.cols()) = a;
@@ -51,7 +51,7 @@ void grow(Eigen::VectorXd& v, Eigen::Index n) {
   v.tail(n - before).setZero();
 }
 
-/// ∫ T² over a body divided by its size, as a form; and the load of 1 K that it makes.
+/// ∫ T² over a body divided by its size, as a quadratic form; and the load for a temperature of 1 K.
 struct Square {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd of_ones;
@@ -123,7 +123,7 @@ ReducedSystem with_places(const ReducedSystem& system, const AddedPlaces& added)
       grow(*v, n);
   }
   for (HeatSource& source : s.sources) grow(source.load, n);
-  for (const auto& [name, capacity_J_K] : added.nodes) {  // a law may look at its temperature
+  for (const auto& [name, capacity_J_K] : added.nodes) {  // a law may use its temperature
     HeatSource heat{.name = name, .body = effects::node(name), .load = {}, .power_W = BoundLaw([](const effects::Inputs&) {
                                                                              return 0.0;
                                                                            })};

@@ -1,5 +1,5 @@
 #pragma once
-// Nodes that couple strongly, gathered into aggregates: the nodes of the next coarser grid.
+// Gathers strongly coupled nodes into aggregates: the nodes of the next coarser grid of multigrid.
 // Source: Vanek, Mandel & Brezina, Computing 56 (1996) 179-196.
 
 #include <Eigen/Core>
@@ -24,12 +24,14 @@ std::vector<float> squared_norms(const BlockRows<T, B, B>& a) {
 /// The pairs i != j with |A_ij| > threshold sqrt(|A_ii| |A_jj|).
 [[nodiscard]] BlockPattern strong_pairs(const BlockPattern& a, const std::vector<float>& squared_norms, double threshold);
 
+/// The aggregate of each node.
 struct Aggregates {
   int n = 0;
-  std::vector<int> of;  ///< aggregate of each node; -1 for nodes that need none
+  std::vector<int> of;  ///< index of the aggregate; -1 for nodes that need none
 };
 
-/// First whole neighbourhoods, then what is left joins a neighbour's aggregate, then what is left gathers on its own.
+/// First whole neighbourhoods form aggregates; then remaining nodes join a neighbour's aggregate; the rest form aggregates
+/// of their own.
 /// @param idle  not 0 for nodes without unknowns, which get no aggregate
 [[nodiscard]] Aggregates aggregate(const BlockPattern& strong, const std::vector<char>& idle);
 

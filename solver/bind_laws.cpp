@@ -11,7 +11,7 @@ using effects::Body;
 using effects::Inputs;
 using effects::Law;
 
-/// Several laws as one; probes stand one after the other.
+/// The sum of several laws as one law; their probes follow each other.
 Law sum_of(const std::vector<const Law*>& laws) {
   if (laws.empty()) return Law([](const Inputs&) { return 0.0; });
   if (laws.size() == 1) return *laws.front();
@@ -41,7 +41,7 @@ Law sum_of(const std::vector<const Law*>& laws) {
   return sum;
 }
 
-/// Which entry each law of a list belongs to.
+/// Finds the entry that each law of a list belongs to.
 template <class Entry, class Asked, class SamePlace>
 std::vector<std::size_t> entries_of(const std::vector<Entry>& entries, const std::vector<Asked>& asked, SamePlace same) {
   std::vector<char> taken(entries.size(), 0);
@@ -50,7 +50,7 @@ std::vector<std::size_t> entries_of(const std::vector<Entry>& entries, const std
     return !taken[e] && entries[e].name == a.name && same(entries[e], a);
   };
   for (std::size_t a = 0; a < asked.size(); ++a) {
-    std::size_t e = a;  // most often in the same order
+    std::size_t e = a;  // the order is usually the same
     if (e >= entries.size() || !fits(e, asked[a])) {
       for (e = 0; e < entries.size() && !fits(e, asked[a]);) ++e;
     }
@@ -59,7 +59,7 @@ std::vector<std::size_t> entries_of(const std::vector<Entry>& entries, const std
     index[a] = e;
   }
   for (std::size_t a = 0; a < asked.size(); ++a) {
-    for (std::size_t e = entries.size(); e-- > 0 && index[a] == entries.size();) {  // what was added last rests first
+    for (std::size_t e = entries.size(); e-- > 0 && index[a] == entries.size();) {  // entries added last are tried first
       if (same(entries[e], asked[a])) index[a] = e;
     }
     if (index[a] == entries.size()) throw std::logic_error("bind_laws: the system has no place for " + asked[a].name);
@@ -71,9 +71,9 @@ class Finder {
  public:
   explicit Finder(ReducedSystem& system, const effects::HeatBalance& balance) : system_(system), balance_(balance) {}
 
-  /// @param before  surface whose air stands for the ambient, or ""
+  /// @param before  surface whose air replaces the ambient, or ""
   void bind(BoundLaw& bound, Law law, const std::string& before) {
-    if (!bound.frozen_K.empty()) {  // its temperatures are numbers now
+    if (!bound.frozen_K.empty()) {  // its temperatures are constants
       bound.law = std::move(law);
       return;
     }
@@ -89,7 +89,7 @@ class Finder {
   }
   int probe(const Body& body, const std::string& before) {
     const bool is_ambient = body == effects::ambient_node();
-    for (std::size_t p = 0; p < system_.probes.size(); ++p) {  // air before a surface where the ambient is stratified
+    for (std::size_t p = 0; p < system_.probes.size(); ++p) {  // air before a surface, in a stratified ambient
       if (is_ambient && !before.empty() && system_.probes[p].body == body && system_.probes[p].before == before)
         return static_cast<int>(p);
     }
@@ -101,7 +101,7 @@ class Finder {
     if (is_ambient) {
       further.weights = Eigen::VectorXd::Zero(system_.size());
       further.ambient_share = 1.0;
-    } else {  // heat enters a body where its mean temperature is read
+    } else {  // the mean temperature of a body is read with the weights of its heat load
       const auto source =
           std::find_if(system_.sources.begin(), system_.sources.end(), [&](const HeatSource& s) { return s.body == body; });
       if (source == system_.sources.end())
@@ -135,7 +135,7 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
   for (std::size_t x = 0; x < balance.exchanges.size(); ++x) {
     const effects::Exchange& asked = balance.exchanges[x];
     std::size_t entry = of_exchange[x];
-    if (asked.medium_K && !laws[entry].empty()) {  // two media at one place: one more entry there
+    if (asked.medium_K && !laws[entry].empty()) {  // two media at one place need another entry
       system.exchanges.push_back(system.exchanges[entry]);
       laws.emplace_back();
       entry = laws.size() - 1;

@@ -1,17 +1,17 @@
 #pragma once
-// Laws of a heat balance given to a system that was assembled of another one at the same places.
+// Gives the laws of a heat balance to a system that was assembled from another balance with the same places.
 
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::solver {
 
-/// Each heat and each exchange goes to the entry of its name, where several are called alike to one after the other; what the system has no such entry
-/// for, to one at the same place, where laws add up. Entries that nothing comes to rest at zero. Laws find their probes by body; a body that
-/// nothing has looked at so far is looked at where heat can enter it. Thermostats, temperatures of media and times of change are the balance's;
-/// prescribed temperatures stay as they are.
+/// Each heat and each exchange is assigned to the entry with its name; entries of equal name are used one after the other.
+/// If the system has no such entry, the law is added at an entry of the same place. Entries without a law become zero. Laws
+/// find their probes by body; a body without a probe so far gets one if heat can enter it. Thermostats, temperatures of
+/// media and change times are taken from the balance; prescribed temperatures stay unchanged.
 ///
-/// @param balance  radiation as films, where the system is a reduced one
-/// @throws std::logic_error  for a place, thermostat or probe that the system has not
+/// @param balance  with radiation as films if the system is a reduced one
+/// @throws std::logic_error  for a place, thermostat or probe that the system lacks
 void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance);
 
 }  // namespace driftwright::solver

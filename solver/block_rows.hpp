@@ -1,6 +1,6 @@
 #pragma once
-// Sparse matrices of small dense blocks, one block row a node, and the products multigrid is made of. Each row is summed in
-// one order by one thread, so that results do not depend on the number of threads.
+// Sparse matrices of small dense blocks, one block row per node, and the products that multigrid needs. Each row is summed
+// in one order by one thread, so that results do not depend on the number of threads.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace driftwright::solver {
 
-/// Which block columns each block row has, ascending.
+/// The block columns of each block row, ascending.
 struct BlockPattern {
   int n_rows = 0, n_cols = 0;
   std::vector<int> start = {0};  ///< columns of row i: column[start[i]] .. column[start[i + 1] - 1]
@@ -21,7 +21,7 @@ struct BlockPattern {
 template <class T, int R, int C>
 struct BlockRows : BlockPattern {
   using Block = Eigen::Matrix<T, R, C, Eigen::ColMajor | Eigen::DontAlign>;
-  std::vector<T> value;  ///< R C per entry, and kPad unused at the end, which wide loads may read
+  std::vector<T> value;  ///< R C numbers per entry, and kPad unused ones at the end, which wide loads may read
   static constexpr int kPad = 4;
 
   void take(BlockPattern pattern) {
@@ -30,7 +30,7 @@ struct BlockRows : BlockPattern {
   }
   [[nodiscard]] Eigen::Map<const Block> block(int slot) const { return Eigen::Map<const Block>(&value[offset(slot)]); }
   [[nodiscard]] Eigen::Map<Block> block(int slot) { return Eigen::Map<Block>(&value[offset(slot)]); }
-  /// Entry of (row, column), -1 where there is none.
+  /// Index of the entry (row, column), -1 if it does not exist.
   [[nodiscard]] int find(int row, int col) const {
     const auto first = column.begin() + start[row], last = column.begin() + start[row + 1];
     const auto hit = std::lower_bound(first, last, col);
@@ -43,7 +43,7 @@ struct BlockRows : BlockPattern {
 
 /// The pattern of A B.
 [[nodiscard]] BlockPattern product_pattern(const BlockPattern& a, const BlockPattern& b);
-/// The pattern of A'; `source` becomes the entry of A that each entry comes from.
+/// The pattern of A'; `source` receives for each entry the index of its entry in A.
 [[nodiscard]] BlockPattern transposed_pattern(const BlockPattern& a, std::vector<int>& source);
 
 template <class T, int R, int C>
@@ -56,8 +56,8 @@ BlockRows<T, C, R> transposed(const BlockRows<T, R, C>& a) {
   return t;
 }
 
-/// C = A B in double, into the pattern of C, which holds that of the product.
-/// @param symmetric  C is symmetric: only its upper triangle is computed, the lower one mirrored
+/// C = A B in double, into the existing pattern of C, which must contain that of the product.
+/// @param symmetric  C is symmetric: only its upper triangle is computed, the lower one is mirrored
 template <class TA, class TB, int R, int M, int C>
 void multiply_into(const BlockRows<TA, R, M>& a, const BlockRows<TB, M, C>& b, BlockRows<double, R, C>& c, bool symmetric) {
 #pragma omp parallel
@@ -97,7 +97,7 @@ inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
   if constexpr (R == 1 && C == 1) {
     y[0] = times_row(a.value.data(), a.column.data(), a.start[i], a.start[i + 1], x);
   } else if constexpr (R == 3 && C == 3 && sizeof(T) == 4) {
-    // Columns of three as four lanes; the fourth is the next number in memory and is thrown away.
+    // Columns of three are loaded as four lanes; the fourth is the next number in memory and is ignored.
     using Lanes [[gnu::vector_size(16)]] = T;
     using Unaligned [[gnu::vector_size(16), gnu::aligned(4)]] = T;
     Lanes sum{};
@@ -119,7 +119,7 @@ inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
   }
 }
 
-/// Loops over fewer numbers than this stay on one core: waiting for the others costs more.
+/// Matrices with fewer stored numbers are multiplied on one core: starting the other threads costs more time than they save.
 inline constexpr std::size_t kWorthThreadsNumbers = 400000;
 
 /// y = A x.

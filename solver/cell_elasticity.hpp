@@ -11,10 +11,10 @@
 
 namespace driftwright::solver {
 
-/// xx, yy, zz, xy, yz, zx [Pa].
+/// Stress components xx, yy, zz, xy, yz, zx [Pa].
 using Stress = Eigen::Matrix<double, 6, 1>;
 
-/// B, 6 x 3n [1/m].
+/// Strain matrix B, 6 x 3n [1/m].
 using StrainMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3 * mesh::kMaxNodesPerCell>;
 
 /// D [Pa] of an isotropic material.
@@ -23,11 +23,11 @@ using StrainMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3 * mesh::kM
 /// Free thermal strain per kelvin [1/K], six components.
 [[nodiscard]] Eigen::Matrix<double, 6, 1> thermal_strain_1_K(const Material& material);
 
-/// What stiffness, thermal load and stress at a point of a cell are made of.
+/// The data at a point of a cell from which stiffness, thermal load and stress are computed.
 struct CellPoint {
   mesh::ShapeValues shape;
   StrainMatrix strain;  ///< B
-  double det_m3 = 0.0;  ///< volume ratio
+  double det_m3 = 0.0;  ///< Jacobian determinant
 };
 /// @param coords  3 x n nodes of the cell [m]
 [[nodiscard]] CellPoint cell_point(mesh::CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& coords,

@@ -43,7 +43,7 @@ class CellKernel {
     for (const auto& q : mass_.points) reference_mass_ += q.weight * q.N_values.transpose() * q.N_values;
   }
 
-  /// Into m and k, N x N each.
+  /// Computes m and k of one cell, N x N each.
   void integrate(const Mesh& mesh, std::span<const int> nodes, const HeatProperties& of_region, double* m, double* k) const {
     Eigen::Matrix<double, N, 3> x;
     for (int i = 0; i < N; ++i) x.row(i) = mesh.coords.col(nodes[i]).transpose();
@@ -93,7 +93,7 @@ class Kernels {
       case CellShape::kWedge15:
         return wedge15_.integrate(mesh, nodes, p, m, k);
       default:
-        return;  // a facet, which add_cells refuses
+        return;  // a facet, which add_cells() refuses
     }
   }
 
@@ -106,7 +106,7 @@ class Kernels {
   CellKernel<15> wedge15_{CellShape::kWedge15};
 };
 
-/// Adds row `i` of a cell's matrices to the row of its node. False when the pattern lacks an entry.
+/// Adds row `i` of a cell's matrices to the row of its node. False if the pattern lacks an entry.
 bool add_row(std::span<const int> nodes, int i, const double* m, const double* k, SparseRow& mass, SparseRow& conduction) {
   const int n = static_cast<int>(nodes.size());
   const int* const columns = mass.innerIndexPtr();
@@ -124,7 +124,7 @@ bool add_row(std::span<const int> nodes, int i, const double* m, const double* k
 
 void add_cells(const Mesh& mesh, const std::vector<HeatProperties>& of_region, SparseRow& mass, SparseRow& conduction) {
   const Kernels kernels;
-  constexpr int kCells = 4096;  // at a time: their matrices stay in the cache
+  constexpr int kCells = 4096;  // cells per pass: their matrices stay in the cache
   std::vector<std::ptrdiff_t> start(kCells + 1, 0);
   std::vector<double> m, k;
   bool complete = true;
@@ -146,7 +146,7 @@ void add_cells(const Mesh& mesh, const std::vector<HeatProperties>& of_region, S
       for (int c = 0; c < n_cells; ++c) {
         kernels.integrate(mesh, first + c, of_region[mesh.cells.group[first + c]], &m[start[c]], &k[start[c]]);
       }
-      // Each thread adds to the rows that are its own, cell after cell.
+      // Each thread adds only to its own rows, cell by cell.
       for (int c = 0; c < n_cells; ++c) {
         const auto nodes = mesh.cells.nodes(first + c);
         for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {

@@ -15,7 +15,7 @@ using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_lo
 
 namespace {
 
-/// The transpose of a symmetric matrix in rows is itself in columns.
+/// A symmetric matrix stored by rows equals the same matrix stored by columns.
 ColumnMatrix in_columns(const SparseRow& k) {
   return ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose()));
 }
@@ -23,7 +23,7 @@ ColumnMatrix in_columns(const SparseRow& k) {
 }  // namespace
 
 void require_way_out(const SparseRow& k, const std::vector<char>& held) {
-  // A factorisation alone does not tell: rounding makes the pivot of a set without a way out positive as often as not.
+  // A factorisation alone does not show this: rounding makes the pivot of a set without a way out positive as often as not.
   const int n = static_cast<int>(k.rows());
   Cliques neighbours;
   for (int row = 0; row < n; ++row) {
@@ -32,7 +32,7 @@ void require_way_out(const SparseRow& k, const std::vector<char>& held) {
     }
   }
   const std::vector<int> set_of = connected_sets(n, neighbours);
-  constexpr double kRounding = 1e-11;  // of the diagonal; a film of 1e-6 W/(m^2 K) on steel stands above it
+  constexpr double kRounding = 1e-11;  // of the diagonal; a film of 1e-6 W/(m^2 K) on steel is larger
   const Eigen::VectorXd sums = k * Eigen::VectorXd::Ones(n), diagonal = k.diagonal();
   std::vector<char> has_way_out(n, 0);
   for (int i = 0; i < n; ++i) {

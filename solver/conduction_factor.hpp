@@ -1,5 +1,5 @@
 #pragma once
-// K⁻¹ by CHOLMOD, after a look whether heat can leave every part.
+// Solves with the conduction matrix K by CHOLMOD, and checks before that heat can leave every part.
 
 #include <memory>
 
@@ -7,13 +7,15 @@
 
 namespace driftwright::solver {
 
-/// Heat leaves where a row of K does not sum to zero (all else it exchanges with neighbours), and where temperature is held.
+/// Heat can leave where a row of K does not sum to zero (all other exchange is with neighbours), and where the temperature
+/// is prescribed.
 ///
 /// @param k     stiffness [W/K], symmetric
 /// @param held  per unknown: not 0 where its temperature is prescribed; empty for none
-/// @throws SolveError  when some connected set of unknowns has no way out; names one of them
+/// @throws SolveError  if a connected set of unknowns has no way out; the message names one of them
 void require_way_out(const SparseRow& k, const std::vector<char>& held = {});
 
+/// Cholesky factor of K.
 class ConductionFactor {
  public:
   /// @throws SolveError  when K is singular or memory runs out
@@ -21,7 +23,7 @@ class ConductionFactor {
   ~ConductionFactor();
   /// Factorises another matrix of the same pattern.
   void refactor(const SparseRow& k);
-  /// K⁻¹ of each column.
+  /// K⁻¹ times each column.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
  private:

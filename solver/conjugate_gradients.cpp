@@ -20,7 +20,7 @@ CgOutcome conjugate_gradients(int n, const Operator& a, const Operator& precondi
   while (true) {
     outcome.error = first == 0.0 ? 0.0 : std::sqrt(rz / first);
     outcome.converged = outcome.error <= tolerance;
-    // NaN ends it too, and so does a preconditioner or a matrix that is not positive.
+    // Also ends for NaN, and for a preconditioner or a matrix that is not positive.
     if (!(outcome.error > tolerance) || outcome.iterations >= max_iterations) return outcome;
     ++outcome.iterations;
     a(p.data(), q.data());

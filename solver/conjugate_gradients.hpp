@@ -1,5 +1,5 @@
 #pragma once
-// Preconditioned conjugate gradients for matrices and preconditioners that are known by what they do.
+// Preconditioned conjugate gradients for matrices and preconditioners that are given as functions.
 
 #include <functional>
 
@@ -16,9 +16,9 @@ struct CgOutcome {
 
 /// Solves A x = b for n unknowns from x = 0.
 ///
-/// Stops when sqrt(r'Br) <= tolerance sqrt(b'Bb), r the residual and B the preconditioner: where B is close to A⁻¹ these are the
-/// lengths of error and solution in the norm of A. B may change a little from one application to the next (rounding in single
-/// precision): the directions are kept conjugate by the formula of Polak and Ribière.
+/// Stops when sqrt(r'Br) <= tolerance sqrt(b'Bb), with the residual r and the preconditioner B. If B is close to A⁻¹, these
+/// are the lengths of error and solution in the norm of A. B may change slightly from one application to the next (rounding
+/// in single precision): the directions are kept conjugate by the formula of Polak and Ribière.
 [[nodiscard]] CgOutcome conjugate_gradients(int n, const Operator& a, const Operator& precondition, const double* b,
                                             double* x, double tolerance, int max_iterations);
 

@@ -10,15 +10,15 @@ namespace driftwright::solver {
 namespace {
 
 constexpr double kSlowStretch =
-    1e-3;                        // of λt: below it the integrals are differences of large numbers, and series take over
-constexpr double kEqual = 1e-7;  // of |λ_i - λ_j| over the whole course: such a pair counts as one
+    1e-3;                        // of λt: below it the integrals are differences of large numbers, so series replace them
+constexpr double kEqual = 1e-7;  // of |λ_i - λ_j| over the whole course: below it the two count as equal
 
 /// Σ (-x)^k / c_k for c_k as given, 0 <= x < kSlowStretch.
 double series(double x, double c0, double c1, double c2, double c3) {
   return 1.0 / c0 - x * (1.0 / c1 - x * (1.0 / c2 - x / c3));
 }
 
-/// What drives a system in the stretches of a run, asked for in their order.
+/// The loads of a system in the stretches of a run; ask for them in order.
 class Loads {
  public:
   /// Both are borrowed.
@@ -140,7 +140,7 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
 std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                  const TimeSeries& ambient, const Eigen::VectorXd& start) const {
   if (!other.is_linear()) return std::nullopt;
-  // a system may have exchanges more, of laws that it had before
+  // a system may have additional exchanges, of laws that it had before
   if (!decompositions_.empty() &&
       static_cast<Eigen::Index>(other.exchanges.size()) != decompositions_.front().coefficient.size())
     return std::nullopt;
@@ -152,12 +152,12 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
   const Eigen::MatrixXd more_conduction = other.conduction - conduction_, more_mass = other.mass - mass_;
   const bool is_other_conduction = (more_conduction.array() != 0.0).any(), is_other_mass = (more_mass.array() != 0.0).any();
 
-  /// What a difference of the matrices does, by decomposition and difference of the coefficients.
+  /// The effect of a difference of the matrices, by decomposition and difference of the coefficients.
   struct Coupling {
     std::size_t decomposition;
     Eigen::VectorXd more_coefficient;
     Eigen::MatrixXd apart, mass;        // C and V'δM V
-    Eigen::SparseMatrix<double> equal;  // G where the two λ are the same
+    Eigen::SparseMatrix<double> equal;  // G where the two λ are equal
   };
   std::vector<Coupling> couplings;
   const double least_1_s = kEqual / (stretches_.empty() ? 1.0 : stretches_.back().end_s);
@@ -196,7 +196,7 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
   };
 
   Eigen::MatrixXd states = states_, change;
-  Eigen::VectorXd off = start - start_;  // of the state, at the start of a stretch
+  Eigen::VectorXd off = start - start_;  // difference of the state, at the start of a stretch
   Eigen::VectorXd y0, h0, h1, more, e0, e1, e2;
   Loads loads(other, ambient);
   for (std::size_t k = 0; k < theirs.size(); ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// A linear reduced system in the eigenvectors of its K, one decomposition per set of coefficients.
+// A linear reduced system in the eigenvectors of its K, with one decomposition per set of coefficients.
 
 #include "solver/thermal_system.hpp"
 
@@ -7,7 +7,7 @@ namespace driftwright::solver {
 
 /// The system in the eigenvectors V of K = K0 + Σ c_e G_e: K V = M V Λ, V'M V = 1.
 struct Decomposition {
-  Eigen::VectorXd coefficient;  ///< of each exchange: the key
+  Eigen::VectorXd coefficient;  ///< of each exchange; used as the key
   Eigen::VectorXd lambda_1_s;
   Eigen::MatrixXd vectors;                ///< V
   Eigen::MatrixXd to_modes;               ///< V'M
@@ -19,13 +19,14 @@ struct Decomposition {
   Eigen::RowVectorXd stored_J_K;          ///< 1'M V
 };
 
-/// Decompositions of the coefficients met last. One thread at a time.
+/// Stores the latest decompositions. Not thread-safe.
 class Decompositions {
  public:
   /// @param system  borrowed
   explicit Decompositions(const ReducedSystem& system);
 
-  /// Valid until the next call. @param with_flows  else `flows`, `ambient_W_K` and `offset_W` may be empty
+  /// The decomposition of these coefficients; valid until the next call. @param with_flows false: `flows`, `ambient_W_K` and
+  /// `offset_W` may be empty
   const Decomposition& at(const Eigen::VectorXd& coefficient, bool with_flows = true);
   [[nodiscard]] int n_made() const { return n_made_; }
 
@@ -40,7 +41,7 @@ class Decompositions {
   int n_made_ = 0;
 };
 
-/// What flows there are: sources, then exchanges.
+/// The heat flows of a system: sources, then exchanges.
 [[nodiscard]] std::vector<HeatFlow> flows_of(const ReducedSystem& system);
 
 }  // namespace driftwright::solver

@@ -40,7 +40,7 @@ void check_materials(const Mesh& mesh, const RegionMaterials& materials) {
   }
 }
 
-/// Nodes at which springs make up more than half of the diagonal.
+/// Nodes at which springs contribute more than half of the diagonal.
 std::vector<int> held_stiffly(const NodeMatrix& k, const std::vector<SpringLayer>& layers) {
   std::vector<double> of_springs(k.n_rows, 0.0);
   for (const SpringLayer& layer : layers) {
@@ -70,13 +70,13 @@ struct Elasticity::Parts {
   Parts(const Mesh& mesh, const RegionMaterials& materials) : thermal_load(mesh, materials) {}
 
   ThermalLoad thermal_load;
-  std::vector<char> held;  // not 0 for dof 3 node + direction that cannot move
+  std::vector<char> held;  // not 0 for each dof 3 node + direction that cannot move
   mutable ElasticReport report;
-  std::unique_ptr<StiffnessFactor> factor;  // this, or the rest
+  std::unique_ptr<StiffnessFactor> factor;  // either this or the following members
   NodeMatrix k;
   std::unique_ptr<Multigrid> multigrid;
 
-  Eigen::VectorXd solve(Eigen::VectorXd force) const {  // full length in, full length out, zero where held
+  Eigen::VectorXd solve(Eigen::VectorXd force) const {  // full length in, full length out, zero where fixed
     for (Eigen::Index i = 0; i < force.size(); ++i) {
       if (held[i]) force[i] = 0.0;
     }

@@ -9,8 +9,8 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kLargestGap = 0.01;  // of the heat turned over
-constexpr double kSlack_K = 0.01;     // of the whole machine: where next to nothing flows, rounding is all there is
+constexpr double kLargestGap = 0.01;  // of the exchanged heat
+constexpr double kSlack_K = 0.01;     // of the whole machine: with almost no heat flow the gap consists of rounding
 
 }  // namespace
 

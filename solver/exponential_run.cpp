@@ -15,14 +15,14 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kShareOfTolerance = 0.05;  // of the absolute tolerance: error of a step
+constexpr double kShareOfTolerance = 0.05;  // error of a step, relative to the absolute tolerance
 constexpr int kStepsOfOneTangent = 50;
-constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent: more are not kept for the next step
+constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent; more are not stored for the next step
 constexpr double kShortestStep_s = 1e-3;
-constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
+constexpr double kFarthest_K = 3000.0;  // from the reference; no machine gets there
 constexpr int kBisections = 40;
 
-/// One run on its way.
+/// One run.
 class ExponentialRun {
  public:
   ExponentialRun(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
@@ -46,7 +46,7 @@ class ExponentialRun {
       per_unit = std::max(per_unit, system.probes[static_cast<std::size_t>(p)].weights.norm());
     };
     const auto look_at_those_of =
-        [&](const BoundLaw& law) {  // not all: a system may have more of them from laws that it had before
+        [&](const BoundLaw& law) {  // not all: a system may have more of them, from laws that it had before
           for (int p : law.probes) look_at(p);
         };
     for (const HeatSource& s : system.sources) look_at_those_of(s.power_W);
@@ -65,12 +65,12 @@ class ExponentialRun {
   }
 
   [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
-  /// @param stretch  outlives the steps in it
+  /// @param stretch  must outlive the steps in it
   void enter(const LinearStretch& stretch) {
     stretch_ = &stretch;
     if (rates_.enter(stretch) || stretch.drive_changed) has_tangent_ = false;
   }
-  /// @return false where no step gets there
+  /// @return false if no step succeeds
   [[nodiscard]] bool go(double from_s, double until_s) {
     double t_s = from_s, limit_s = std::min(until_s - from_s, most_s_);
     while (until_s - t_s > kSameStep * (until_s - from_s)) {
@@ -80,7 +80,7 @@ class ExponentialRun {
         limit_s = std::min(2.0 * limit_s, most_s_);
         if (n_switches_ > most_switches_) return false;
       } else {
-        has_tangent_ = has_tangent_ && n_steps_ == 0;  // it is of this very state
+        has_tangent_ = has_tangent_ && n_steps_ == 0;  // the tangent belongs to exactly this state
         limit_s = 0.5 * h_s;
         if (!(limit_s > kShortestStep_s)) return false;
       }
@@ -110,7 +110,7 @@ class ExponentialRun {
     first_ = h_s * e.phi1 - second_;
     known_s_ = h_s;
   }
-  /// Of the step's tangent: looked up, doubled from those of half the step, or anew.
+  /// Exponentials of the current tangent: stored ones, doubled from those of half the step, or new ones.
   const Exponentials& exponentials_of(double h_s) {
     const auto of = [&](double length_s) {
       return std::find_if(known_.begin(), known_.end(),
@@ -128,13 +128,14 @@ class ExponentialRun {
       known_.emplace_back(std::ldexp(h_s, -static_cast<int>(i)), std::move(halves[i]));
     return known_.back().second;
   }
-  /// How far a thermostat's probe is past where it switches, when it would be on: > 0 switches it on, < 0 off.
+  /// Distance of a thermostat's probe beyond its next switching temperature: > 0 means it must switch on, < 0 off.
   [[nodiscard]] double beyond_K(std::size_t i, double ambient_K, const Eigen::VectorXd& z) const {
     const Thermostat& t = system_.thermostats[i];
     const double probe_K = system_.reference_K + system_.probes[static_cast<std::size_t>(t.probe)].theta_K(z, ambient_K);
     return probe_K - (rates_.is_on(i) ? t.off_below_K : t.on_above_K);
   }
-  /// Share of a step from the state to `end` at which the first thermostat switches, on the cubic through both; 1 and none where none does.
+  /// Share of a step from the state to `end` at which the first thermostat switches, on the cubic through both; 1 and none
+  /// if none switches.
   [[nodiscard]] double first_switch(double t_s, double h_s, const Eigen::VectorXd& end,
                                     std::vector<std::size_t>& which) const {
     which.clear();
@@ -156,12 +157,12 @@ class ExponentialRun {
     }
     return first;
   }
-  /// The cubic through the state, `end` and their slopes, as the last step has them.
+  /// The cubic through the state, `end` and their slopes, which the last step has computed.
   [[nodiscard]] Eigen::VectorXd between(double s, double h_s, const Eigen::VectorXd& end) const {
     return state_ + s * s * (3.0 - 2.0 * s) * (end - state_) + s * (1.0 - s) * (1.0 - s) * h_s * (n0_ + tangent_ * state_) -
            s * s * (1.0 - s) * h_s * (n1_ + tangent_ * end);
   }
-  /// @return how far it went: h, less where a thermostat switched, 0 where no step of that length does
+  /// @return the length of the step taken: h, less if a thermostat switched, 0 if no such step is possible
   double step(double t_s, double h_s) {
     Eigen::VectorXd end(state_.size());
     if (!tried(t_s, h_s, end)) return 0.0;
@@ -181,7 +182,7 @@ class ExponentialRun {
     }
     return h_s;
   }
-  /// The step that was tried last.
+  /// Stores the last tried step.
   void keep(double t_s, double h_s) {
     if (!steps_->is_whole) return;
     if (3 * sizeof(double) * static_cast<std::size_t>(tangent_.size()) * steps_->matrices.size() > KeptSteps::kMostBytes) {
@@ -199,7 +200,7 @@ class ExponentialRun {
     if (which == known.size()) known.push_back({tangent, h_s, decay_, first_, second_});
     steps_->steps.push_back({t_s, which, n1_ - n0_});
   }
-  /// @param end  the state at its end; @return false where the step is too long
+  /// @param end  receives the state at its end; @return false if the step is too long
   bool tried(double t_s, double h_s, Eigen::VectorXd& end) {
     prepare(t_s, h_s);
     rest(t_s, state_, n0_);
@@ -224,17 +225,17 @@ class ExponentialRun {
 
   const ReducedSystem& system_;
   const TimeSeries& ambient_;
-  StepsOfRun* steps_;  ///< null: they are not kept
+  StepsOfRun* steps_;  ///< null: steps are not stored
   const LinearStretch* stretch_ = nullptr;
   LiveRate rates_;
   Eigen::VectorXd state_;
   double most_s_, allowed_ = 0.0, farthest_ = 0.0;
   int most_switches_, n_switches_ = 0;
   bool has_tangent_ = false, is_tangent_kept_ = false;
-  int n_steps_ = 0;        ///< gone with this tangent
-  double known_s_ = -1.0;  ///< the step that the matrices are for
+  int n_steps_ = 0;        ///< steps taken with this tangent
+  double known_s_ = -1.0;  ///< the step that the matrices belong to
   Eigen::MatrixXd tangent_, decay_, first_, second_;
-  std::vector<std::pair<double, Exponentials>> known_;  ///< of this tangent, with the step that they are for
+  std::vector<std::pair<double, Exponentials>> known_;  ///< of this tangent, with the step that they belong to
   Eigen::VectorXd next_, n0_, n1_, rest_;
 };
 

@@ -8,7 +8,7 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kBlock =
-    4;  // blocks of the series, each of so many terms: for a norm of at most 1 what is left out is 1/18! of 1
+    4;  // blocks of the series, with as many terms each: for a norm of at most 1 the truncation error is 1/18! of 1
 
 /// 1/k! for k from 0.
 constexpr auto kInverseFactorial = [] {

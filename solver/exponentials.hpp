@@ -3,8 +3,8 @@
 //
 //     e^{2X} = e^X e^X,   φ1(2X) = (e^X + 1) φ1(X) / 2,   φ2(2X) = (φ1(X)² + 2 φ2(X)) / 4
 //
-// φ1(X) = ∫ e^{(1-s)X} ds and φ2(X) = ∫ e^{(1-s)X} s ds, s from 0 to 1. Source: Hochbruck & Ostermann, Acta Numerica 19 (2010) 209-286; the series in powers of
-// its fourth power: Paterson & Stockmeyer, SIAM J. Comput. 2 (1973) 60-66.
+// φ1(X) = ∫ e^{(1-s)X} ds and φ2(X) = ∫ e^{(1-s)X} s ds, s from 0 to 1. Source: Hochbruck & Ostermann, Acta Numerica 19
+// (2010) 209-286; the series in powers of its fourth power: Paterson & Stockmeyer, SIAM J. Comput. 2 (1973) 60-66.
 
 #include <Eigen/Core>
 #include <vector>
@@ -17,10 +17,10 @@ struct Exponentials {
 
 [[nodiscard]] Exponentials exponentials(const Eigen::MatrixXd& x);
 
-/// Of X, X/2, X/4 ... down to the one that comes of the series.
+/// Those of X, X/2, X/4 ... down to the one computed by the series.
 [[nodiscard]] std::vector<Exponentials> exponentials_and_halves(const Eigen::MatrixXd& x);
 
-/// Of 2X, given those of X.
+/// Those of 2X, from those of X.
 [[nodiscard]] Exponentials doubled(const Exponentials& of_x);
 
 }  // namespace driftwright::solver

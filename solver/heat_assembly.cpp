@@ -20,7 +20,7 @@ int must_exist(int index, const std::string& name) {
   return index;
 }
 
-/// The machine as assembly sees it: names to unknowns and integrals.
+/// Maps names of the machine to unknowns and integrals.
 class Places {
  public:
   Places(const Mesh& mesh, const effects::HeatBalance& balance) : mesh_(mesh), balance_(balance) {}
@@ -84,7 +84,7 @@ SparseRow from_entries(int n, const std::vector<Eigen::Triplet<double>>& entries
   return g;
 }
 
-/// ∫ (T - T_s)² over a region or surface as a form: ∫ N N', and where the surrounding is an unknown, its coupling.
+/// ∫ (T - T_s)² over a region or surface as a quadratic form: ∫ N N', and its coupling if the surrounding is an unknown.
 SparseRow body_matrix(const Places& places, const Body& body, int surrounding) {
   std::vector<Eigen::Triplet<double>> entries;
   if (body.kind == BodyKind::kNode) {
@@ -190,7 +190,8 @@ class Binder {
   Binder(const Places& places, const effects::HeatBalance& balance, FullSystem& system)
       : places_(places), balance_(balance), system_(system) {}
 
-  /// @param surface  that the law's film lies on: its ambient is the air before it, which may be stratified; nullptr for none
+  /// @param surface  that the law's film is on: its ambient is the air before this surface, which may be stratified; nullptr
+  ///                 for none
   BoundLaw bind(const effects::Law& law, const Body* surface = nullptr) {
     BoundLaw bound(law);
     for (const Body& body : law.probes) {
@@ -224,7 +225,7 @@ class Binder {
       offset_K_m2 += point_m2 * ambient_offset_K(balance_.stratifications, position.z());
       area_m2 += point_m2;
     });
-    bodies_.push_back({});  // none that probe() could be asked for
+    bodies_.push_back({});  // an empty body, which probe() never asks for
     system_.probes.push_back(
         {effects::ambient_node(), surface.name, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
     return static_cast<int>(bodies_.size()) - 1;

@@ -11,9 +11,10 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostPcgIterations = 2000;
-constexpr double kPcgShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
-// With the diagonal alone iterations grow with the root of γ over the square of the cells' size; a cycle of multigrid costs some
-// four of them and keeps to under ten. The first γ that took many turns it on for itself and all above.
+constexpr double kPcgShareOfTolerance = 0.02;  // errors of linear solves must not affect the step size
+// With the diagonal alone the number of iterations grows with the root of γ / (cell size)². A cycle of multigrid costs as
+// much as about four of them and keeps the number below ten. The first γ with many iterations turns multigrid on for itself
+// and all larger ones.
 constexpr int kManyIterations = 24;
 
 bool same_time(double a_s, double b_s) {
@@ -40,7 +41,7 @@ Eigen::VectorXd times(const SparseRow& a, const Eigen::VectorXd& x) {
 
 constexpr double kMostTemperature_K = 5000.0;
 
-/// Coldest and warmest of what surrounds the machine at a time.
+/// Lowest and highest temperature of what surrounds the machine at a time.
 std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& ambient, double t_s) {
   double low = ambient.at(t_s), high = low;
   for (const FixedUnknowns& f : system.fixed) {
@@ -190,7 +191,7 @@ void HeatOde::look(double t_s, const double* y) {
   watch_.step(t_s, y, n_, low_K, high_K, most_W > 0.0, least_W < 0.0);
 }
 
-Eigen::VectorXd HeatOde::observe(const double* y, double ambient_K) const {  // outputs have few entries or many
+Eigen::VectorXd HeatOde::observe(const double* y, double ambient_K) const {  // outputs have few or many nonzero entries
   Eigen::VectorXd outputs = ambient_K * system_.outputs.ambient;
   for (Eigen::Index j = 0; j < outputs.size(); ++j) {
     const double* column = system_.outputs.state.col(j).data();
@@ -252,7 +253,7 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   if (!fixed_unknowns_.empty()) residual_ -= times(mass_here(), slope);
   zero_fixed(residual_.data());
   std::fill(x_.begin(), x_.end(), 0.0);
-  // A slope counts by what it adds in the first step after a jump, some seconds.
+  // A slope counts by its contribution in the first step after a jump, some seconds.
   constexpr double kPerSecond = 0.1;
   Pcg solver(*matrix);
   solver.refresh(free_ones_);
@@ -274,8 +275,8 @@ void HeatOde::refresh_shifted(double gamma) {
   double* a = shifted_.valuePtr();
   const int n_entries = static_cast<int>(shifted_.nonZeros());
   for_each_index(n_entries, n_entries > kWorthThreads, [=](int i) { a[i] = m[i] + gamma * k[i]; });
-  // Residuals are measured by what they would heat: A's own diagonal hides errors of smooth fields where γ K rules. A tenth of
-  // a per cent of it is for bodies of next to no capacity.
+  // Residuals are scaled by the heat capacity: A's own diagonal would hide errors of smooth fields where γ K dominates. A
+  // tenth of a per cent of the diagonal is added for bodies with almost no capacity.
   constexpr double kLeastShare = 1e-3;
   const Eigen::VectorXd of_mass = mass_here().diagonal(), of_all = shifted_.diagonal();
   residual_scale_ = of_mass.cwiseMax(kLeastShare * of_all);
@@ -286,7 +287,7 @@ void HeatOde::refresh_shifted(double gamma) {
 
 bool HeatOde::solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
                           double* c) {
-  // Prescribed unknowns are known: c = s + γ slope. They move to the base, so that x is zero there.
+  // Prescribed unknowns are known: c = s + γ slope. They are added to the base, so that x is zero there.
   std::copy(predicted, predicted + n_, base_.data());
   std::copy(s, s + n_, gathered_.data());
   for (std::size_t f = 0; f < system_.fixed.size(); ++f) {
@@ -302,7 +303,8 @@ bool HeatOde::solve_stage(double t_s, double gamma, const double* predicted, con
   } else if (!solve_nonlinear_stage(t_s, gamma, weight)) {
     return false;
   }
-  // Where x has been added to the state evaluated last, what flows is linear in it; Newton's iterations end at an evaluation.
+  // If x has been added to the state of the last evaluation, the flows are linear in it; Newton's iterations end with an
+  // evaluation.
   const double* beyond = is_affine_ ? x_.data() : nullptr;
   std::copy(x_.begin(), x_.end(), c);
   for (int i : fixed_unknowns_) c[i] = s[i] - gathered_[i];
@@ -349,15 +351,15 @@ void HeatOde::solve_linear_stage(double gamma) {
   if (!multigrid && outcome.iterations > kManyIterations && n_ > worth_multigrid_) {
     least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);
   }
-  if (multigrid && outcome.iterations > kManyIterations) multigrids_.clear();  // K is no longer what they were made of
+  if (multigrid && outcome.iterations > kManyIterations) multigrids_.clear();  // K has changed since they were made
   shifted_solver_.conserve(work_.data(), x_.data());
 }
 
 const Multigrid* HeatOde::multigrid_for(double gamma) {
   if (gamma < least_multigrid_gamma_) return nullptr;
   constexpr double kBand =
-      2.0;  // that of a γ within this factor serves nearly as well, and a new one costs some ten iterations
-  constexpr std::size_t kMost = 4;  // kept: after each jump γ grows again through the same values
+      2.0;  // a multigrid made for a γ within this factor is almost as good; a new one costs some ten iterations
+  constexpr std::size_t kMost = 4;  // stored: after each jump γ grows again through the same values
   for (const auto& [of_gamma, multigrid] : multigrids_) {
     if (gamma <= kBand * of_gamma && of_gamma <= kBand * gamma) return &multigrid;
   }
@@ -368,7 +370,7 @@ const Multigrid* HeatOde::multigrid_for(double gamma) {
 
 bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weight) {
   constexpr int kMostNewton = 10;
-  constexpr double kShareOfError = 0.1, kDiverging = 2.3, kSlowest = 0.3;  // as ARKODE has them
+  constexpr double kShareOfError = 0.1, kDiverging = 2.3, kSlowest = 0.3;  // ARKODE's values
   x_.setZero();
   Eigen::VectorXd step(n_);
   double last = 0.0, rate = 1.0;
@@ -398,7 +400,7 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
   return false;
 }
 
-/// Flows are taken at the state itself, and a constant is added to it until its heat is theirs to rounding.
+/// Evaluates the flows at the state itself, then adds a constant to it until its heat equals theirs up to rounding.
 void HeatOde::close_balance(double t_s, double gamma) {
   constexpr int kMostPasses = 8;
   const double of_stiffness = free_ones_.dot(times(*stiffness_, free_ones_));

@@ -1,13 +1,13 @@
 #pragma once
-// The full model as SUNDIALS sees it: slopes and implicit stages. The state is θ followed by the heats Q of the flows, so that
-// heat is integrated with the stage weights and balances to rounding:
+// The full model in the form that SUNDIALS needs: slopes and implicit stages. The state is θ followed by the heats Q of the
+// flows, so that heat is integrated with the stage weights and balances to rounding:
 //
 //     dθ/dt = M⁻¹ heat(θ, t),   dQ/dt = flows(θ, t)
 //
-// A stage z = y + c wants c = s + γ dθ/dt(z) with s from the stages before, which is solved as M (c - s) = γ heat(y + c): a system
-// with M + γ K, and no M⁻¹. The slope of a stage then is (c - s) / γ. Only a restart takes a solve with M itself.
+// A stage z = y + c requires c = s + γ dθ/dt(z), with s from the stages before. It is solved as M (c - s) = γ heat(y + c): a
+// system with M + γ K, without M⁻¹. The slope of a stage is then (c - s) / γ. Only a restart needs a solve with M itself.
 //
-// Unknowns of prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them there is
+// Unknowns with a prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them at g is
 // ∫ -1'heat dt + 1'M (θ - θ_0) over those rows. Where heat capacity varies, M is M(θ).
 
 #include <limits>
@@ -26,22 +26,23 @@ namespace driftwright::solver {
 class HeatOde : public StageOde {
  public:
   /// @param system, ambient  borrowed
-  /// @param absolute_K    error allowed of a step; linear solves take a small share of it
-  /// @param worth_multigrid  more unknowns than these are conditioned by multigrid where their diagonal takes many iterations
+  /// @param absolute_K    allowed error of a step; linear solves use a small share of it
+  /// @param worth_multigrid  with more unknowns than this, multigrid is the preconditioner if the diagonal needs many
+  ///                     iterations
   HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid = kWorthMultigrid);
   static constexpr int kWorthMultigrid = 5000;
 
   [[nodiscard]] int size() const override { return n_ + n_flows(); }
   [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
   [[nodiscard]] const std::vector<Thermostat>& thermostats() const override { return system_.thermostats; }
-  /// What is held at another temperature than it starts with jumps at once; the heat of that jump belongs to the balance.
+  /// A prescribed temperature that differs from its start value jumps at once; the heat of this jump is part of the balance.
   void begin(const Eigen::VectorXd& start, double* y) override;
   void tolerances(double absolute_K, double* tolerance) const override;
   bool begin_stretch(const LinearStretch& stretch, double* y) override;
   void restart(double t_s, const double* y) override;
   [[nodiscard]] double distance_to_switch_K(int i, double t_s, const double* y) const override;
   void toggle(int i) override { rate_.set_thermostat(i, !rate_.thermostat_is_on(i)); }
-  /// That of the stage which ended the last step, else by a solve with M.
+  /// The slope of the stage that ended the last step, if known, else from a solve with M.
   void slopes(double t_s, const double* y, double* ydot) override;
   [[nodiscard]] bool solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
                                  double* c) override;
@@ -61,7 +62,7 @@ class HeatOde : public StageOde {
   struct Slope {
     double t_s = 0.0;
     bool is_known = false;
-    bool is_rough = false;  ///< by a solve with M: whatever has just jumped or bent is still sharp in it
+    bool is_rough = false;  ///< from a solve with M: it contains jumps and bends unsmoothed
     Eigen::VectorXd value;  ///< of unknowns and flows
   };
 
@@ -75,11 +76,11 @@ class HeatOde : public StageOde {
   void evaluate(double t_s, const double* theta);
   void refresh_shifted(double gamma);
   void solve_linear_stage(double gamma);
-  /// What conditions M + γ K; nullptr where its diagonal does.
+  /// The preconditioner for M + γ K; nullptr if its diagonal is used.
   [[nodiscard]] const Multigrid* multigrid_for(double gamma);
   [[nodiscard]] bool solve_nonlinear_stage(double t_s, double gamma, const double* weight);
   void close_balance(double t_s, double gamma);
-  /// Heat into the prescribed unknowns of set f at the state evaluated last plus x [W].
+  /// Heat into the prescribed unknowns of set f at the state of the last evaluation plus x [W].
   [[nodiscard]] double heat_into_fixed_W(std::size_t f, const double* x) const;
   [[nodiscard]] const SparseRow& mass_here() const { return system_.capacity ? mass_now_ : system_.mass; }
 
@@ -93,24 +94,24 @@ class HeatOde : public StageOde {
   std::vector<HeatFlow> flows_;      ///< of the rate, then of prescribed unknowns
   std::vector<char> is_fixed_;       ///< per unknown; empty where none is
   std::vector<int> fixed_unknowns_;  ///< of all sets
-  std::vector<double> slope_K_s_;    ///< of each set of prescribed unknowns, in the present stretch
+  std::vector<double> slope_K_s_;    ///< of each set of prescribed unknowns, in the current stretch
   SparseRow mass_;                   ///< at the reference temperature, decoupled
-  SparseRow mass_now_;               ///< M(θ); used where heat capacity varies
+  SparseRow mass_now_;               ///< M(θ); used if heat capacity varies
   SparseRow shifted_;
   const SparseRow* stiffness_ = nullptr;  ///< the tangent in shifted_; owned by rate_
   double gamma_ = -1.0;
   Eigen::VectorXd free_ones_, mass_ones_, mass_free_ones_;  ///< mass_ones_ = M 1, mass_free_ones_ = M free_ones_
   std::vector<Eigen::VectorXd> mass_fixed_ones_;            ///< M times the members of each prescribed set
   Eigen::VectorXd residual_scale_;
-  Eigen::VectorXd base_, gathered_, heat_, x_, residual_, work_, flow_W_;  ///< of the present stage
+  Eigen::VectorXd base_, gathered_, heat_, x_, residual_, work_, flow_W_;  ///< of the current stage
   double ambient_K_ = 0.0;                                                 ///< of the last evaluation
   Slope at_start_, latest_;
   SlopeSpace space_;
   Pcg shifted_solver_;
-  std::vector<std::pair<double, Multigrid>> multigrids_;  ///< γ, and the one made for it
+  std::vector<std::pair<double, Multigrid>> multigrids_;  ///< γ, and the multigrid made for it
   double least_multigrid_gamma_ = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd began_, jump_J_;                ///< the state at t = 0, and the heat of each flow that made it so
-  std::vector<std::vector<int>> output_entries_;  ///< not zero, per output
+  Eigen::VectorXd began_, jump_J_;                ///< the state at t = 0, and the heat of each flow in the jump to it
+  std::vector<std::vector<int>> output_entries_;  ///< indices of the nonzero entries, per output
   OvershootWatch watch_;
   int n_solves_ = 0, n_iterations_ = 0;
 };

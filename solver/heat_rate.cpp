@@ -8,7 +8,7 @@
 namespace driftwright::solver {
 namespace {
 
-/// A law's value; what it says against an argument gets its name.
+/// The value of a law; its name is added to a RangeError.
 template <class Value>
 double named(const std::string& name, Value value) {
   try {

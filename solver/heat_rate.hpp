@@ -1,6 +1,6 @@
 #pragma once
-// What heat flows where at a state: f(u) - K(u) θ - r(θ), its tangent, and each flow by name. Time integration and steady
-// state both stand on it.
+// The heat into each unknown at a state: f(u) - K(u) θ - r(θ), its tangent, and each flow by name. Time integration and
+// steady state both use it.
 
 #include <vector>
 
@@ -8,14 +8,15 @@
 
 namespace driftwright::solver {
 
+/// Evaluates these for the current drive and time.
 class HeatRate {
  public:
   /// @param system  borrowed
   explicit HeatRate(const FullSystem& system);
 
-  /// Takes over drive and time of a stretch in which laws change with temperatures alone.
+  /// Sets drive and time of a stretch in which laws change with temperatures only.
   /// @param time_s  within the stretch, not at its ends
-  /// @return true when a power or a coefficient that does not look at the state is another one than before
+  /// @return true if a power or a coefficient that does not depend on the state has changed
   bool set(const Drive& drive, double time_s, std::string_view run = {});
 
   /// Net heat into each unknown [W], n long, at θ.
@@ -23,24 +24,25 @@ class HeatRate {
 
   /// Each flow of flows() [W] at the θ of the last evaluate().
   void flows_W(const double* theta, double ambient_K, double* flows_W) const;
-  /// Their derivative along dθ, films' and links' coefficients and radiation as at the last evaluate().
+  /// Derivative of the flows along dθ, with the coefficients of films, links and radiation of the last evaluate().
   void flows_along(const double* dtheta, double* dflows_W) const;
   [[nodiscard]] const std::vector<HeatFlow>& flows() const { return flows_; }
 
-  /// Smallest and largest power of any source at the last evaluate() [W]; zero where there is none.
+  /// Smallest and largest power of any source at the last evaluate() [W]; zero without sources.
   [[nodiscard]] std::pair<double, double> power_range_W() const;
 
-  /// Symmetric tangent -d(heat)/dθ [W/K], laws' probes held, at the θ of the last evaluate(). Its pattern is that of K0.
+  /// Symmetric tangent -d(heat)/dθ [W/K], with the laws' probes held constant, at the θ of the last evaluate(). Its pattern
+  /// is that of K0.
   [[nodiscard]] const SparseRow& tangent(const double* theta, double ambient_K);
 
   /// Absolute temperature of thermostat i's probe [K].
   [[nodiscard]] double thermostat_probe_K(int i, const double* theta, double ambient_K) const;
   [[nodiscard]] bool thermostat_is_on(int i) const { return thermostat_on_[i]; }
-  /// Call set() afterwards.
+  /// Switches a thermostat; call set() afterwards.
   void set_thermostat(int i, bool on) { thermostat_on_[i] = on; }
 
  private:
-  /// A vector of few entries.
+  /// A sparse vector.
   struct Sparse {
     std::vector<int> index;
     std::vector<double> value;
@@ -70,7 +72,8 @@ class HeatRate {
   std::vector<double> probe_K_;
   bool looks_at_state_ = false;
   bool is_set_ = false;
-  // What does not look at the state, merged: heat = steady_load + θ_ambient steady_to_ambient - steady_matrix θ - ...
+  // The part that does not depend on the state, summed: heat = steady_load + θ_ambient steady_to_ambient - steady_matrix θ -
+  // ...
   SparseRow steady_matrix_, tangent_;
   Eigen::VectorXd steady_load_, steady_to_ambient_, product_;
 };

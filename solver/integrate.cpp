@@ -32,16 +32,16 @@ using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeVector>;
 using StageSolverPtr = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, FreeStageSolver>;
 using ArkodePtr = std::unique_ptr<void, FreeArkode>;
 
-/// What the callbacks are handed.
+/// The data passed to the callbacks.
 struct Callee {
   StageOde& ode;
   int n_thermostats = 0;
-  void* arkode = nullptr;  ///< for what a stage is made of
+  void* arkode = nullptr;  ///< for computing a stage's data
   std::exception_ptr failure;
-  std::string out_of_range;  ///< what the law said that refused a trial state last
+  std::string out_of_range;  ///< message of the law that refused the last trial state
 };
 
-// No exception crosses a C frame: keep it, return a code, rethrow when ARKODE has returned.
+// No exception crosses a C frame: it is stored, a code is returned, and it is rethrown when ARKODE has returned.
 template <class Work>
 int guarded(void* user, Work work) noexcept {
   auto& callee = *static_cast<Callee*>(user);
@@ -50,7 +50,7 @@ int guarded(void* user, Work work) noexcept {
     return 0;
   } catch (const RangeError& e) {
     callee.out_of_range = e.what();
-    return +1;  // a trial state that no law is defined at: ARKODE tries a smaller step
+    return +1;  // a trial state at which some law is undefined: ARKODE tries a smaller step
   } catch (...) {
     callee.failure = std::current_exception();
     return -1;
@@ -86,7 +86,7 @@ int stage_callback(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector
   return flag == 0 && converged ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;  // ARKODE tries a smaller step
 }
 
-/// To ARKODE this is a nonlinear solver that keeps everything to itself, as fixed-point ones do.
+/// To ARKODE this is a nonlinear solver without a linear solver, like the fixed-point ones.
 StageSolverPtr make_stage_solver(Callee& callee, SUNContext context) {
   StageSolverPtr s(SUNNonlinSolNewEmpty(context));
   s->content = &callee;
@@ -112,7 +112,8 @@ void check(int flag, const char* call, double time_s, Callee& callee) {
       "{} failed at {}; try looser tolerances in `solver`; a machine whose heat grows as it warms may run away", call, at));
 }
 
-/// y = the cubic through two states and their slopes; without the slope at the start, which is rough after a jump, the parabola.
+/// y = the cubic through two states and their slopes; if the slope at the start is rough after a jump, the parabola without
+/// it.
 void interpolate(double share, double step_s, const double* from, const double* slope_from, const double* to,
                  const double* slope_to, int size, double* y) {
   const double s = share, r = 1.0 - share;
@@ -141,13 +142,13 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   ode.tolerances(options.absolute_tolerance_K, out(tolerance.get()));
   Callee callee{ode, static_cast<int>(ode.thermostats().size()), nullptr, nullptr, {}};
   (void)ode.begin_stretch(stretches.front(), out(y.get()));
-  // Made before ARKODE and freed after it, which still looks at them when it goes.
+  // Made before ARKODE and freed after it, because ARKODE uses them until it is freed.
   const StageSolverPtr stage = make_stage_solver(callee, context.get());
   const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, from_s, y.get(), context.get()));
   void* mem = arkode.get();
   callee.arkode = mem;
   const auto must = [&](int flag, const char* call) { check(flag, call, from_s, callee); };
-  // Its messages come back as flags; check() says them in our words.
+  // ARKODE's messages arrive as flags; check() reports them in our own words.
   must(ARKStepSetErrHandlerFn(
            mem, [](int, const char*, const char*, char*, void*) {}, nullptr),
        "ARKStepSetErrHandlerFn");
@@ -157,7 +158,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   must(ARKStepSetNonlinearSolver(mem, stage.get()), "ARKStepSetNonlinearSolver");
   must(ARKStepSetDeduceImplicitRhs(mem, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
   must(ARKStepSetMaxErrTestFails(mem, 40),
-       "ARKStepSetMaxErrTestFails");  // a shock may need steps far below the first
+       "ARKStepSetMaxErrTestFails");  // a shock may need steps far smaller than the first
   must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
   must(ARKStepSetMaxStep(mem, options.max_step_s), "ARKStepSetMaxStep");
   if (callee.n_thermostats > 0) must(ARKStepRootInit(mem, callee.n_thermostats, switch_callback), "ARKStepRootInit");
@@ -170,7 +171,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   run.stored_J.resize(n_times);
 
   const VectorPtr at_output(N_VNew_Serial(ode.size(), context.get()));
-  const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at which the last step began
+  const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at the start of the last step
   Eigen::Index next = 0;
   const auto take_output = [&](double t_s, N_Vector state_vector) {
     const Eigen::VectorXd outputs = ode.observe(in(state_vector), ambient.at(t_s));
@@ -204,7 +205,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
       std::copy(in(y.get()), in(y.get()) + ode.size(), out(before.get()));
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
-      // Steps that shrink towards a time no law lets them pass would go on for ever.
+      // Steps that shrink towards a time that no law lets them pass would go on forever.
       constexpr double kLeastStep = 1e-12;
       if (t_s - began_s <= kLeastStep * t_s) check(ARK_CONV_FAILURE, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
@@ -214,7 +215,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
         if (output_s[next] == t_s) {
           take_output(t_s, y.get());
         } else {
-          if (flag == ARK_ROOT_RETURN) {  // the step goes on beyond t
+          if (flag == ARK_ROOT_RETURN) {  // the step continues beyond t
             check(ARKStepGetDky(mem, output_s[next], 0, at_output.get()), "ARKStepGetDky", t_s, callee);
           } else {
             interpolate((output_s[next] - began_s) / (t_s - began_s), t_s - began_s, in(before.get()),

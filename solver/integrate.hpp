@@ -1,12 +1,12 @@
 #pragma once
-// A thermal system through time by SUNDIALS ARKODE, whatever its size.
+// Integrates a thermal system of any size in time with SUNDIALS ARKODE.
 
 #include "solver/stage_ode.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::solver {
 
-/// @param stretches  of the cyclogram, cut where anything jumps or bends
+/// @param stretches  of the cyclogram, cut at every jump and bend of the inputs
 /// @throws SolveError  as simulate()
 [[nodiscard]] Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
                                    const std::vector<double>& output_s, const TransientOptions& options,

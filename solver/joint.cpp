@@ -13,8 +13,9 @@
 namespace driftwright::solver {
 namespace {
 
-/// Does the nearest point of the other side lie across, not beyond the other's edge? Where one side overhangs there is no
-/// contact. Facets that do not match lie apart along the normal; what that costs sideways on curved sides is less than half.
+/// True if the nearest point of the other side is opposite, not beyond the other's edge. Where one side overhangs there is
+/// no contact. Facets that do not match are apart along the normal; the sideways error of this on curved sides is less than
+/// half.
 bool faces(const Eigen::Vector3d& to_other, const Eigen::Vector3d& normal, double facet_size_m) {
   constexpr double kSideways = 0.05;  // of the facet's size
   const double across_m = std::abs(to_other.dot(normal));
@@ -25,8 +26,8 @@ bool faces(const Eigen::Vector3d& to_other, const Eigen::Vector3d& normal, doubl
 }  // namespace
 
 std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
-  // The rule integrates the shape functions of the side it lies on exactly, and sees those of the other only in samples:
-  // it lies on the finer side.
+  // The rule integrates the shape functions of its own side exactly, and only samples those of the other side:
+  // so it is on the finer side.
   const int surface_a = mesh.surface(joint.side_a), surface_b = mesh.surface(joint.side_b);
   std::vector<int> side_a = mesh.facets_on(surface_a), side_b = mesh.facets_on(surface_b);
   const bool exchanged = static_cast<double>(side_b.size()) * mesh::area_m2(mesh, surface_a) >

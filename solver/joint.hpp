@@ -1,5 +1,6 @@
 #pragma once
-// Joints between parts that share no nodes: quadrature points of the finer side matched with the nearest points of the other.
+// Joints between parts that share no nodes: quadrature points of the finer side are matched with the nearest points of the
+// other.
 
 #include <array>
 #include <vector>
@@ -12,17 +13,18 @@ namespace driftwright::solver {
 struct JointPoint {
   std::vector<int> node_a, node_b;
   std::vector<double> weight_a,
-      weight_b;          ///< shape functions; each sums to one, so that no heat is made or lost
+      weight_b;          ///< shape functions; each sums to one, so that heat is conserved
   double area_m2 = 0.0;  ///< quadrature weight times area ratio
   double gap_m = 0.0;    ///< distance between the two points
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, of either sense; smoothed, see mesh/normals.hpp
-  double normal_error = 0.0;                         ///< of the normal [rad], see mesh/normals.hpp
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length, either orientation; smoothed, see mesh/normals.hpp
+  double normal_error = 0.0;                         ///< error of the normal [rad], see mesh/normals.hpp
 };
 
-/// The quadrature points of a joint where its sides face each other; the rule is exact for products of quadratic functions on
-/// straight facets. Where one side overhangs the other there are none; the edge of the overlap is met to half a facet.
-/// @throws InputError  when they nowhere face each other
+/// The quadrature points of a joint where its sides face each other; the rule is exact for products of quadratic functions
+/// on straight facets. Where one side overhangs the other there are no points; the edge of the overlap is accurate to half a
+/// facet.
+/// @throws InputError  if the sides face each other nowhere
 [[nodiscard]] std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint);
 
 }  // namespace driftwright::solver

@@ -1,5 +1,5 @@
 #pragma once
-// A run that is kept, so that machines which differ from it a little are answered for less than a run of their own.
+// A stored run, from which runs of slightly different machines are computed faster than by a new simulation.
 
 #include <optional>
 
@@ -8,15 +8,16 @@
 
 namespace driftwright::solver {
 
+/// Interface of such runs.
 class KeptRun {
  public:
   virtual ~KeptRun() = default;
 
-  /// Reduced states at the outputs, size x n_times.
+  /// Reduced states at the output times, size x n_times.
   [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
 
-  /// What the same unknowns come to in another system at the same times, size x n_times.
-  /// @returns nothing where the other is none that this run can answer for: such a one is to be run by itself
+  /// The states of another system with the same unknowns at the same times, size x n_times.
+  /// @returns none if this run cannot be used for the other system, which then needs its own run
   [[nodiscard]] virtual std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                                  const TimeSeries& ambient,
                                                                  const Eigen::VectorXd& start) const = 0;

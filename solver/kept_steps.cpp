@@ -13,11 +13,11 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostHalved = 8;
-constexpr double kApart =
-    10.0;  // step errors: a step that the two machines' laws change so differently has its own error looked at
-constexpr double kOfApart = 1e-2;  // of that difference: error that is allowed beside twice a step's
+// Step errors: if the difference of the two machines' laws changes more within a step, the step's error is checked.
+constexpr double kApart = 10.0;
+constexpr double kOfApart = 1e-2;  // allowed error as a share of that difference, in addition to twice a step's
 
-/// One run on its way along the steps of another.
+/// One run with the steps of another.
 class AlongSteps {
  public:
   AlongSteps(const StepsOfRun& steps, const ReducedSystem& system, const TimeSeries& ambient, const Eigen::VectorXd& start)
@@ -28,7 +28,7 @@ class AlongSteps {
     (void)rates_.enter(stretch);
     knows_rate_ = false;
   }
-  /// @return false where no step gets there
+  /// @return false if no step succeeds
   [[nodiscard]] bool go(const StepsOfRun::Step& step, double from_s, double h_s, int n_halved = 0) {
     const StepsOfRun::Matrices& whole = steps_.matrices[step.matrices];
     const bool is_whole = std::abs(h_s - whole.h_s) <= kSameStep * whole.h_s;
@@ -42,7 +42,7 @@ class AlongSteps {
   }
 
  private:
-  /// @return false where the step is too long
+  /// @return false if the step is too long
   [[nodiscard]] bool tried(const StepsOfRun::Matrices& m, const Eigen::VectorXd& more, double from_s) {
     const Eigen::MatrixXd& tangent = steps_.tangents[m.tangent];
     if (!knows_rate_) rates_.rate(from_s, state_, rate_);
@@ -66,7 +66,8 @@ class AlongSteps {
     }
     return false;
   }
-  /// Whether a step that was gone is short enough for what is new in it: as ExponentialRun looks at its middle.
+  /// True if a stored step is short enough for the differences of the other machine: checks its middle as ExponentialRun
+  /// does.
   [[nodiscard]] bool is_true(const StepsOfRun::Matrices& m, const Eigen::VectorXd& more, double from_s) {
     end_.noalias() = m.second * (n1_ - n0_ - more);
     const double apart = end_.lpNorm<Eigen::Infinity>();
@@ -91,7 +92,7 @@ class AlongSteps {
   const StepsOfRun& steps_;
   LiveRate rates_;
   Eigen::VectorXd state_, rate_, begin_, n0_, n1_, next_, end_;
-  bool knows_rate_ = false;  ///< of the state, in the stretch at hand
+  bool knows_rate_ = false;  ///< of the state, in the current stretch
   std::vector<StepsOfRun::Matrices> parts_;
 };
 

@@ -14,8 +14,9 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr int kWhole = 100;           // unknowns: such a system is kept as it is
-constexpr double kShortest_s = 15.0;  // the fastest answer that a basis is made for; outputs are minutes apart
+constexpr int kWhole = 100;  // unknowns; a system up to this size is not reduced
+// Time scale of the fastest response that the basis represents; outputs are minutes apart.
+constexpr double kShortest_s = 15.0;
 
 std::vector<double> log_spaced(double from, double to, int n) {
   std::vector<double> values;
@@ -23,7 +24,7 @@ std::vector<double> log_spaced(double from, double to, int n) {
   return values;
 }
 
-/// A growing basis, M-orthonormal, and what the system is in it.
+/// A growing basis, M-orthonormal, and the system projected on it.
 class Basis {
  public:
   Basis(const FullSystem& system, const std::vector<Eigen::VectorXd>& points)
@@ -50,7 +51,7 @@ class Basis {
   /// n_outputs x size.
   [[nodiscard]] const Eigen::MatrixXd& outputs() const { return outputs_; }
 
-  /// Rows that residuals are looked at in; K V and M V there.
+  /// Rows in which residuals are evaluated; K V and M V there.
   [[nodiscard]] const std::vector<int>& rows() const { return rows_; }
   [[nodiscard]] const Eigen::MatrixXd& k_rows(std::size_t point) const { return at_[point].rows; }
   [[nodiscard]] const Eigen::MatrixXd& m_rows() const { return m_rows_; }
@@ -99,7 +100,7 @@ class Basis {
   std::vector<AtPoint> at_;  ///< per set of coefficients
 };
 
-/// What drives the system, each of its largest magnitude, at one set of coefficients. The start drives as an impulse.
+/// The inputs of the system, each with its largest magnitude, at one set of coefficients. The start acts as an impulse.
 struct Inputs {
   Eigen::MatrixXd loads;    ///< n x n_inputs: steps, the start, switches between sets of coefficients
   Eigen::Index start = -1;  ///< column that is M θ0, -1 for none
@@ -121,7 +122,7 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
     ambient += c[static_cast<Eigen::Index>(e)] * exchange.to_ambient;
     if (exchange.offset.size() > 0) offset += c[static_cast<Eigen::Index>(e)] * exchange.offset;
   }
-  // As many at each set of coefficients, though all of them be zero there: a pump that stands.
+  // The same number at each set of coefficients, even if all are zero there: a pump at rest.
   const auto any = [&](const auto& drives) { return std::any_of(system.exchanges.begin(), system.exchanges.end(), drives); };
   if (demand.ambient_K > 0.0 && any([](const auto& e) { return (e.to_ambient.array() != 0.0).any(); }))
     loads.push_back(demand.ambient_K * ambient);
@@ -152,8 +153,8 @@ Eigen::MatrixXd step_states(const Eigen::MatrixXd& k, const Eigen::MatrixXd& loa
   return states;
 }
 
-/// Largest difference of an output, by unit: the sum over steps and start, twice since they may step back as far, and the
-/// largest of the switches.
+/// Largest difference of an output, by unit: the sum over steps and start, doubled because they may step back as far, and
+/// the largest of the switches.
 ReductionError difference(const Outputs& outputs, const std::vector<Eigen::MatrixXd>& a,
                           const std::vector<Eigen::MatrixXd>& b, const Inputs& inputs) {
   const Eigen::Index n_inputs = inputs.loads.cols();
@@ -196,12 +197,12 @@ class Reducer {
     Reduction result;
     basis_.add(system_.ones);
     if (start_.cwiseAbs().maxCoeff() > 0.0) basis_.add(start_);
-    std::vector<Choice> round(inputs_.size());  // the steady states first
+    std::vector<Choice> round(inputs_.size());  // first the steady states
     for (std::size_t p = 0; p < round.size(); ++p) {
       round[p].point = p;
       for (Eigen::Index i = 0; i < inputs_[p].loads.cols(); ++i) round[p].inputs.push_back(i);
     }
-    std::vector<Eigen::MatrixXd> last;  // outputs of the step test a round ago
+    std::vector<Eigen::MatrixXd> last;  // outputs of the step test of the previous round
     while (true) {
       for (const Choice& choice : round) {
         const Eigen::MatrixXd found = respond(choice);
@@ -246,7 +247,7 @@ class Reducer {
     return factor_->solve(Eigen::MatrixXd(inputs_[at.point].loads(Eigen::all, at.inputs)));
   }
 
-  /// A coefficient that changes is one more input: what was steady with c' drives the system with c by (K(c') - K(c)) θ'.
+  /// A change of a coefficient is one more input: the steady state with c' drives the system with c by (K(c') - K(c)) θ'.
   void add_switches() {
     std::vector<Eigen::VectorXd> steady;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
@@ -277,7 +278,7 @@ class Reducer {
     return found;
   }
 
-  /// Where the response at one set of coefficients misses most, in the energy that a Jacobi step would take from it.
+  /// The largest residual of the response at one set of coefficients, in the energy that a Jacobi step would remove.
   Choice worst_residual(std::size_t p) const {
     Choice worst;
     double largest = -1.0;
@@ -308,14 +309,15 @@ class Reducer {
   /// Keeps the directions that the step tests use most, as few as the other half of the tolerance allows.
   void compress(Reduction& result, const std::vector<Eigen::MatrixXd>& reference) const {
     const Eigen::Index n = basis_.size();
-    if (system_.size() <= kWhole) {  // two bodies that coefficients always joined alike may be parted by a law
+    if (system_.size() <=
+        kWhole) {  // a law may distinguish two bodies that have the same connections in all sets of coefficients
       Basis whole = basis_;
       whole.add(Eigen::MatrixXd::Identity(system_.size(), system_.size()));
       result.basis = whole.vectors();
       result.error = {};
       return;
     }
-    const Eigen::Index n_kept = 1 + (inputs_[0].start >= 0 ? 1 : 0);  // 1 and the start stay
+    const Eigen::Index n_kept = 1 + (inputs_[0].start >= 0 ? 1 : 0);  // the uniform temperature and the start are kept
     Eigen::MatrixXd kept(n, n_kept);
     kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
     if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * start_;
@@ -337,7 +339,7 @@ class Reducer {
     const dense::SingularValues svd = dense::SingularValues::with_full_u(all);
     Eigen::MatrixXd directions(n, n);
     directions << held, svd.u.leftCols(n - held.cols());
-    directions = dense::orthonormal_from(directions);  // clean where singular values are rounding
+    directions = dense::orthonormal_from(directions);  // orthonormal also where singular values are rounding errors
     const auto truncation = [&](Eigen::Index size) {
       const Eigen::MatrixXd u = directions.leftCols(size), c = basis_.outputs() * u;
       std::vector<Eigen::MatrixXd> found;
@@ -348,7 +350,7 @@ class Reducer {
     };
     Eigen::Index size = n;
     ReductionError lost;
-    for (Eigen::Index step = 8; step >= 1; step /= 2) {  // errors fall nearly monotonously with the size
+    for (Eigen::Index step = 8; step >= 1; step /= 2) {  // errors decrease almost monotonically with the size
       while (size - step > held.cols()) {
         const ReductionError trial = truncation(size - step);
         if (!is_within(trial, options_, 0.5)) break;

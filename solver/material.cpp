@@ -3,7 +3,8 @@
 namespace driftwright::solver {
 namespace {
 
-/// A number, or rows of [temperature, value]; then `value` becomes the curve's at 20 degC. Nothing where it is left out.
+/// Reads a number, or rows of [temperature, value]; `value` is then the curve's value at 20 degC. Does nothing if the key is
+/// left out.
 void read_property(const ConfigMap& in, const std::string& key, double& value, PropertyCurve& curve) {
   if (!in.has(key)) return;
   curve = {};

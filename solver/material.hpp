@@ -1,5 +1,5 @@
 #pragma once
-// Materials by name, each value with its source, and materials of the user's own.
+// Materials by name, each value with its source, and materials defined by the user.
 
 #include <map>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace driftwright::solver {
 
-/// Linear thermal expansion along x, y and z of the machine [1/K]. One number: the same along all.
+/// Linear thermal expansion along x, y and z of the machine [1/K]. A single number applies to all three.
 struct Expansion {
   double x = 0.0, y = 0.0, z = 0.0;
   Expansion() = default;
@@ -18,7 +18,7 @@ struct Expansion {
   Expansion(double x_1_K, double y_1_K, double z_1_K) : x(x_1_K), y(y_1_K), z(z_1_K) {}
 };
 
-/// Isotropic but for the expansion, at about 20 degC.
+/// A material, isotropic except for the expansion, at about 20 degC.
 struct Material {
   double density_kg_m3 = 0.0;
   double conductivity_W_mK = 0.0;
@@ -28,17 +28,17 @@ struct Material {
   Expansion expansion_1_K;
   std::string source;
   PropertyCurve conductivity_curve = {},
-                heat_capacity_curve = {};  ///< over temperature; then the values above are those at 20 degC
+                heat_capacity_curve = {};  ///< over temperature; the values above are then those at 20 degC
 };
 
 /// The library, by name.
 [[nodiscard]] const std::map<std::string, Material>& material_library();
 
-/// What a material given by its values may hold. @param are_compulsory  false: of one of the library with other values
+/// The schema of a material given by its values. @param are_compulsory  false: for a library material with changed values
 [[nodiscard]] schema::Map material_schema(bool are_compulsory = true);
 /// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion (one
 /// number, or a list of three for x, y and z), and optionally source. Conductivity and heat_capacity may be rows of
-/// [temperature, value]. @param m  has the values that are left out. @throws InputError
+/// [temperature, value]. @param m  supplies the values that are left out. @throws InputError
 [[nodiscard]] Material read_material(const ConfigMap& in, Material m = {});
 
 }  // namespace driftwright::solver

@@ -1,5 +1,5 @@
 #pragma once
-// What holds a machine and its parts mechanically, as the user says it.
+// The mechanical supports and joints of a machine, as the user gives them.
 
 #include <array>
 #include <string>
@@ -7,29 +7,30 @@
 
 namespace driftwright::solver {
 
-/// A surface that is held: in directions, along its normal, or by springs to the ground; any of them together.
+/// A supported surface: fixed in directions, along its normal, or by springs to the ground; combinations are allowed.
 struct Support {
   std::string surface;
   std::array<bool, 3> fixed = {true, true, true};  ///< displacement along x, y, z is zero
-  /// Held along its normal and free along itself; on plane and curved surfaces.
+  /// Fixed along its normal and free to slide; for plane and curved surfaces.
   bool sliding = false;
   /// Stiffness of the whole surface along x, y, z [N/m], spread evenly over its area; 0: none.
   std::array<double, 3> springs_N_m = {0.0, 0.0, 0.0};
 };
 
-/// No slip and no gap.
+/// The sides have no slip and no gap.
 struct Tied {};
-/// No gap and no penetration; free to slip.
+/// The sides have no gap and no penetration, but are free to slip.
 struct Sliding {};
-/// Parts that touch thermally alone.
+/// The parts are in thermal contact only.
 struct NoMechanics {};
-/// Springs along and across the normal of each point; total over the joint: stiffness per area times the joint's area.
+/// Springs along and across the normal of each point. Values are for the whole joint: stiffness per area times the joint's
+/// area.
 struct NormalSprings {
   double normal_N_m = 0.0;
   double tangential_N_m = 0.0;  ///< in each direction of the tangent plane
 };
-/// A ring: force per displacement of one side against the other along an axis and in each direction across it. Spread
-/// evenly over the area, so that the ring also resists tilting, by its width and diameter, and turning.
+/// A ring: force per relative displacement of its sides along an axis and in each direction across it. The stiffness is
+/// spread evenly over the area, so that the ring also resists tilting, because of its width and diameter, and turning.
 struct RingSprings {
   int axis = 0;  ///< 0, 1, 2 = x, y, z
   double axial_N_m = 0.0;
@@ -37,7 +38,7 @@ struct RingSprings {
 };
 using JointKind = std::variant<Tied, Sliding, NoMechanics, NormalSprings, RingSprings>;
 
-/// How a joint holds its two sides together. Joints that are not spoken of are tied.
+/// How a joint connects its two sides. Joints that are not listed are tied.
 struct JointMechanics {
   std::string joint;
   JointKind kind;

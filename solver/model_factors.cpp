@@ -78,7 +78,7 @@ void scale_expansion(Eigen::MatrixXd& outputs, const std::vector<BodyPart<Matrix
 template <class Matrix>
 ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFactors& factors) {
   check(system, factors);
-  // `rate` comes last and by itself: fits print digits that hang on the last bit
+  // `rate` is applied last and separately, because fits print digits that depend on the last bit
   for (std::size_t s = 0; s < system.sources.size(); ++s) (system.sources[s].load *= at(factors.source, s)) *= factors.rate;
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
     scale(system.exchanges[e], at(factors.exchange, e));
@@ -86,7 +86,7 @@ ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFact
   }
   scale_matrices(system.conduction, system.mass, system.parts, factors.conductivity, factors.heat_capacity);
   scale_expansion(system.outputs.state, system.parts, factors.expansion);
-  for (std::size_t p = 0; p < system.parts.size(); ++p) {  // they remain what the sums consist of
+  for (std::size_t p = 0; p < system.parts.size(); ++p) {  // they remain the terms of the sums
     BodyPart<Matrix>& part = system.parts[p];
     part.conduction *= at(factors.conductivity, p) * factors.conduction * factors.rate;
     part.mass *= at(factors.heat_capacity, p);

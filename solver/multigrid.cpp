@@ -10,7 +10,7 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr int kCoarsestUnknowns = 600;  // a factor of these costs less than a cycle on the finest level
+constexpr int kCoarsestUnknowns = 600;  // factorising these costs less than a cycle on the finest level
 constexpr double kStrong = 0.08;        // Vanek, Mandel & Brezina 1996; halved on each coarser level
 
 template <class T, class From, int B>
@@ -23,7 +23,7 @@ BlockRows<T, B, B> in_precision(const BlockRows<From, B, B>& a) {
   return copy;
 }
 
-/// What the smoother of a level needs of its matrix.
+/// The data that the smoother of a level needs of its matrix.
 template <class T, int B, int N>
 DoubleBlocks<B> set_smoother(Level<T, B, N>& level, BlockRows<double, B, B>& a) {
   DoubleBlocks<B> inverse = invert_diagonal(a);
@@ -56,7 +56,7 @@ std::vector<char> without_neighbours(const BlockRows<T, B, B>& a) {
   return idle;
 }
 
-/// The way from a level to the next: aggregates, prolongator, near-null vectors of the next level.
+/// The transfer from a level to the next: aggregates, prolongator, near-null vectors of the next level.
 /// @return  false when aggregation no longer makes the problem smaller
 template <class T, int B, int N>
 bool set_transfer(Level<T, B, N>& level, const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal,
@@ -217,7 +217,7 @@ BlockRows<double, 1, 1> nodes_of(const SparseRow& a) {
   return nodes;
 }
 
-/// Translations along and turns about x, y and z, without the unknowns that are fixed.
+/// Translations along and rotations about x, y and z, without the fixed unknowns.
 NearNull<3, 6> rigid_motions(const NodeMatrix& a, const Eigen::Matrix3Xd& coords) {
   const Eigen::Vector3d low = coords.rowwise().minCoeff(), high = coords.rowwise().maxCoeff();
   NearNull<3, 6> motions(a.n_rows);

@@ -11,10 +11,10 @@
 
 namespace driftwright::solver {
 
-/// Nodes that stiff springs hold together. Point by point a smoother hardly moves them, so it takes them as one block of D.
+/// Nodes connected by stiff springs. A point smoother hardly moves them, so the smoother treats them as one block of D.
 struct Cluster {
   std::vector<int> nodes;
-  std::unique_ptr<StiffnessFactor> factor;  ///< of the matrix between these nodes
+  std::unique_ptr<StiffnessFactor> factor;  ///< of the matrix of these nodes
 
   /// Calls use(node, D⁻¹ r there) for each node.
   template <class T, class Use>
@@ -27,14 +27,14 @@ struct Cluster {
   }
 };
 
-/// @tparam T  numbers of matrix and vectors;  @tparam B  unknowns a node;  @tparam N  unknowns a node of the next level
+/// @tparam T  numbers of matrix and vectors;  @tparam B  unknowns per node;  @tparam N  unknowns per node of the next level
 template <class T, int B, int N>
 struct Level {
   using InverseBlock = Eigen::Matrix<T, B, B, Eigen::DontAlign>;
   BlockRows<T, B, B> a;
   std::vector<InverseBlock> inverse_diagonal;
   Cluster cluster;
-  double largest_eigenvalue = 0.0;  ///< of D⁻¹ A, or a little above
+  double largest_eigenvalue = 0.0;  ///< of D⁻¹ A, or slightly larger
   BlockRows<float, B, N> prolongator;
   BlockRows<float, N, B> restrictor;     ///< its transpose
   mutable std::vector<T> x, b, r, d, e;  ///< vectors of a cycle
@@ -53,7 +53,7 @@ auto at_node(std::vector<T>& v, int i) {
 template <int B>
 using DoubleBlocks = std::vector<Eigen::Matrix<double, B, B, Eigen::DontAlign>>;
 
-/// Inverses of the diagonal blocks. A diagonal of zero, where an aggregate was too small, is made one.
+/// Inverses of the diagonal blocks. A zero on the diagonal, from an aggregate that was too small, is replaced by one.
 template <int B>
 DoubleBlocks<B> invert_diagonal(BlockRows<double, B, B>& a) {
   DoubleBlocks<B> inverse(a.n_rows);
@@ -69,13 +69,13 @@ DoubleBlocks<B> invert_diagonal(BlockRows<double, B, B>& a) {
   return inverse;
 }
 
-/// Largest eigenvalue of D⁻¹ A by power iteration, with a margin for what that misses.
+/// Largest eigenvalue of D⁻¹ A by power iteration, with a margin because the iteration underestimates it.
 template <int B>
 double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal,
                           const Cluster& cluster) {
   const int n = a.n_rows * B;
   std::vector<double> x(n), y(n);
-  unsigned state = 12345;  // any start will do, the same each time
+  unsigned state = 12345;  // any start vector works; it is the same each time
   for (double& v : x) v = (static_cast<double>((state = state * 1664525U + 1013904223U) >> 8) / 16777216.0) - 0.5;
   double value = 0.0;
   for (int iteration = 0; iteration < 12; ++iteration) {
@@ -95,7 +95,7 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
 inline constexpr int kSmoothingSteps = 2;
 inline constexpr std::array<double, kSmoothingSteps> kSmoothingWeights = {1.02387287570313, 1.26408905371085};
 
-/// y = A x, computed in T whatever A, x and y are held in.
+/// y = A x, computed in T for any number types of A, x and y.
 template <class T, class TA, int R, int C, class TX, class TY>
 void transfer(const BlockRows<TA, R, C>& a, const TX* x, TY* y) {
   for_each_index(a.n_rows, a.value.size() > kWorthThreadsNumbers, [&](int i) {
@@ -118,7 +118,7 @@ void set_residual(const Level<T, B, N>& level) {
   });
 }
 
-/// x += p(D⁻¹A) D⁻¹ r, where r is the residual b - A x; it is used up.
+/// x += p(D⁻¹A) D⁻¹ r, where r is the residual b - A x; r is overwritten.
 template <class T, int B, int N>
 void smooth(const Level<T, B, N>& level) {
   const int n = level.a.n_rows;
@@ -136,7 +136,8 @@ void smooth(const Level<T, B, N>& level) {
     const T weight = static_cast<T>(kSmoothingWeights[step - 1]);
     const T keep = static_cast<T>((2.0 * step - 1.0) / (2.0 * step + 3.0));
     const T add = static_cast<T>((8.0 * step + 4.0) / (2.0 * step + 3.0) / level.largest_eigenvalue);
-    // Row by row: x += weight d, r -= A d, and the next direction beside the old one, which other rows still read.
+    // Row by row: x += weight d, r -= A d, and the next direction in a separate vector, because other rows still read the
+    // old one.
     for_each_index(n, parallel, [&](int i) {
       at_node<B>(level.x, i) += weight * at_node<B>(level.d, i);
       if (last) return;

@@ -1,5 +1,6 @@
 #pragma once
-// Heat flow that is not linear in the temperatures, such as radiation or conduction with a conductivity over temperature.
+// A heat flow that is not linear in the temperatures, such as radiation or conduction with a temperature-dependent
+// conductivity.
 
 #include <Eigen/Core>
 #include <string>
@@ -20,10 +21,10 @@ class NonlinearTerm {
   /// k += dr/dθ [W/K] without its antisymmetric part; entries exist in k's pattern.
   virtual void add_tangent(const double* theta, double ambient_K, SparseRow& k) const = 0;
 
-  /// Pairs of unknowns that the tangent couples, where the cells may not.
+  /// Adds the pairs of unknowns that the tangent couples and the cells may not.
   virtual void add_cliques(Cliques&) const {}
 
-  /// Heat that leaves the surface [W], for a term that is a flow of its own (radiation).
+  /// Heat that leaves the surface [W], for a term that is reported as a separate flow (radiation).
   [[nodiscard]] virtual double heat_out_W(const double*, double) const { return 0.0; }
   [[nodiscard]] virtual bool is_flow() const { return false; }
   [[nodiscard]] virtual bool reaches_ambient() const { return false; }

@@ -1,5 +1,5 @@
 #pragma once
-// Keeps what CHOLMOD does with numbers to one thread.
+// Restricts CHOLMOD's numerical work to one thread.
 
 #include <omp.h>
 
@@ -9,13 +9,14 @@
 
 namespace driftwright::solver {
 
-/// While it lives, OpenMP's parallel regions begun from here have one thread, and other threads that want one wait. For CHOLMOD's
-/// factorisations, which ask for four threads whatever OMP_NUM_THREADS says and let them wait for each other at each of thousands of
-/// small supernodes; and for these and its solves because Debian's serial OpenBLAS has no locks: two threads in it share work space
-/// and find matrices "not positive definite", or wrong numbers. Never two in one thread.
+/// While it exists, OpenMP's parallel regions that this thread begins have one thread, and other threads that construct one
+/// wait. There are two reasons. CHOLMOD's factorisations request four threads whatever OMP_NUM_THREADS says, and these wait
+/// for each other at each of thousands of small supernodes. And Debian's serial OpenBLAS, which factorisations and solves
+/// use, has no locks: two threads in it share work space and find matrices "not positive definite", or compute wrong
+/// numbers. A thread must not construct two.
 class OneThread {
  public:
-  /// @throws std::bad_alloc  where there is no memory for OpenBLAS's work space
+  /// @throws std::bad_alloc  if there is no memory for OpenBLAS's work space
   OneThread() : alone_(one_at_a_time()), levels_(omp_get_max_active_levels()) {
     claim_blas_work_space();
     omp_set_max_active_levels(0);
@@ -26,7 +27,7 @@ class OneThread {
 
  private:
   static std::mutex& one_at_a_time() {
-    static std::mutex mutex;  // global as OpenBLAS's work space is
+    static std::mutex mutex;  // global because OpenBLAS's work space is global
     return mutex;
   }
   std::unique_lock<std::mutex> alone_;

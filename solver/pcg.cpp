@@ -7,8 +7,8 @@
 
 namespace driftwright::solver {
 
-// Each loop goes over the fixed blocks of sparse.hpp and leaves one partial sum a block, so that the sums do not depend on the
-// number of threads; what can share a pass over the vectors does.
+// Each loop runs over the fixed blocks of sparse.hpp and stores one partial sum per block, so that the sums do not depend on
+// the number of threads. Operations that can share a pass over the vectors do so.
 
 void Pcg::refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale) {
   const int n = static_cast<int>(a_.rows());
@@ -26,7 +26,7 @@ void Pcg::refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale) {
   block_largest_.resize(n_blocks(n));
 }
 
-void Pcg::project_constant(double* r, double* x) const {  // x += c so that r sums to zero: no heat is made or lost
+void Pcg::project_constant(double* r, double* x) const {  // x += c so that r sums to zero: heat is conserved
   const int n = static_cast<int>(ones_.size());
   if (!(ones_a_ones_ > 0.0)) return;  // every unknown is prescribed
   const double c = dot(ones_.data(), r, n) / ones_a_ones_;
@@ -45,7 +45,7 @@ Pcg::Sums Pcg::sum_blocks(bool with_rz) const {
   Sums sums;
   for (std::size_t b = 0; b < block_sum_.size(); ++b) {
     if (with_rz) sums.rz += block_sum_[b];
-    // Written so that NaN is taken over.
+    // Written so that NaN is accepted, too.
     if (!(block_largest_[b] <= sums.largest)) sums.largest = block_largest_[b];
   }
   return sums;
@@ -140,7 +140,7 @@ PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iteratio
   while (true) {
     outcome.residual = sums.largest;
     if (outcome.residual <= tolerance) outcome.converged = true;
-    if (!(outcome.residual > tolerance) || outcome.iterations >= max_iterations) break;  // NaN ends it too
+    if (!(outcome.residual > tolerance) || outcome.iterations >= max_iterations) break;  // also ends for NaN
     ++outcome.iterations;
     const double alpha = sums.rz / multiply_p();
     const double rz = sums.rz;

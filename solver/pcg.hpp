@@ -1,6 +1,6 @@
 #pragma once
-// Conjugate gradients for M + gamma K, preconditioned by the diagonal or by multigrid, with the constant vector projected out of
-// the residual, so that each solve conserves heat to rounding however loosely it is solved.
+// Conjugate gradients for M + gamma K, preconditioned by the diagonal or by multigrid, with the constant vector projected
+// out of the residual, so that each solve conserves heat up to rounding, even with a loose tolerance.
 
 #include <Eigen/Core>
 
@@ -16,6 +16,7 @@ struct PcgOutcome {
   bool converged = false;
 };
 
+/// The solver for one matrix.
 class Pcg {
  public:
   /// @param a  symmetric positive definite; borrowed, and read again at each solve
@@ -23,17 +24,18 @@ class Pcg {
 
   /// Call when the values of the matrix have changed.
   /// @param ones   1 where heat is conserved, 0 at unknowns of prescribed temperature
-  /// @param scale  what residuals are measured by [J/K, the unit of A]; empty: the diagonal of A
+  /// @param scale  the unit of residuals, row by row [J/K, the unit of A]; empty: the diagonal of A
   void refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale = {});
 
   /// Solves A x = b from the x given. Stops when |r_i| <= tolerance scale_i for every row.
   [[nodiscard]] PcgOutcome solve(const double* b, double* x, double tolerance, int max_iterations);
-  /// The same where b - A x is known.
-  /// @param r  in: b - A x at the x given; out: at the solution
-  /// @param multigrid  of a matrix near A, or nullptr for the diagonal
+  /// The same if b - A x is known.
+  /// @param r  in: b - A x at the given x; out: at the solution
+  /// @param multigrid  of a matrix close to A, or nullptr for the diagonal
   [[nodiscard]] PcgOutcome improve(double* r, double* x, double tolerance, int max_iterations,
                                    const Multigrid* multigrid = nullptr);
-  /// Adds a constant to x until A x sums to what b does, whatever rounding has gathered in residuals that were carried along.
+  /// Adds a constant to x such that the sum of A x equals the sum of b; this removes rounding errors of residuals that were
+  /// updated step by step.
   void conserve(const double* b, double* x) const;
 
  private:

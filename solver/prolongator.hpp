@@ -1,6 +1,6 @@
 #pragma once
-// From coarse to fine: near-null vectors (what hardly costs energy: constants, rigid motions), cut to aggregates, made
-// orthonormal there and smoothed.
+// Interpolation from a coarse to a fine grid: near-null vectors (with almost no energy: constants, rigid motions),
+// restricted to aggregates, made orthonormal there and smoothed.
 // Source: Vanek, Mandel & Brezina, Computing 56 (1996) 179-196.
 
 #include <Eigen/LU>
@@ -9,12 +9,12 @@
 
 namespace driftwright::solver {
 
-/// N vectors over nodes of B unknowns: B x N per node.
+/// N vectors over nodes with B unknowns: B x N per node.
 template <int B, int N>
 using NearNull = std::vector<Eigen::Matrix<double, B, N, Eigen::DontAlign>>;
 
-/// Vectors that are orthonormal on each aggregate, and how the near-null vectors are made of them: near_null = T coarse.
-/// Where an aggregate is too small to tell N vectors apart, those that are left over are zero.
+/// Vectors that are orthonormal on each aggregate, and the coefficients of the near-null vectors in them: near_null = T
+/// coarse. If an aggregate is too small for N independent vectors, the remaining ones are zero.
 template <int B, int N>
 struct Tentative {
   NearNull<B, N> fine;    // T, per node
@@ -25,7 +25,7 @@ template <int B, int N>
 Tentative<B, N> tentative_prolongator(const Aggregates& aggregates, const NearNull<B, N>& near_null) {
   Tentative<B, N> t{near_null, NearNull<N, N>(aggregates.n, Eigen::Matrix<double, N, N>::Zero())};
   std::vector<int> start(aggregates.n + 1, 0), member(near_null.size());
-  for (int a : aggregates.of) ++start[a + 1];  // node of no aggregate: counted before the first
+  for (int a : aggregates.of) ++start[a + 1];  // a node of no aggregate is counted before the first one
   for (int a = 0; a < aggregates.n; ++a) start[a + 1] += start[a];
   std::vector<int> fill(start.begin(), start.end() - 1);
   for (int i = 0; i < static_cast<int>(near_null.size()); ++i) {
@@ -41,14 +41,14 @@ Tentative<B, N> tentative_prolongator(const Aggregates& aggregates, const NearNu
     for (int k = start[a]; k < start[a + 1]; ++k) q.template middleRows<B>(B * (k - start[a])) = near_null[member[k]];
     for (int j = 0; j < N; ++j) {
       const double before = q.col(j).norm();
-      for (int repeat = 0; repeat < 2; ++repeat) {  // twice is enough to be orthogonal to rounding
+      for (int repeat = 0; repeat < 2; ++repeat) {  // two passes make it orthogonal up to rounding
         for (int i = 0; i < j; ++i) {
           const double r = q.col(i).dot(q.col(j));
           q.col(j) -= r * q.col(i);
           t.coarse[a](i, j) += r;
         }
       }
-      constexpr double kDependent = 1e-8;  // of the vector; an aggregate is some 1e-3 of a machine, rounding 1e-16
+      constexpr double kDependent = 1e-8;  // share of the vector; an aggregate is some 1e-3 of a machine, rounding 1e-16
       const double left = q.col(j).norm();
       if (left > kDependent * before) {
         t.coarse[a](j, j) = left;
@@ -62,10 +62,10 @@ Tentative<B, N> tentative_prolongator(const Aggregates& aggregates, const NearNu
   return t;
 }
 
-/// P = (1 - ω D⁻¹ A_s) T. For one unknown a node, A_s is A without its weak entries, which are added to the diagonal, so that
-/// the constant stays what it is and an unknown that couples weakly with thousands does not make P dense. For blocks nothing is
-/// left out: turns would not survive it.
-/// @param a                  the matrix, or a multiple
+/// P = (1 - ω D⁻¹ A_s) T. With one unknown per node, A_s is A without its weak entries, which are added to the diagonal. So
+/// the constant is kept, and an unknown with thousands of weak couplings does not make P dense. For blocks nothing is
+/// left out, because rotations would be lost.
+/// @param a                  the matrix, or a multiple of it
 /// @param inverse_diagonal   of the blocks A_ii
 template <class T, int B, int N>
 BlockRows<float, B, N> smoothed_prolongator(
@@ -110,7 +110,7 @@ BlockRows<float, B, N> smoothed_prolongator(
         if (j == i || !stays) lumped += a.value[k];
         if (j != i && stays && aggregates.of[j] >= 0) row[position(aggregates.of[j])] -= a.value[k] * tentative.fine[j];
       }
-      // Without its weak entries a row may have hardly anything left on the diagonal; it then stays as it is.
+      // Without its weak entries a row may have almost nothing left on the diagonal; it is then not smoothed.
       scale = lumped > 0.1 * diagonal ? omega / lumped : 0.0;
       if (own >= 0) row[position(own)] -= lumped * tentative.fine[i];
       for (auto& entry : row) entry *= scale;

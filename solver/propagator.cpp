@@ -10,7 +10,7 @@
 namespace driftwright::solver {
 namespace {
 
-/// Modes that decay less than this in a stretch: there a and b are differences of large numbers, and series take over.
+/// Limit of λt for slow modes: below it a and b are differences of large numbers, so series replace them.
 constexpr double kSlowMode = 1e-3;
 
 /// φ1 = (1 - e^{-x}) / x, φ2 = (1 - φ1) / x, φ3 = (1/2 - φ2) / x for 0 <= x < kSlowMode, to x^4.
@@ -77,7 +77,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   run.outputs.resize(system_.outputs.state.cols(), n_times);
   if (states) states->resize(n, n_times);
   const bool reads_ambient = (system_.outputs.ambient.array() != 0.0).any();
-  Eigen::VectorXd heat_J;  // of every flow up to the stretch's start
+  Eigen::VectorXd heat_J;  // of every flow up to the start of the stretch
   double initial_J = 0.0;
   if (with_heat) {
     run.flows = flows_of(system_);
@@ -93,7 +93,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   SeriesInOrder ambient_in_order(ambient);
   LawChanges changes(system_.change_times_s);
   const Decomposition* decomposition = nullptr;
-  Eigen::VectorXd load;  // of all that does not follow the ambient, in the eigenvectors
+  Eigen::VectorXd load;  // of everything except the ambient, in the eigenvectors
   std::size_t next = 0;
   for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),

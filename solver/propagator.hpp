@@ -1,6 +1,6 @@
 #pragma once
-// Linear reduced systems in time, exactly: in each stretch of constant drive and linear ambient temperature the solution is a
-// sum of exponentials, so nothing is stepped and nothing but rounding is lost.
+// Exact solution of linear reduced systems in time: in each stretch of constant drive and linear ambient temperature the
+// solution is a sum of exponentials, so there are no steps and no error except rounding.
 
 #include "base/cyclogram.hpp"
 #include "solver/course.hpp"
@@ -11,8 +11,8 @@ namespace driftwright::solver {
 ///
 ///     z(t) = V [a + b t + e^{-Λt} (V'M z0 - a)],   b = Λ⁻¹ V'f1,   a = Λ⁻¹ (V'f0 - b)
 ///
-/// Decompositions of K are kept for the coefficients met last: where films do not change with speed there is one for all
-/// sections of all cyclograms. One thread at a time.
+/// Decompositions of K are stored for the latest coefficients: if films do not change with speed there is one for all
+/// sections of all cyclograms. Not thread-safe.
 class Propagator {
  public:
   /// @param system  borrowed
@@ -23,14 +23,14 @@ class Propagator {
   ///
   /// @param ambient       ambient temperature minus the reference temperature [K]
   /// @param output_s   times of the outputs, increasing, within the cyclogram
-  /// @param with_heat  also heat_J and stored_J of the result, which otherwise stay empty
-  /// @param states     unless null, the reduced states at the outputs, size x n_times
+  /// @param with_heat  true: also computes heat_J and stored_J, which are otherwise empty
+  /// @param states     unless null, receives the reduced states at the outputs, size x n_times
   /// @param from_s     as TransientOptions::from_s
   [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr,
                                double from_s = 0.0);
 
-  /// The same run, kept, for what systems close by would do; nothing where that were too much to keep.
+  /// The same run, stored for computing similar systems; none if it is too large to store.
   [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                              const std::vector<double>& output_s, const Eigen::VectorXd& start) {
     return Course::of(system_, decompositions_, cyclogram, ambient, output_s, start);

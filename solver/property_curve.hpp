@@ -5,7 +5,7 @@
 
 namespace driftwright::solver {
 
-/// Linear between knots, constant outside them; empty where the property is constant.
+/// Linear between knots, constant outside them; empty if the property is constant.
 struct PropertyCurve {
   std::vector<double> temperature_K;  ///< absolute, strictly increasing
   std::vector<double> value;          ///< same length

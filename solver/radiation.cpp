@@ -47,7 +47,7 @@ class RadiatingSurface : public NonlinearTerm {
         Eigen::VectorXd jump = Eigen::VectorXd::Zero(n);
         jump.head(point.N.size()) = point.N;
         double slope_W_K = 4.0 * point.strength_W_K4 * t_K * t_K * t_K;
-        if (surrounding_ >= 0) {  // between the two ends' slopes, so that the tangent stays symmetric
+        if (surrounding_ >= 0) {  // the mean of the two ends' slopes keeps the tangent symmetric
           jump[n - 1] = -1.0;
           const double s_K = surrounding_K(point, theta, ambient_K);
           slope_W_K = point.strength_W_K4 * (t_K * t_K + s_K * s_K) * (t_K + s_K);
@@ -59,7 +59,7 @@ class RadiatingSurface : public NonlinearTerm {
   }
 
   void add_cliques(Cliques& cliques) const override {
-    if (surrounding_ < 0) return;  // a facet is part of its cell
+    if (surrounding_ < 0) return;  // the cell already couples its facets' nodes
     for (const Facet& facet : facets) {
       std::vector<int> unknowns = facet.nodes;
       unknowns.push_back(surrounding_);

@@ -14,7 +14,7 @@ Eigen::MatrixXd orthonormalise(const SparseRow& mass, const Eigen::MatrixXd& col
     multiply(mass, v.data(), mv.data());
     const double length = std::sqrt(v.dot(mv));
     for (int pass = 0; pass < 2; ++pass)
-      v -= basis.leftCols(kept) * (m_basis.leftCols(kept).transpose() * v);  // twice is enough
+      v -= basis.leftCols(kept) * (m_basis.leftCols(kept).transpose() * v);  // two passes are enough
     multiply(mass, v.data(), mv.data());
     const double rest = std::sqrt(v.dot(mv));
     if (!(rest > 1e-10 * length)) continue;
@@ -33,7 +33,7 @@ Eigen::VectorXd times_ones(const SparseRow& mass, const Eigen::VectorXd& ones) {
   return m_ones;
 }
 Eigen::VectorXd times_ones(const Eigen::MatrixXd&, const Eigen::VectorXd& ones) {
-  return ones;  // M = 1, and `ones` is projected already
+  return ones;  // M = 1, and `ones` is already projected
 }
 
 template <class Matrix>

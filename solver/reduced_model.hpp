@@ -1,5 +1,5 @@
 #pragma once
-// The small systems that a basis makes of the full one.
+// Projects a system on a basis, which gives a small system.
 
 #include "solver/thermal_system.hpp"
 
@@ -13,7 +13,7 @@ namespace driftwright::solver {
 ///                           makes one without them)
 [[nodiscard]] ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis);
 
-/// A smaller one of a reduced system with M = 1. @param basis  orthonormal
+/// A smaller system from a reduced one with M = 1. @param basis  orthonormal
 [[nodiscard]] ReducedSystem project(const ReducedSystem& system, const Eigen::MatrixXd& basis);
 
 /// The same system in unknowns w = C'z with M = C C', in which M = 1. @param start  z at t = 0, which becomes w

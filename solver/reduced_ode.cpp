@@ -11,8 +11,9 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostNewtonIterations = 12;
-constexpr double kServes = 0.3;  // an exchange within so much of its value in the diagonal leaves it as it is
-constexpr double kNewtonShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
+// Relative difference of an exchange from its value in the diagonal, up to which the diagonal is kept.
+constexpr double kServes = 0.3;
+constexpr double kNewtonShareOfTolerance = 0.02;  // errors of Newton's iterations must not affect the step size
 
 }  // namespace
 
@@ -103,7 +104,7 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
     const auto i = static_cast<Eigen::Index>(e);
     jumps = !system_.exchanges[e].coefficient.looks_at_state() && coefficient[i] != now_.coefficient[i];
   }
-  // Laws of temperature may jump with the drive or a switch, too.
+  // Laws that depend on temperature may also jump with the drive or a switch.
   jumps = jumps || ((stretch.drive_changed || !is_on_.empty()) && !(live_sources_.empty() && live_exchanges_.empty()));
   if (!jumps) return false;
   power_W_ = power_W;
@@ -115,7 +116,7 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   };
   weights_of_probes(Eigen::MatrixXd::Identity(n_, n_));
   const std::vector<double> t_K = probe_K(z, inputs_.ambient_K);
-  bool serves = !is_first_;  // the diagonal that there is
+  bool serves = !is_first_;  // true if the present diagonal can be kept
   for (const LiveExchange& live : live_exchanges_) {
     double& c = coefficient[static_cast<Eigen::Index>(live.index)];
     c = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
@@ -240,7 +241,8 @@ bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, 
   }
   ++n_solves_;
   if (!converged) return false;
-  // Heats take the flows of the state found: stage values and balance agree to the size of the last step, which is linear in it.
+  // Heats use the flows of the state found: stage values and balance agree up to the size of the last step, which is linear
+  // in it.
   w = base + x;
   Eigen::VectorXd heat(n_);
   evaluate(t_s, w, heat, flow_W_);

@@ -1,14 +1,14 @@
 #pragma once
-// The reduced model as integrate() sees it, where laws look at temperatures or thermostats switch.
+// The reduced model in the form that integrate() needs, for laws that depend on temperatures and for thermostats.
 //
-// In each stretch the unknowns are those of the eigenvectors of K, with exchanges that look at temperatures at their value where the
-// stretch began or, where that is close, where an earlier one did, so that I + γ K is diagonal. What laws of temperature do to heat is a
-// correction of few terms:
+// In each stretch the unknowns are coordinates in the eigenvectors of K. K contains exchanges that depend on temperatures
+// with their value at the start of the stretch, or of an earlier stretch if that is close, so that I + γ K is diagonal. The
+// deviation of these laws is a correction with few terms:
 //
 //     dw/dt = f + θ_ambient h - Λ w + Σ_s P_s(w) b_s - Σ_e (c_e(w) - c_e0) (G_e w - θ_ambient g_e - o_e)
 //
-// Newton's iterations take the diagonal, the slope of each power along its probes (one dense solve of as many equations as there
-// are such sources), and leave the exchanges' change out.
+// Newton's iterations use the diagonal and the slope of each power along its probes (one dense solve with as many equations
+// as there are such sources), and neglect the change of the exchanges.
 
 #include "solver/decomposition.hpp"
 #include "solver/stage_ode.hpp"
@@ -24,7 +24,7 @@ class ReducedOde : public StageOde {
   [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
   [[nodiscard]] const std::vector<Thermostat>& thermostats() const override { return system_.thermostats; }
   void begin(const Eigen::VectorXd& start, double* y) override;
-  /// As much as makes an output of that size, where 2 um and 20 urad count as 1 K.
+  /// The error that changes an output by absolute_K, where 2 um and 20 urad count as 1 K.
   void tolerances(double absolute_K, double* tolerance) const override;
   bool begin_stretch(const LinearStretch& stretch, double* y) override;
   void restart(double t_s, const double* y) override;
@@ -47,7 +47,7 @@ class ReducedOde : public StageOde {
  private:
   using Map = Eigen::Map<const Eigen::VectorXd>;
 
-  /// A law of temperature in the present eigenvectors.
+  /// A law that depends on temperature, in the current eigenvectors.
   struct LiveSource {
     std::size_t index;
     double power_W = 0.0;
@@ -55,8 +55,8 @@ class ReducedOde : public StageOde {
   };
   struct LiveExchange {
     std::size_t index;
-    double coefficient = 0.0, in_diagonal = 0.0;  ///< now, and within Λ
-    std::size_t matrix = 0;                       ///< of matrices_
+    double coefficient = 0.0, in_diagonal = 0.0;  ///< current value, and the value contained in Λ
+    std::size_t matrix = 0;                       ///< index into matrices_
     Eigen::VectorXd to_ambient = {}, offset = {}, flow = {};
   };
   [[nodiscard]] Map unknowns(const double* y) const { return {y, n_}; }
@@ -78,16 +78,16 @@ class ReducedOde : public StageOde {
   Eigen::VectorXd power_W_;  ///< of sources
   std::vector<LiveSource> live_sources_;
   std::vector<LiveExchange> live_exchanges_;
-  /// V'G V of live exchanges; those of one surface (free convection and radiation) have one G.
+  /// V'G V of live exchanges; those of one surface (free convection and radiation) share one G.
   struct ExchangeMatrix {
     const Eigen::MatrixXd* of_system;
     Eigen::MatrixXd now = {};
-    double beyond = 0.0;  ///< sum of coefficients beyond those in Λ
+    double beyond = 0.0;  ///< sum of coefficients minus those in Λ
   };
   std::vector<ExchangeMatrix> matrices_;
-  Eigen::MatrixXd probes_;  ///< size x n_probes, in the present eigenvectors
+  Eigen::MatrixXd probes_;  ///< size x n_probes, in the current eigenvectors
   bool is_first_ = true;
-  bool has_jumped_ = false, is_rough_ = false;  ///< since the last step; before the present one
+  bool has_jumped_ = false, is_rough_ = false;  ///< since the last step; before the current one
   double began_J_ = 0.0;
   Eigen::VectorXd at_start_, latest_;  ///< slopes of unknowns and flows
   Eigen::VectorXd heat_, flow_W_;

@@ -1,13 +1,13 @@
 #pragma once
-// The reduced model in time: as exponentials where it is linear, by SUNDIALS ARKODE where laws look at temperatures or
+// Simulates the reduced model in time: by exponentials if it is linear, by SUNDIALS ARKODE if laws depend on temperatures or
 // thermostats switch.
 
 #include "solver/transient.hpp"
 
 namespace driftwright::solver {
 
-/// As simulate() of the full model; the states given to `callback` are reduced ones. Overshoots are not looked for: a reduced
-/// state has no bounds of its own.
+/// As simulate() of the full model; `callback` receives reduced states. Overshoots are not checked, because a reduced
+/// state has no bounds.
 [[nodiscard]] Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                                   const std::vector<double>& output_s, const TransientOptions& options,
                                   const Eigen::VectorXd& start, const OutputCallback& callback = {});

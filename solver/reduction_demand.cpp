@@ -9,7 +9,7 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kWarmer_K[] = {2.0, 20.0, 40.0};  // over the ambient: where laws of temperature are looked at
+constexpr double kWarmer_K[] = {2.0, 20.0, 40.0};  // above the ambient: temperatures at which laws are evaluated
 
 double up(double value) {
   return value == 0.0 ? 0.0 : std::exp2(std::ceil(std::log2(value) - 1e-9));
@@ -26,7 +26,7 @@ struct Range {
   }
 };
 
-/// Widens a range by what a law says at a drive and a time.
+/// Extends a range by the value of a law at a drive and a time.
 void look(const effects::Law& law, effects::Inputs at, double reference_K, Range& range) {
   if (!law.thermostat.empty()) range.take(0.0);
   if (law.probes.empty()) return range.take(std::abs(law(at)));
@@ -38,12 +38,12 @@ void look(const effects::Law& law, effects::Inputs at, double reference_K, Range
     }
     try {
       range.take(std::abs(law(at)));
-    } catch (const RangeError&) {  // the law says by itself where it ends, should a run come there
+    } catch (const RangeError&) {  // a run that gets there reports the law's range
     }
   };
   for (double warmer_K : kWarmer_K) {
     take_where([&](const effects::Body&) { return warmer_K; });
-    for (const effects::Body& one : law.probes) {  // what follows a difference is the same where all are as warm
+    for (const effects::Body& one : law.probes) {  // a law of differences is the same if all bodies have one temperature
       if (one == effects::node(effects::kAmbientName)) continue;
       take_where([&](const effects::Body& body) { return body == one ? warmer_K : 0.0; });
     }
@@ -77,7 +77,7 @@ ReductionDemand reduction_demand(const effects::HeatBalance& balance, const std:
   std::vector<Range> of_source(sources.size()), of_exchange(exchanges.size());
 
   double duration_s = 3600.0, ambient_K = 1.0;
-  std::vector<std::pair<Drive, std::string_view>> drives = {{Drive{}, {}}};  // and the run that it belongs to
+  std::vector<std::pair<Drive, std::string_view>> drives = {{Drive{}, {}}};  // with the run that it belongs to
   for (const Cyclogram* c : cyclograms) {
     duration_s = std::max(duration_s, c->duration_s());
     for (const auto& section : c->sections) drives.emplace_back(section.drive, c->name);

@@ -1,5 +1,5 @@
 #pragma once
-// What a reduced model will be asked: how strong its inputs get, and between which values its coefficients move.
+// The range that a reduced model must cover: the size of its inputs, and the range of its coefficients.
 
 #include <Eigen/Core>
 #include <vector>
@@ -16,16 +16,17 @@ struct ReductionDemand {
   double ambient_K = 1.0;     ///< largest magnitude of the ambient temperature over the reference
   double duration_s = 0.0;    ///< of the longest cyclogram
 
-  /// Widens this demand to meet another one of the same balance, too.
+  /// Extends this demand to cover another one of the same balance.
   void include(const ReductionDemand& other);
-  /// Sets of coefficients to hold at: the middle, and where some coefficient moves also all low and all high.
+  /// Sets of coefficients to build the basis for: the middle, and if any coefficient varies also all low and all high.
   [[nodiscard]] std::vector<Eigen::VectorXd> points() const;
 };
 
-/// Demand of some cyclograms and standstill. Laws that look at temperatures are taken from 2 K to 40 K above the ambient.
+/// Demand of some cyclograms and standstill. Laws that depend on temperatures are evaluated from 2 K to 40 K above the
+/// ambient.
 ///
-/// Numbers are rounded outwards to powers of two, but for coefficients that never move: so cyclograms that ask nearly the same share one
-/// reduced model, and which one does not depend on what has been run before.
+/// Numbers are rounded outwards to powers of two, except for coefficients that never change. So cyclograms with similar
+/// demands share one reduced model, and the choice does not depend on earlier runs.
 [[nodiscard]] ReductionDemand reduction_demand(const effects::HeatBalance& balance,
                                                const std::vector<const Cyclogram*>& cyclograms, const TimeSeries& ambient,
                                                double reference_K);

@@ -19,12 +19,13 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic>;  // columns (t, w size): u = t + w x (x - centre)
 
-/// A held machine stands on feet of more than a thousandth of its size: 1e-6; a free motion leaves rounding, 1e-16.
+/// Limit of the relative stiffness of a free motion. A held machine has feet of more than a thousandth of its size: 1e-6; a
+/// free motion has only rounding, 1e-16.
 constexpr double kFree = 1e-11;
-/// Parts of a free motion below this are the error of normals, not motion.
+/// Components of a free motion below this are errors of normals.
 constexpr double kSmall = 1e-2;
 
-/// Where motions are counted from, and the length that makes a turn comparable with a translation.
+/// The origin of motions, and the length that makes a rotation comparable with a translation.
 struct Frame {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double size_m = 1.0;
@@ -36,14 +37,14 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
   return m;
 }
 
-/// A point that holds some directions.
+/// A point that is fixed in some directions.
 struct Hold {
   Eigen::Vector3d position_m;
   Eigen::Matrix3d directions;  // projector
   double weight, normal_error;
 };
 
-/// The directions in which a stiffness resists, soft or stiff.
+/// The directions in which a stiffness resists, for any magnitude.
 Eigen::Matrix3d directions_of(const Eigen::Matrix3d& stiffness_N_m) {
   const dense::SymmetricEigen eigen(stiffness_N_m);
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
@@ -55,8 +56,8 @@ Eigen::Matrix3d directions_of(const Eigen::Matrix3d& stiffness_N_m) {
   return projector;
 }
 
-/// Mean squares over a set of points as quadratic forms over the motions in `frame`: of the motion that they stop, and of all
-/// motion there.
+/// Mean squares over a set of points as quadratic forms of the motions in `frame`: of the motion that the points prevent,
+/// and of the whole motion there.
 struct MeanSquares {
   Matrix6d stopped = Matrix6d::Zero(), all = Matrix6d::Zero();
 };
@@ -73,9 +74,9 @@ MeanSquares mean_squares(const std::vector<Hold>& holds, const Frame& frame) {
   return form;
 }
 
-/// What a set of points resists for certain. Motions along a curved surface meet it by the error of its normals: of those that
-/// it stops by less than normals may err, the one that it stops most says how far they do err, and four times that share of
-/// every motion is not counted on. Negative for the motions themselves.
+/// The resistance of a set of points that is certain. Motions along a curved surface are resisted only through errors of its
+/// normals. Of the motions whose resistance is within the error of normals, the largest resistance shows the actual error;
+/// four times this share of every motion is not counted. Negative for the motions themselves.
 Matrix6d resistance(const std::vector<Hold>& holds, const Frame& frame) {
   double sum = 0.0, error2 = 0.0;
   Eigen::AlignedBox3d box;
@@ -97,7 +98,7 @@ Matrix6d resistance(const std::vector<Hold>& holds, const Frame& frame) {
   return in_frame.stopped - 4.0 * in_doubt * in_frame.all;
 }
 
-/// An orthonormal basis of a subspace of space, of x, y and z as far as they lie in it.
+/// An orthonormal basis of a subspace of space, with the axes x, y and z as far as they lie in it.
 std::vector<Eigen::Vector3d> plain_basis(const Eigen::Matrix3Xd& orthonormal) {
   std::vector<Eigen::Vector3d> basis;
   const auto add_what_is_new = [&](Eigen::Vector3d v) {
@@ -123,7 +124,7 @@ std::string direction_words(const Eigen::Vector3d& v) {
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
 }
 
-/// A turn and where its axis lies, as far as the translations that are free too leave that open.
+/// A rotation and the position of its axis, as far as other free translations leave it determined.
 std::string axis_words(const Eigen::Vector3d& direction, const Eigen::Vector3d& point_m, const Eigen::Matrix3Xd& shifts) {
   std::vector<std::string> words;
   const std::string name = direction_words(direction);
@@ -137,7 +138,8 @@ std::string axis_words(const Eigen::Vector3d& direction, const Eigen::Vector3d& 
   return words.empty() ? "rotate about " + name : fmt::format("rotate about {} through {}", name, fmt::join(words, ", "));
 }
 
-/// A space of motions in words. Translations first; then turns, whose axis has a place only where no translation moves it.
+/// A space of motions in words. First translations, then rotations; the axis of a rotation has a position only if no
+/// translation moves it.
 std::string motion_words(const Motions& motions, const Frame& frame) {
   std::vector<std::string> words;
   const auto turns = dense::SingularValues::with_u_and_full_v(motions.bottomRows<3>());

@@ -50,7 +50,7 @@ void SlopeSpace::guess(double gamma, const double* b, double* x, double* residua
   });
   const Eigen::VectorXd projected = block_sums_.topRows(m).rowwise().sum();
   const Eigen::MatrixXd a = (mass_products_ + gamma * stiffness_products_).topLeftCorner(m, m);
-  // Slopes are nearly parallel when little changes: combinations that rounding has blurred are left out.
+  // Slopes are almost parallel when little changes; combinations dominated by rounding are left out.
   constexpr double kLeastEigenvalue = 1e-9;
   Eigen::VectorXd unit = Eigen::VectorXd::Zero(m);
   for (int j = 0; j < m; ++j) {

@@ -1,6 +1,7 @@
 #pragma once
-// First guesses of conjugate gradients from the span of recent slopes. While temperatures drift smoothly, what the next stage adds
-// lies nearly in that span, and the best of it costs a few dot products: about one product with a matrix, for several iterations.
+// First guesses for conjugate gradients from the span of recent slopes. While temperatures drift smoothly, the increment of
+// the next stage lies almost in this span. The best element of it costs about one matrix product and saves several
+// iterations.
 // Source: Fischer, Comput. Methods Appl. Mech. Engrg. 163 (1998) 193-204, with γ free to change.
 
 #include <Eigen/Core>
@@ -9,9 +10,10 @@
 
 namespace driftwright::solver {
 
+/// The recent slopes, with their products with M and K.
 class SlopeSpace {
  public:
-  /// @param n  unknowns
+  /// @param n  number of unknowns
   explicit SlopeSpace(int n);
 
   /// Call when K has changed.
@@ -20,10 +22,10 @@ class SlopeSpace {
     newest_ = -1;
   }
   [[nodiscard]] bool empty() const { return n_slopes_ == 0; }
-  /// Adds a slope and drops the oldest. M and K have the same pattern.
+  /// Adds a slope; drops the oldest if there are more than kMost. M and K have the same pattern.
   void add(const SparseRow& mass, const SparseRow& stiffness, const double* slope);
 
-  /// The x of the span with the least error in the norm of A = M + γ K for A x = b, and b - A x.
+  /// The x in the span with the smallest error of A x = b in the norm of A = M + γ K, and the residual b - A x.
   void guess(double gamma, const double* b, double* x, double* residual);
 
  private:

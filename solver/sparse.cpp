@@ -52,7 +52,7 @@ SparseRow pattern(int n, const Cliques& cliques) {
   for (int c = 0; c < cliques.size(); ++c) {
     for (int k = cliques.offset[c]; k < cliques.offset[c + 1]; ++k) clique_of[fill[cliques.member[k]]++] = c;
   }
-  // Twice over the rows: to count their columns, and to write them. `seen` tells which row met a column last.
+  // Two passes over the rows: one counts their columns, one writes them. `seen` holds the row that last met a column.
   SparseRow a(n, n);
   int* const row_start = a.outerIndexPtr();
   const auto columns_of = [&](int row, std::vector<int>& seen, auto take) {

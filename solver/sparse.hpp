@@ -9,7 +9,7 @@
 
 namespace driftwright::solver {
 
-/// Compressed rows. All our matrices are symmetric and hold both triangles.
+/// Compressed rows. All matrices of this program are symmetric and stored with both triangles.
 using SparseRow = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 /// Groups of unknowns that couple with each other, such as the nodes of each cell.
@@ -26,26 +26,27 @@ struct Cliques {
 /// a(dofs[i], dofs[j]) += local(i, j). Entries must exist. @throws std::logic_error  when one does not
 void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const Eigen::MatrixXd>& local);
 
-/// Position of each stored entry of `part` among the stored entries of `whole`.
-/// @throws std::logic_error  when part has an entry that whole has not
+/// Index of each stored entry of `part` among the stored entries of `whole`.
+/// @throws std::logic_error  when part has an entry that whole lacks
 [[nodiscard]] std::vector<int> slots_of(const SparseRow& part, const SparseRow& whole);
 
-/// Number of the connected set each of n unknowns belongs to, where each clique connects its members.
+/// For each of n unknowns the number of the connected set that it belongs to; each clique connects its members.
 [[nodiscard]] std::vector<int> connected_sets(int n, const Cliques& cliques);
 
-/// Loops of fewer entries run on one core: they last some 0.2 ms, and on a busy machine waiting for the others costs more.
+/// Loops over fewer entries run on one core: they last about 0.2 ms, and on a busy machine waiting for other threads costs
+/// more.
 inline constexpr int kWorthThreads = 400000;
 
-/// Rows of a block: sums are made block by block, so that any number of threads gives the same bits.
+/// Number of rows per block: sums are made block by block, so that any number of threads gives the same bits.
 inline constexpr int kBlockRows = 4096;
 [[nodiscard]] inline int n_blocks(int n) {
   return (n + kBlockRows - 1) / kBlockRows;
 }
-/// Vectors that are worth several cores.
+/// Loops over at least this many rows of a vector use several cores.
 inline constexpr int kWorthThreadsRows = 40000;
 
-/// Calls work(i) for i of 0..n, on all cores where `pays` says so, else in a plain loop: OpenMP's if() makes a team of one,
-/// which waits at barriers that cost more than a small loop.
+/// Calls work(i) for each i from 0 to n - 1, on all cores if `pays` is true, else in a plain loop: OpenMP's if() makes a
+/// team of one, whose barriers cost more than a small loop.
 template <class Work>
 void for_each_index(int n, bool pays, Work work) {
   if (!pays) {
@@ -56,14 +57,15 @@ void for_each_index(int n, bool pays, Work work) {
   for (int i = 0; i < n; ++i) work(i);
 }
 
-/// Calls work(block, begin, end) for each block of rows of 0..n, on all cores where that pays.
+/// Calls work(block, begin, end) for each block of the rows 0 to n - 1, on all cores if that is faster.
 template <class Work>
 void for_blocks(int n, Work work) {
   for_each_index(n_blocks(n), n > kWorthThreadsRows,
                  [&](int block) { work(block, block * kBlockRows, std::min(n, (block + 1) * kBlockRows)); });
 }
 
-/// Σ value[k] x[column[k]] over begin <= k < end. Four sums under way: with one, each addition waits for the one before.
+/// Σ value[k] x[column[k]] over begin <= k < end. Uses four sums in parallel: with one, each addition waits for the previous
+/// one.
 template <class T>
 T times_row(const T* value, const int* column, int begin, int end, const T* x) {
   T sum0{}, sum1{}, sum2{}, sum3{};

@@ -38,7 +38,7 @@ double facet_size_m(const Mesh& mesh, int surface) {
   return facets.empty() ? 0.0 : std::sqrt(area_m2 / static_cast<double>(facets.size()));
 }
 
-/// Young's modulus of the stiffest cell that holds all corners of one of a surface's facets.
+/// Young's modulus of the stiffest cell that contains all corners of one of a surface's facets.
 double modulus_behind_Pa(const Mesh& mesh, const RegionMaterials& materials, int surface) {
   std::vector<std::vector<int>> facets_at(mesh.n_nodes());
   const std::vector<int> facets = mesh.facets_on(surface);
@@ -73,7 +73,7 @@ double total_area_m2(const std::vector<JointPoint>& points) {
 SpringLayer joint_layer(const Mesh& mesh, const RegionMaterials& materials, const mesh::Joint& joint,
                         const JointKind& kind) {
   const int side_a = mesh.surface(joint.side_a), side_b = mesh.surface(joint.side_b);
-  constexpr double kMostGap = 0.1;  // of a facet: what coarse facets of a cylinder stand apart from those of its sleeve
+  constexpr double kMostGap = 0.1;  // of a facet: the gap between coarse facets of a cylinder and those of its sleeve
   const double most_m = kMostGap * std::max(facet_size_m(mesh, side_a), facet_size_m(mesh, side_b));
   const std::vector<JointPoint> points = joint_points(mesh, joint);
   const double area_m2 = total_area_m2(points);
@@ -141,7 +141,7 @@ SpringLayer support_layer(const Mesh& mesh, const RegionMaterials& materials, co
       const Eigen::Vector3d normal = (normals[f] * s.N.head(s.n).transpose()).normalized();
       layer.push_back({.node = {nodes.begin(), nodes.end()},
                        .weight = {s.N.data(), s.N.data() + s.n},
-                       .stiffness_N_m = normal * normal.transpose(),  // of length one; made a stiffness below
+                       .stiffness_N_m = normal * normal.transpose(),  // a unit projector; multiplied by a stiffness below
                        .position_m = x * s.N.head(s.n).transpose(),
                        .node_a = nodes[0],
                        .area_m2 = q.weight * j.det,

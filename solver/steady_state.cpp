@@ -13,7 +13,8 @@
 namespace driftwright::solver {
 namespace {
 
-/// Goes from θ along a step as far as laws are defined: all of it, or a half, a quarter, ... Leaves the rate at the new state.
+/// Advances θ along a step as far as laws are defined: the whole step, or a half, a quarter, ... Leaves the rate evaluated
+/// at the new state.
 /// @throws RangeError  of the law that refuses the last of forty halvings
 void advance(HeatRate& rate, double ambient_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
              Eigen::VectorXd& heat) {
@@ -24,13 +25,13 @@ void advance(HeatRate& rate, double ambient_K, const Eigen::VectorXd& step, doub
     try {
       rate.evaluate(theta.data(), ambient_K, heat.data());
       return;
-    } catch (const RangeError&) {  // a trial state that no law is defined at
+    } catch (const RangeError&) {  // a trial state at which some law is undefined
       if (halving == kMostHalvings) throw;
     }
   }
 }
 
-/// @throws InputError  where a thermostat would switch at the temperatures that its setting leads to
+/// @throws InputError  if a thermostat would switch at the temperatures that its setting leads to
 void require_thermostats_at_rest(const FullSystem& system, const HeatRate& rate, const Eigen::VectorXd& theta,
                                  double ambient_K) {
   for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
@@ -78,7 +79,7 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     const Eigen::VectorXd step = factor.solve(heat);
     const double moved_K = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(moved_K)) break;
-    // The slope of laws is left out of K: where it is steeper than K, whole steps would swing to and fro ever wider.
+    // K does not contain the slope of laws: where it is steeper than K, whole steps would oscillate with growing amplitude.
     if (moved_K > 0.9 * last_moved_K) share = std::max(0.5 * share, 1.0 / 64.0);
     last_moved_K = moved_K;
     try {
@@ -167,7 +168,7 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
     Eigen::VectorXd heat_out = Eigen::VectorXd::Zero(n);
     term->add_heat_out(theta.data(), at.ambient_K, heat_out.data());
     e.offset = e.matrix * theta - heat_out;
-    if (term->reaches_ambient()) {  // the ambient's own slope: a surface of another temperature radiates by another one
+    if (term->reaches_ambient()) {  // slope over the ambient: a surrounding of another temperature radiates differently
       constexpr double kHalfStep_K = 0.05;
       Eigen::VectorXd below = Eigen::VectorXd::Zero(n), above = below;
       term->add_heat_out(theta.data(), at.ambient_K - kHalfStep_K, below.data());

@@ -1,10 +1,10 @@
 #pragma once
-// How exactly the steps of exponential integration end, in a run and in a kept one.
+// Tolerances for the ends of steps in exponential integration, for runs and stored runs.
 
 namespace driftwright::solver {
 
-inline constexpr double kShareIterated = 1e-3;  ///< of a step's error: to which its end is iterated
+inline constexpr double kShareIterated = 1e-3;  ///< the end of a step is iterated to this share of the step's error
 inline constexpr int kMostStepIterations = 8;
-inline constexpr double kSameStep = 1e-9;  ///< of a step: times that are one
+inline constexpr double kSameStep = 1e-9;  ///< times that differ by less than this share of a step are equal
 
 }  // namespace driftwright::solver

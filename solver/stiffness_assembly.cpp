@@ -12,8 +12,8 @@ namespace {
 
 using mesh::Mesh;
 
-/// Block (i, j) of a cell: ∫ λ g_i g_j' + μ (g_j g_i' + g_i.g_j 1) dV, g the gradients of the shape functions. Into
-/// `blocks`, i n + j, 9 numbers each, by columns.
+/// Block (i, j) of a cell: ∫ λ g_i g_j' + μ (g_j g_i' + g_i.g_j 1) dV, g the gradients of the shape functions. Written to
+/// `blocks` at i n + j, 9 numbers each, by columns.
 void cell_stiffness(const Mesh& mesh, int cell, double lame_Pa, double shear_Pa, double* blocks) {
   const mesh::CellShape shape = mesh.cells.shape[cell];
   const auto nodes = mesh.cells.nodes(cell);
@@ -42,7 +42,7 @@ void cell_stiffness(const Mesh& mesh, int cell, double lame_Pa, double shear_Pa,
 }
 
 void add_cells(const Mesh& mesh, const RegionMaterials& materials, NodeMatrix& k) {
-  constexpr int kCells = 8192;  // at a time
+  constexpr int kCells = 8192;  // cells per pass
   std::vector<std::ptrdiff_t> start(kCells + 1, 0);
   std::vector<double> blocks;
   for (int first = 0; first < mesh.cells.size(); first += kCells) {
@@ -60,7 +60,7 @@ void add_cells(const Mesh& mesh, const RegionMaterials& materials, NodeMatrix& k
         const double nu = m.poisson_ratio, e_Pa = m.youngs_modulus_Pa;
         cell_stiffness(mesh, first + c, e_Pa * nu / ((1 + nu) * (1 - 2 * nu)), e_Pa / (2 * (1 + nu)), &blocks[start[c]]);
       }
-      // Each thread adds to the rows that are its own, cell after cell: the order of a sum is that of the cells.
+      // Each thread adds only to its own rows, cell by cell, so sums are in the order of the cells.
       const int n_threads = omp_get_num_threads(), own = omp_get_thread_num();
       for (int c = 0; c < n_cells; ++c) {
         const auto nodes = mesh.cells.nodes(first + c);

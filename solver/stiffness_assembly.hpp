@@ -1,5 +1,5 @@
 #pragma once
-// The elastic stiffness K = ∫ B'D B dV + springs, as blocks of three unknowns a node.
+// Assembles the elastic stiffness K = ∫ B'D B dV + springs, in blocks of three unknowns per node.
 // Source of the formulas: Zienkiewicz, Taylor & Zhu, The Finite Element Method, vol. 1, ch. 2 and 6.
 
 #include "mesh/mesh.hpp"
@@ -9,12 +9,12 @@
 
 namespace driftwright::solver {
 
-/// K over all nodes. Unknowns that are held have a row and a column of zeros, and one on the diagonal.
-/// @param held  not 0 for dof 3 node + direction that is fixed, and for the nodes of no cell
+/// K over all nodes. Fixed unknowns have a row and a column of zeros, and one on the diagonal.
+/// @param held  not 0 for each dof 3 node + direction that is fixed, and for nodes of no cell
 [[nodiscard]] NodeMatrix assemble_stiffness(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                             const std::vector<SpringLayer>& layers, const std::vector<char>& held);
 
-/// Which nodes it couples.
+/// The pairs of nodes that it couples.
 [[nodiscard]] BlockPattern stiffness_pattern(const mesh::Mesh& mesh, const std::vector<SpringLayer>& layers);
 
 }  // namespace driftwright::solver

@@ -14,7 +14,7 @@ namespace {
 
 using Index = SuiteSparse_long;
 
-/// Room for a symmetric matrix of which the lower triangle is stored.
+/// Allocates a symmetric matrix stored by its lower triangle.
 cholmod_sparse* lower_triangle(std::size_t n, std::size_t n_entries, int kind, cholmod_common& common) {
   cholmod_sparse* a = cholmod_l_allocate_sparse(n, n, n_entries, 1, 1, -1, kind, &common);
   if (!a) throw SolveError(fmt::format("not enough memory for {} elastic unknowns; take a coarser mesh", n));
@@ -78,7 +78,8 @@ FactorSize factor_size(const BlockPattern& nodes, int n_unknowns) {
   p.common.nmethods = 1;
   p.common.method[0].ordering = CHOLMOD_GIVEN;
   p.common.postorder = 1;
-  for (std::size_t& columns : p.common.nrelax) columns = std::max<std::size_t>(1, columns / static_cast<std::size_t>(n_unknowns));
+  for (std::size_t& columns : p.common.nrelax)
+    columns = std::max<std::size_t>(1, columns / static_cast<std::size_t>(n_unknowns));
   p.factor = cholmod_l_analyze_p(graph, order.data(), nullptr, 0, &p.common);
   cholmod_l_free_sparse(&graph, &p.common);
   if (!p.factor) throw SolveError(fmt::format("not enough memory for {} nodes; take a coarser mesh", nodes.n_rows));
@@ -145,7 +146,7 @@ void StiffnessFactor::factorise() {
 
 Eigen::VectorXd StiffnessFactor::solve(const Eigen::VectorXd& force) const {
   Parts& p = *parts_;
-  Eigen::VectorXd copy = force;  // CHOLMOD takes no pointer to const
+  Eigen::VectorXd copy = force;  // CHOLMOD does not accept a pointer to const
   const auto n = static_cast<std::size_t>(copy.size());
   cholmod_dense b{n, 1, n, n, copy.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
   const OneThread serial;

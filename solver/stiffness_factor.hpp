@@ -1,6 +1,6 @@
 #pragma once
-// The Cholesky factor of an elastic stiffness, by CHOLMOD. The order of elimination is METIS's of the nodes, not of the three times
-// as many unknowns: as good, and found in a fraction of the time.
+// The Cholesky factor of an elastic stiffness, by CHOLMOD. METIS orders the nodes, not the three times
+// as many unknowns: the order is as good, and found in a fraction of the time.
 
 #include <memory>
 
@@ -8,27 +8,28 @@
 
 namespace driftwright::solver {
 
-/// What a Cholesky factor in METIS's order takes.
+/// Memory and work of a Cholesky factor in METIS's order.
 struct FactorSize {
-  double bytes = 0.0, bytes_while_made = 0.0;  ///< the latter beside it
-  double work = 0.0;                           ///< multiplications
+  double bytes = 0.0, bytes_while_made = 0.0;  ///< of the factor; additional memory while it is computed
+  double work = 0.0;                           ///< number of multiplications
 };
-/// From the pattern alone, of so many unknowns a node. @throws SolveError  when memory runs out
+/// Computed from the pattern alone, for `n_unknowns` per node. @throws SolveError  when memory runs out
 [[nodiscard]] FactorSize factor_size(const BlockPattern& nodes, int n_unknowns);
 
+/// The factor.
 class StiffnessFactor {
  public:
-  /// Finds the order and counts; factorises nothing yet.
+  /// Computes the order and the size; does not factorise yet.
   explicit StiffnessFactor(const NodeMatrix& k);
   ~StiffnessFactor();
 
-  /// What the factor will take, known before it is computed.
+  /// Size of the factor, known before it is computed.
   [[nodiscard]] double predicted_bytes() const;
 
   /// @throws SolveError  when memory runs out or K is not positive definite
   void factorise();
 
-  /// u = K⁻¹ f, of all 3 n_nodes. After factorise().
+  /// u = K⁻¹ f, both of length 3 n_nodes. Call factorise() before.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& force) const;
 
  private:

@@ -12,7 +12,8 @@ namespace {
 
 using mesh::Mesh;
 
-/// The polynomial terms that fit: one, or as many as the cell has corners (trilinear for eight, bilinear along for six).
+/// The terms of the fitted polynomial: one, or as many as the cell has corners (trilinear for eight, bilinear along the axis
+/// for six).
 Eigen::RowVectorXd polynomial(const Eigen::Vector3d& xi, int n_terms) {
   const double x = xi[0], y = xi[1], z = xi[2];
   const std::array<double, 8> terms = {1.0, x, y, z, x * z, y * z, x * y, x * y * z};

@@ -9,8 +9,8 @@ namespace driftwright::solver {
 /// Six components per node [Pa], one column each.
 using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Stress at the reference point xi of a cell, by the derivatives of the shape functions there [Pa]. It jumps between cells;
-/// it is most accurate at the mesh::stiffness_rule().
+/// Stress at the reference point xi of a cell, from the derivatives of the shape functions there [Pa]. It jumps between
+/// cells; it is most accurate at the points of mesh::stiffness_rule().
 /// @param displacement_m  3 x n_nodes;  @param theta_K  n_nodes or longer, over the reference temperature
 [[nodiscard]] Stress stress_at(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K, int cell,
@@ -20,13 +20,13 @@ using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 [[nodiscard]] StressFunctional stress_functional(const mesh::Mesh& mesh, const RegionMaterials& materials, int cell,
                                                  const Eigen::Vector3d& xi, int component);
 
-/// Stresses recovered at the nodes: in each cell the stresses of the mesh::stiffness_rule() are fitted by least squares with the
-/// polynomial that its corners can carry (tetrahedra: linear; a single point: constant) and extended to its nodes; at each
-/// node the values of the cells around it are averaged, weighted by their volumes.
+/// Stresses recovered at the nodes. In each cell a polynomial is fitted by least squares to the stresses at the points of
+/// mesh::stiffness_rule() (tetrahedra: linear; a single point: constant) and extrapolated to its nodes; at each node the
+/// values of the adjacent cells are averaged, weighted by their volumes.
 ///
-/// The mean is taken over cells of one region. A node that several regions share (a mesh imported with welded parts) carries
-/// the value of the region with the largest von Mises stress there: stress jumps between materials, and the mean of both
-/// would occur in neither. Nodes in no cell carry zero.
+/// The average is taken over cells of one region. A node that several regions share (a mesh imported with welded parts) gets
+/// the value of the region with the largest von Mises stress there: stress jumps between materials, and the mean
+/// would occur in neither. Nodes in no cell get zero.
 [[nodiscard]] NodalStress nodal_stress_Pa(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                           const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K);
 
@@ -38,7 +38,7 @@ struct StressField {
   Eigen::Matrix<double, 6, Eigen::Dynamic> stress_MPa;  ///< rows xx, yy, zz, xy, yz, xz: VTK's order of a symmetric tensor
   Eigen::VectorXd von_mises_MPa;
 };
-/// nodal_stress_Pa() with its von Mises stresses. Arguments as there.
+/// nodal_stress_Pa() with its von Mises stresses; the same arguments.
 [[nodiscard]] StressField stress_field(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                        const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Where a system's run is cut: at changes of drive, knots of the ambient temperature and times at which laws jump by themselves.
+// The times at which a system's run is cut: changes of drive, knots of the ambient temperature, and times at which laws
+// jump.
 
 #include <algorithm>
 #include <iterator>
@@ -9,26 +10,28 @@
 
 namespace driftwright::solver {
 
+/// The knots of the ambient and the change times of the laws.
 template <class Matrix>
 [[nodiscard]] std::vector<double> knots_of(const ThermalSystem<Matrix>& system, const TimeSeries& ambient) {
-  std::vector<double> knots_s;  // of two sorted lists
+  std::vector<double> knots_s;  // merged from two sorted lists
   knots_s.reserve(ambient.time_s.size() + system.change_times_s.size());
   std::merge(ambient.time_s.begin(), ambient.time_s.end(), system.change_times_s.begin(), system.change_times_s.end(),
              std::back_inserter(knots_s));
   return knots_s;
 }
 
-/// Stretches of constant drive and linear ambient in which no law jumps on its own.
+/// Stretches of constant drive and linear ambient in which no law jumps.
 template <class Matrix>
 [[nodiscard]] std::vector<LinearStretch> stretches_of(const ThermalSystem<Matrix>& system, const Cyclogram& cyclogram,
                                                       const TimeSeries& ambient) {
   return linear_stretches(cyclogram, knots_of(system, ambient));
 }
 
-/// Asked for each stretch of a run in their order: whether a law that does not look at the state may be another one than in the stretch before.
+/// Call at() for each stretch of a run in order: true if a law that does not depend on the state may differ from the stretch
+/// before.
 class LawChanges {
  public:
-  /// @param change_times_s  of the system, in their order; borrowed
+  /// @param change_times_s  of the system, sorted; borrowed
   explicit LawChanges(const std::vector<double>& change_times_s) : times_s_(change_times_s) {}
   [[nodiscard]] bool at(const LinearStretch& stretch) {
     bool changed = is_first_ || stretch.drive_changed;

@@ -22,11 +22,11 @@ ThermalLoad::ThermalLoad(const mesh::Mesh& mesh, const RegionMaterials& material
   }
 }
 
-/// Sum over the points of each cell of what of_cell(gradients, N, s dV, values at the nodes, out) adds to `out` per node. Cells in
-/// parallel, sums in the order of the cells.
+/// Sums over the points of each cell what of_cell(gradients, N, s dV, values at the nodes, out) adds to `out` per node.
+/// Cells are computed in parallel, sums are in the order of the cells.
 template <int From, int To, class Cell>
 Eigen::VectorXd ThermalLoad::gather(const Eigen::VectorXd& from, const Cell& of_cell) const {
-  constexpr int kCells = 16384;  // at a time
+  constexpr int kCells = 16384;  // cells per pass
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(To) * mesh_.n_nodes());
   const mesh::Cells& cells = mesh_.cells;
   std::vector<double> local;

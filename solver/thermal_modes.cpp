@@ -49,7 +49,7 @@ struct MassProduct {
   void perform_op(const double* x, double* y) const { multiply(mass, x, y); }
 };
 
-/// All modes of a small system by a dense solver, then the slowest of them.
+/// All modes of a small system by a dense solver, reduced to the slowest.
 ThermalModes dense_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const SparseRow k = stiffness_at(system, at);
   require_way_out(k);
@@ -63,7 +63,7 @@ ThermalModes dense_modes(const FullSystem& system, const effects::Inputs& at, in
 
 ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const int n = system.size();
-  constexpr int kDense = 60;  // unknowns up to which a dense solver is no slower, and gives every mode there is
+  constexpr int kDense = 60;  // largest number of unknowns for which a dense solver is as fast; it gives all modes
   if (!system.is_linear()) throw std::logic_error("thermal modes are those of a linear system");
   if (n_modes < 1 || n_modes > (n <= kDense ? n : n - 2)) {
     throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be computed", n_modes, n));
@@ -75,7 +75,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
   const int n_krylov = std::min(n, std::max(2 * n_modes + 1, 20));
   Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, n_modes,
                                                                                                       n_krylov, 0.0);
-  // A fixed start makes the modes repeatable; equal weights reach every mode of an irregular machine.
+  // A fixed start vector makes the modes repeatable; equal weights reach every mode of an irregular machine.
   Eigen::VectorXd start(n);
   for (int i = 0; i < n; ++i) start[i] = std::sin(1.0 + i);
   solver.init(start.data());
@@ -102,7 +102,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
 Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at) {
   const ConductionFactor factor = factor_at(system, at);
   const auto n_sources = static_cast<Eigen::Index>(system.sources.size());
-  // One more where the air is stratified or a temperature prescribed: what stands beside sources and ambient.
+  // One more column if the air is stratified or a temperature prescribed: loads other than sources and ambient.
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(system.size());
   for (const auto& e : system.exchanges) {
     if (e.offset.size() > 0) offset += e.coefficient(at) * e.offset;

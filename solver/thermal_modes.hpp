@@ -1,5 +1,5 @@
 #pragma once
-// Thermal modes and steady responses of the full model: what explains a machine's slow memory.
+// Thermal modes and steady responses of the full model, which explain a machine's slow memory.
 
 #include "solver/thermal_system.hpp"
 
@@ -8,17 +8,17 @@ namespace driftwright::solver {
 /// The slowest thermal modes of K(u) φ = λ M φ at fixed inputs: M-orthonormal shapes and time constants τ = 1/λ.
 struct ThermalModes {
   Eigen::MatrixXd shapes;               ///< n x n_modes
-  std::vector<double> time_constant_s;  ///< falling
+  std::vector<double> time_constant_s;  ///< in decreasing order
 };
 
 /// @param at  inputs at which the films are frozen
 /// @throws std::logic_error  for a system that is not linear (linearised() makes one)
-/// @throws SolveError  when the eigenvalue iteration does not converge or K(u) is singular (no way for heat to leave)
+/// @throws SolveError  when the eigenvalue iteration does not converge or K(u) is singular (heat cannot leave)
 [[nodiscard]] ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes);
 
-/// Steady temperatures K(u)⁻¹ b under each source's unit heat and under an ambient one kelvin warmer; n x (n_sources + 1),
-/// and one column more for prescribed temperatures and stratified air, where there are any.
-/// In a basis they carry what the modes cut off.
+/// Steady temperatures K(u)⁻¹ b for each source's unit heat and for an ambient one kelvin warmer; n x (n_sources + 1),
+/// and one more column for prescribed temperatures and stratified air, if there are any.
+/// In a basis they represent what the omitted modes would contribute.
 /// @throws SolveError  when K(u) is singular
 [[nodiscard]] Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at);
 

@@ -5,8 +5,9 @@
 //     K(u) = K0 + Σ_e c_e(u) G_e,  f(u) = Σ_s P_s(u) b_s + Σ_e c_e(u) (θ_ambient g_e + o_e),   g_e = G_e 1
 //
 // θ: temperature minus the reference temperature [K]. u: effects::Inputs. Everything that may change (films, joints, links)
-// is an Exchange whose matrix is fixed and whose coefficient is a number: nothing is assembled twice. Coefficients may look
-// at mean temperatures (probes) of the state; r(θ), of the full model alone, is what no such number can say.
+// is an Exchange with a fixed matrix and a coefficient that is a number: nothing is assembled twice. Coefficients may depend
+// on mean temperatures (probes) of the state. r(θ) exists in the full model only; it contains everything that a coefficient
+// cannot express.
 
 #include <Eigen/Core>
 #include <memory>
@@ -20,12 +21,12 @@
 
 namespace driftwright::solver {
 
-/// A law with its probes and thermostat found: indices into the system's lists.
+/// A law whose probes and thermostat are indices into the system's lists.
 struct BoundLaw {
   effects::Law law;
   std::vector<int> probes;
   int thermostat = -1;
-  std::vector<double> frozen_K = {};  ///< temperatures that a law without probes of its own is given in their place
+  std::vector<double> frozen_K = {};  ///< temperatures given to a law in place of its probes (freeze_laws())
 
   BoundLaw() = default;
   BoundLaw(effects::Law free_law) : law(std::move(free_law)) {}  // NOLINT: a law without probes is bound as it is
@@ -34,11 +35,11 @@ struct BoundLaw {
            !std::is_same_v<std::remove_cvref_t<F>, effects::Law>) BoundLaw(F function)
       : law(std::move(function)) {}  // NOLINT
   [[nodiscard]] bool looks_at_state() const { return !probes.empty(); }
-  /// The law's value, for one without probes. @throws std::logic_error  for one that has them
+  /// The value of a law without probes. @throws std::logic_error  for one that has them
   double operator()(const effects::Inputs& u) const;
 };
 
-/// Heat P(u) [W] spread over the unknowns by b (sums to one in the finite-element model).
+/// Heat P(u) [W] distributed over the unknowns by b (sums to one in the finite-element model).
 struct HeatSource {
   std::string name;
   effects::Body body = {};
@@ -46,10 +47,10 @@ struct HeatSource {
   BoundLaw power_W;
 };
 
-/// Where an exchange is, in words of the machine.
+/// The place of an exchange, in terms of the machine.
 struct ExchangePlace {
   effects::Body body;
-  std::string surrounding;  ///< ambient or lumped node; "" for a joint and for a medium of a temperature of its own
+  std::string surrounding;  ///< ambient or lumped node; "" for a joint and for a medium with its own temperature
   effects::Per per = effects::Per::kArea;
   bool operator==(const ExchangePlace&) const = default;
 };
@@ -64,32 +65,32 @@ struct Exchange {
   Eigen::VectorXd to_ambient;  ///< g = G 1 of the finite-element model (projected in a reduced one)
   double ambient_sum = 0.0;    ///< 1'G 1: surface exposed to the ambient [m^2]
   BoundLaw coefficient;        ///< c(u) [W/(m^2 K)], or [W/K] for links
-  /// The heat that crosses is c (flow'θ - ambient_sum θ_ambient - 1'o): out of the surface or body, or from side a to side b.
+  /// The exchanged heat is c (flow'θ - ambient_sum θ_ambient - 1'o): out of the surface or body, or from side a to side b.
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_ambient) dA where the ambient is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
-  Eigen::VectorXd medium =
-      {};  ///< of an exchange with a medium: G 1, whose multiple by the medium's temperature is o; else empty
-  double medium_sum = 0.0;  ///< 1'G 1
-  bool prescribes = false;  ///< it stands for a prescribed temperature (hold_by_exchanges())
+  Eigen::VectorXd medium = {};  ///< of an exchange with a medium: G 1; o is this times the medium's temperature. Else empty
+  double medium_sum = 0.0;      ///< 1'G 1
+  bool prescribes = false;      ///< it replaces a prescribed temperature (hold_by_exchanges())
 
   [[nodiscard]] bool reaches_ambient() const { return ambient_sum != 0.0; }
-  /// To the ambient or to a medium that is held at its temperature.
+  /// True for an exchange with the ambient or with a medium of fixed temperature.
   [[nodiscard]] bool leaves_machine() const { return ambient_sum != 0.0 || medium_sum != 0.0; }
-  /// Of an exchange with a medium: the temperature that the medium is held at, over the reference [K].
+  /// Sets the temperature of a medium above the reference [K]; for an exchange with a medium.
   void hold_medium(double theta_K) {
     offset = theta_K * medium;
     offset_sum = theta_K * medium_sum;
   }
 };
 
-/// Mean temperature that laws and thermostats look at: weights'θ + ambient_share θ_ambient + offset + the reference temperature.
+/// A mean temperature that laws and thermostats use: weights'θ + ambient_share θ_ambient + offset + the reference
+/// temperature.
 struct Probe {
   effects::Body body = {};
-  std::string before = {};  ///< surface whose air it is, where the ambient is stratified; else ""
+  std::string before = {};  ///< in stratified air: the surface whose air it measures; else ""
   Eigen::VectorXd weights;
   double ambient_share = 0.0;
-  double offset_K = 0.0;  ///< of stratified air before a surface above that at the ambient thermometer, mean
+  double offset_K = 0.0;  ///< mean excess of stratified air before a surface over the ambient thermometer
   [[nodiscard]] double theta_K(const Eigen::VectorXd& theta, double ambient_K) const {
     return weights.dot(theta) + ambient_share * ambient_K + offset_K;
   }
@@ -101,7 +102,7 @@ struct Thermostat {
   double on_above_K = 0.0, off_below_K = 0.0;  ///< absolute
 };
 
-/// Unknowns whose temperature is prescribed.
+/// Unknowns with a prescribed temperature.
 struct FixedUnknowns {
   std::string name;
   std::vector<int> unknowns;
@@ -109,16 +110,16 @@ struct FixedUnknowns {
   bool follows_ambient = false;
 };
 
-/// What one region, or one lumped node, is of the system: M and K0 are sums over them. For those who ask what another material would
-/// do: factors f on conductivity and g on heat capacity make K0 + (f - 1) conduction and M + (g - 1) mass.
+/// The contribution of one region or lumped node to the system: M and K0 are sums over them. To change a material, factors f
+/// on conductivity and g on heat capacity give K0 + (f - 1) conduction and M + (g - 1) mass.
 template <class Matrix>
 struct BodyPart {
   std::string body;
   Matrix conduction, mass;
-  Eigen::MatrixXd outputs;  ///< what its expansion has of the outputs, n_unknowns x n_outputs
+  Eigen::MatrixXd outputs;  ///< contribution of its expansion to the outputs, n_unknowns x n_outputs
 };
 
-/// What is read off the state: sensor temperatures, displacements, tilts. Column j of `state` is output j.
+/// The outputs of a state: sensor temperatures, displacements, tilts. Column j of `state` is output j.
 struct Outputs {
   std::vector<std::string> name;
   std::vector<std::string> unit;  ///< "K", "m" or "rad"
@@ -126,6 +127,7 @@ struct Outputs {
   Eigen::VectorXd ambient;        ///< n_outputs; share of the ambient temperature
 };
 
+/// The whole system, full or reduced.
 template <class Matrix>
 struct ThermalSystem {
   double reference_K = 293.15;
@@ -135,24 +137,25 @@ struct ThermalSystem {
   std::vector<Exchange<Matrix>> exchanges;
   std::vector<Probe> probes;
   std::vector<Thermostat> thermostats;
-  std::vector<double> change_times_s;  ///< at which laws may jump by themselves
-  // Of the full model alone; a reduced model is made of a system without them. Shared: copies of a system are common and
-  // terms never change.
+  std::vector<double> change_times_s;  ///< times at which laws may jump
+  // The next three exist in the full model only; a reduced model is made from a system without them. Terms are shared,
+  // because systems are often copied and terms never change.
   std::vector<std::shared_ptr<const NonlinearTerm>> nonlinear;
-  std::shared_ptr<const VariableCapacity> capacity;  ///< what M gains where heat capacity varies; may be null
+  std::shared_ptr<const VariableCapacity> capacity;  ///< addition to M where heat capacity varies; may be null
   std::vector<FixedUnknowns> fixed;
   Outputs outputs;
-  std::vector<BodyPart<Matrix>> parts;  ///< empty unless asked for
+  std::vector<BodyPart<Matrix>> parts;  ///< empty unless requested
   Eigen::VectorXd ones;  ///< the state "1 K everywhere" (projected in a reduced system), for the energy balance
 
   [[nodiscard]] int size() const { return static_cast<int>(mass.rows()); }
 
-  /// True where all coefficients follow from drive and time alone and no unknown is prescribed: then f(u) and K(u) say all.
+  /// True if all coefficients depend on drive and time alone and no unknown is prescribed: f(u) and K(u) then describe the
+  /// system completely.
   [[nodiscard]] bool is_linear() const {
     return nonlinear.empty() && !capacity && fixed.empty() && thermostats.empty() && !looks_at_state();
   }
 
-  /// True where some law looks at the state.
+  /// True if some law depends on the state.
   [[nodiscard]] bool looks_at_state() const {
     for (const HeatSource& s : sources) {
       if (s.power_W.looks_at_state()) return true;
@@ -162,7 +165,7 @@ struct ThermalSystem {
     }
     return false;
   }
-  /// True where the ambient air has a gradient.
+  /// True if the ambient air has a gradient.
   [[nodiscard]] bool is_stratified() const {
     for (const auto& e : exchanges) {
       if (e.offset.size() > 0) return true;
@@ -189,7 +192,7 @@ struct ThermalSystem {
 using FullSystem = ThermalSystem<SparseRow>;
 using ReducedSystem = ThermalSystem<Eigen::MatrixXd>;
 
-/// Where a flow of heat comes from.
+/// Kind of a heat flow.
 enum class FlowKind {
   kSource,       ///< > 0 heats the machine
   kSurrounding,  ///< film, link or radiation to the ambient; > 0 heats the machine
@@ -201,22 +204,22 @@ struct HeatFlow {
   FlowKind kind = FlowKind::kSource;
 };
 
-/// Where temperatures left the bounds that conduction keeps: an undershoot of the consistent mass matrix beside a jump.
+/// A violation of the bounds that conduction obeys: an undershoot of the consistent mass matrix beside a jump.
 struct Overshoot {
   double jump_s = 0.0;    ///< time of the jump that caused it
-  double time_s = 0.0;    ///< of its largest extent
+  double time_s = 0.0;    ///< time of its maximum
   double amount_K = 0.0;  ///< beyond the bound, > 0
   int unknown = -1;
 };
 
-/// A simulated run: outputs at the times asked for, and the heat that flowed.
+/// A simulated run: outputs at the requested times, and the heat that flowed.
 struct Trajectory {
   std::vector<double> time_s;
   Eigen::MatrixXd outputs;  ///< n_outputs x n_times, in K, m, rad
   std::vector<HeatFlow> flows;
   Eigen::MatrixXd heat_J;             ///< heat since the start state [J], n_flows x n_times; zero at t = 0
-  Eigen::VectorXd stored_J;           ///< change of the heat stored since then, per time
-  std::vector<Overshoot> overshoots;  ///< one per jump that made one
+  Eigen::VectorXd stored_J;           ///< change of the stored heat since the start state, per time
+  std::vector<Overshoot> overshoots;  ///< one per jump that caused one
 
   int n_steps = 0, n_solves = 0, n_iterations = 0;
 

@@ -9,7 +9,7 @@
 namespace driftwright::solver {
 namespace {
 
-/// Times at which the drive stays but something else bends or jumps.
+/// Times at which the drive is constant but another input bends or jumps.
 std::vector<double> knots_s(const FullSystem& system, const TimeSeries& ambient) {
   std::vector<double> knots = knots_of(system, ambient);
   for (const FixedUnknowns& f : system.fixed) knots.insert(knots.end(), f.theta.time_s.begin(), f.theta.time_s.end());

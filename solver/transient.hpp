@@ -1,11 +1,12 @@
 #pragma once
-// The full model in time: SUNDIALS ARKODE on dθ/dt = M⁻¹ heat with the consistent mass matrix, whose stages HeatOde solves.
+// Simulates the full model in time: SUNDIALS ARKODE on dθ/dt = M⁻¹ heat with the consistent mass matrix; HeatOde solves its
+// stages.
 //
-// Stiffly accurate, L-stable ESDIRK of order 3 with error control (ARKODE_ESDIRK324L2SA_4_2_3, Kennedy & Carpenter 2019). The
-// integrator stops exactly where the speed changes or the ambient's curve bends and restarts where the speed jumps. Between steps
-// outputs lie on the cubic through both ends and their slopes. The heat of
-// each source and each exchange with the ambient is integrated beside the temperatures with the same stage weights, so that the
-// energy balance closes to rounding: Runge-Kutta methods keep linear invariants.
+// Stiffly accurate, L-stable ESDIRK of order 3 with error control (ARKODE_ESDIRK324L2SA_4_2_3, Kennedy & Carpenter 2019).
+// The integrator stops exactly where the speed changes or the ambient's curve bends, and restarts where the speed jumps.
+// Outputs between steps are interpolated by the cubic through both ends and their slopes. The heat of each source and each
+// exchange with the ambient is integrated beside the temperatures with the same stage weights, so that the energy balance is
+// exact up to rounding: Runge-Kutta methods conserve linear invariants.
 
 #include <functional>
 
@@ -18,12 +19,13 @@ struct TransientOptions {
   double relative_tolerance = 1e-4;  ///< of θ
   double absolute_tolerance_K = 5e-4;
   double max_step_s = 1200.0;
-  int most_switches = 20000;  ///< of all thermostats; more are no control but a slip in its data
-  /// Where on the cyclogram, before its end, the run begins: the state is given there, outputs lie there or later, and heat counts from there.
+  int most_switches = 20000;  ///< of all thermostats; more mean an error in their data
+  /// Time in the cyclogram at which the run begins: the start state applies there, outputs are there or later, and heat
+  /// counts from there.
   double from_s = 0.0;
 };
 
-/// Called at each output time with the time and the state; throwing ends the run.
+/// Called at each output time with time and state; an exception ends the run.
 using OutputCallback = std::function<void(double time_s, const Eigen::VectorXd& state)>;
 
 /// Runs the cyclogram from `start` (state at t = 0, zero: everything at the reference temperature).

@@ -40,7 +40,7 @@ class VariableConduction : public NonlinearTerm {
   void add(ConductingCell cell) { cells_.push_back(std::move(cell)); }
 
  private:
-  /// ∫ (k(T) - k(T_ref)) ∇N_i·∇N_j dV: r is this times θ, and its derivative but for the change of k itself.
+  /// ∫ (k(T) - k(T_ref)) ∇N_i·∇N_j dV: r is this times θ; also its derivative, without the change of k.
   [[nodiscard]] Eigen::MatrixXd tangent(const ConductingCell& cell, const Eigen::VectorXd& local) const {
     Eigen::MatrixXd k = Eigen::MatrixXd::Zero(local.size(), local.size());
     const PropertyCurve& curve = curves[cell.curve];
@@ -70,7 +70,7 @@ std::shared_ptr<const NonlinearTerm> variable_conduction(const mesh::Mesh& mesh,
     const mesh::CellShape shape = mesh.cells.shape[c];
     const auto nodes = mesh.cells.nodes(c);
     const auto x = mesh::cell_coords(mesh, nodes);
-    const auto rule = mesh::mass_rule(shape);  // finer than for a constant k: the curve bends within a cell
+    const auto rule = mesh::mass_rule(shape);  // finer than for a constant k, because the curve bends within a cell
     ConductingCell cell{{nodes.begin(), nodes.end()}, group, {}, Eigen::MatrixXd(rule.size(), nodes.size()), {}};
     for (std::size_t p = 0; p < rule.size(); ++p) {
       const mesh::ShapeValues s = mesh::shape_values(shape, rule[p].xi);

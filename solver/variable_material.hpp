@@ -1,5 +1,5 @@
 #pragma once
-// Conductivity and heat capacity over temperature: what they add to the matrices at the reference temperature.
+// Temperature-dependent conductivity and heat capacity: their difference from the matrices at the reference temperature.
 
 #include <memory>
 #include <vector>
@@ -11,22 +11,22 @@
 
 namespace driftwright::solver {
 
-/// The term r_i = ∫ (k(T) - k(T_ref)) ∇T·∇N_i dV over the cells whose conductivity varies; null where none does.
+/// The term r_i = ∫ (k(T) - k(T_ref)) ∇T·∇N_i dV over the cells whose conductivity varies; null if none does.
 [[nodiscard]] std::shared_ptr<const NonlinearTerm> variable_conduction(const mesh::Mesh& mesh,
                                                                        const std::vector<Material>& materials,
                                                                        double reference_K);
 
-/// Cells whose material has a heat capacity over temperature.
+/// The cells whose material has a temperature-dependent heat capacity.
 class VariableCapacity {
  public:
-  /// Null where no material has one. Copies what it needs of the mesh.
+  /// Null if no material has one. Copies the needed parts of the mesh.
   [[nodiscard]] static std::shared_ptr<const VariableCapacity> of(const mesh::Mesh& mesh,
                                                                   const std::vector<Material>& materials,
                                                                   double reference_K);
 
   /// mass += ∫ ρ (c(T) - c(T_ref)) N_i N_j dV.
   void add_to(const double* theta, SparseRow& mass) const;
-  /// ∫ N_i ρ ∫_{T_ref}^{T} (c - c(T_ref)) dT dV for each of n unknowns [J]: the heat that add_to() stands for.
+  /// ∫ N_i ρ ∫_{T_ref}^{T} (c - c(T_ref)) dT dV for each of n unknowns [J]: the heat content that belongs to add_to().
   [[nodiscard]] Eigen::VectorXd heat_content_J(const double* theta, int n) const;
 
   struct Cell {

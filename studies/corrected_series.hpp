@@ -1,5 +1,6 @@
 #pragma once
-// An NC program and the corrections of the drift that it will cause, for one part or for a series of parts: what `schedule` shows and writes.
+// An NC program with corrections of the drift that it will cause, for one part or a series of parts: what `schedule`
+// shows and writes.
 
 #include <array>
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace driftwright::studies {
 
-/// A corrected program as it is written, and the parts that it serves.
+/// A corrected program as it is written, and the parts that it is for.
 struct CorrectedProgram {
   std::string file;
   compensation::SharedPlan shared;
@@ -27,30 +28,31 @@ struct CorrectedSeries {
   Cyclogram cyclogram = {};  ///< of one part
   Prediction prediction = {};
   double between_s = 0.0;
-  std::vector<CorrectedProgram> programs = {};  ///< by their parts
+  std::vector<CorrectedProgram> programs = {};  ///< in the order of their parts
   compensation::Iso230Figures iso = {};
 
   [[nodiscard]] bool is_series() const { return prediction.parts.size() > 1; }
 };
 
-/// Names of the written programs: the program's own where one serves all parts, else with the numbers of its parts:
+/// Name of a written program: the program's own if it serves all parts, otherwise with the numbers of its parts:
 /// part_01.ngc, part_02_to_20.ngc.
 [[nodiscard]] std::string corrected_file(const std::string& file, const compensation::SharedPlan& shared,
                                          std::size_t n_parts);
 
-/// Changes of one axis (its first value in front of the program is one if it is not 0).
+/// Number of changes of one axis; the first value, before the program, counts as one unless it is 0.
 [[nodiscard]] int n_changes(const compensation::ProgramSchedule& plan, int axis);
 
-/// Whether an axis, by its place in the settings, keeps its tolerance. A plan that serves several parts may go beyond by its resolution.
+/// Whether an axis, by its index in the settings, keeps its tolerance. A plan for several parts may exceed it by its
+/// resolution.
 [[nodiscard]] bool is_inside(const CorrectedSeries& series, const compensation::SharedPlan& shared, std::size_t axis);
 
 /// The values in force after a change.
 struct CorrectionRow {
   double time_s = 0.0;
-  int line = 0, corrected_line = 0;  ///< 0: in front of the program
+  int line = 0, corrected_line = 0;  ///< 0: before the program
   std::array<std::optional<double>, 3> correction_um{}, increment_um{};
 };
-/// Row by row of the plan: the start first.
+/// The rows of the plan, with the start first.
 [[nodiscard]] std::vector<CorrectionRow> rows_of(const CorrectedSeries& series, const CorrectedProgram& program);
 
 }  // namespace driftwright::studies

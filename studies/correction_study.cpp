@@ -33,13 +33,13 @@ std::vector<double> judged_rows(const CorrectionStudy& o, const std::vector<doub
 
 namespace {
 
-/// The model's thermal modes, with laws of temperature frozen in the mean drive of the cyclogram that they are to foretell.
+/// The model's thermal modes, with laws of temperature frozen at the mean drive of the cyclogram to predict.
 ModalPredictor modes_for(const Scenario& scenario, const scenarios::Model& model, const Cyclogram& cyclogram) {
   const Cyclogram felt = scenarios::felt_run(*scenario.machine, cyclogram).cyclogram;
   return scenarios::modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt})).completed;
 }
 
-/// A model follows a record only as `validate` would have let it.
+/// Requires what `validate` requires before a model follows a record.
 void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
                            const std::string& ambient) {
   if (!d.predictor->is_driven()) return;
@@ -53,7 +53,7 @@ void require_model_follows(const Scenario& scenario, const DeployedPredictor& d,
     throw InputError(fmt::format("'{}' cannot follow this record: {}", d.name, why));
 }
 
-/// The correction itself, as `validate` judges it.
+/// The correction without an actuator, as `validate` judges it.
 CorrectionStudy through_none(const DeployedPredictor& d, const ObservedRun& run) {
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
   compensation::Judgement j = compensation::judge(d, run, drift_um);
@@ -107,7 +107,7 @@ CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredict
           .margin_um = margin_um};
 }
 
-/// The run's own rows, its time from 0, once all is judged.
+/// Drops the rows before the run, and counts its time from 0, once everything is judged.
 void drop_lead_in(CorrectionStudy& o, std::size_t n_before) {
   if (n_before == 0) return;
   for (std::vector<double>* values : {&o.time_s, &o.drift_um, &o.predicted_um, &o.left_um})
@@ -116,7 +116,7 @@ void drop_lead_in(CorrectionStudy& o, std::size_t n_before) {
   for (double& t_s : o.time_s) t_s -= start_s;
 }
 
-/// What ISO 230-3 asks of the drift, and of what is left of it.
+/// The figures of ISO 230-3 for the drift, and for the drift that is left.
 Iso230Figures iso_figures(const CorrectionStudy& o, const ObservedRun& run, const std::string& channel) {
   if (run.n_before > 0)
     return {.running_period_s = 0.0, .channels = {}, .not_available = "the run goes on from what came before it"};
@@ -146,7 +146,8 @@ ObservedRun read_run(const Scenario& scenario, const DeployedPredictor& d, const
   return run;
 }
 
-/// The run as simulated; a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it.
+/// The run as simulated; as in validate_strategies(), a predictor gets the recorded data, and not the changes by the
+/// scenario's effects.
 ObservedRun simulate_observed(const Scenario& scenario, const scenarios::Model& model, const Cyclogram& cyclogram,
                               const Listener& listener) {
   if (const scenarios::Machine* full = model.full())
@@ -155,7 +156,8 @@ ObservedRun simulate_observed(const Scenario& scenario, const scenarios::Model& 
           std::move(scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, listener).front().record)};
 }
 
-/// Thermometers as this run of `validate` reads them, where it judges the cyclogram in the scenario's ambient. @returns  a note of which
+/// Sets the thermometers' readings as this run has them in `validate`, if it judges the cyclogram in the scenario's
+/// ambient. @returns  a note that says which
 std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram, ObservedRun& run) {
   std::optional<Record> read;
   if (scenario.validation) read = as_judged(*scenario.validation, cyclogram.name, run.readings);
@@ -166,7 +168,8 @@ std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram,
   return "thermometers read with noise and steps, as in this run of `validate`";
 }
 
-/// The drift that is known before the run. A formula reads temperatures that the modes foretell; anything else has drive and ambient alone.
+/// The drift that is known before the run. For a formula the modes predict the temperatures; other predictors use drive
+/// and ambient.
 std::vector<double> foretold_um(const Scenario& scenario, const scenarios::Model& model, const DeployedPredictor& d,
                                 const ObservedRun& run) {
   ObservedRun known{run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};

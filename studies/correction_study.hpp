@@ -1,5 +1,5 @@
 #pragma once
-// One run corrected by one predictor through one actuator: what `compensate` shows.
+// One run, corrected by one predictor through one actuator: what `compensate` shows.
 
 #include <optional>
 
@@ -12,32 +12,32 @@
 namespace driftwright::studies {
 
 struct CorrectionRequest {
-  std::string through = {};               ///< none, injector, schedule
+  std::string through = {};               ///< none, injector or schedule
   const Cyclogram* cyclogram = nullptr;   ///< to simulate; null: a record is given
-  std::string measured = {}, after = {};  ///< a record CSV or a part of one, and what it continues; empty: none
+  std::string measured = {}, after = {};  ///< a record CSV or a part of one, and the record that it continues; empty: none
 };
 
-/// What the actuator left, over the run's own rows.
+/// The drift that is left after the correction, over the run's own rows.
 struct CorrectionStudy {
   compensation::DeployedPredictor predictor = {};
   std::string run = {};  ///< name of the cyclogram or record
   std::vector<double> time_s = {}, drift_um = {}, predicted_um = {}, left_um = {};
-  std::vector<bool> at_rest = {};  ///< rows that are judged, where the axis moves; empty: all
+  std::vector<bool> at_rest = {};  ///< rows at which the axis rests, which are judged, if it moves at all; empty: all
   compensation::Score before = {}, after = {};
-  std::optional<double> margin_um = {};  ///< that the plan keeps, where there is one
-  compensation::Iso230Figures iso = {};  ///< of the drift, and of what is left of it
-  std::vector<std::string> notes = {};   ///< how the run was read, a sentence each
+  std::optional<double> margin_um = {};  ///< margin that the plan keeps, if there is one
+  compensation::Iso230Figures iso = {};  ///< of the drift, and of the drift that is left
+  std::vector<std::string> notes = {};   ///< how the run was read, one sentence each
 };
 
-/// Simulates or reads the run, lets the predictor tell its drift and the actuator undo it.
+/// Simulates or reads the run, predicts its drift and corrects it by the actuator.
 /// @param predictor  none: the machine's thermal modes
-/// @throws InputError  for a record that the predictor cannot follow, a drift that no schedule can be written for, and as read_records() and
-///                     open_model()
+/// @throws InputError  for a record that the predictor cannot follow, a drift for which no schedule is possible, and as
+/// read_records() and open_model()
 [[nodiscard]] CorrectionStudy correct_run(const scenarios::Scenario& scenario,
                                           std::optional<compensation::DeployedPredictor> predictor,
                                           const CorrectionRequest& request, const Listener& listener);
 
-/// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
+/// The values of the judged rows: while an axis moves, it lags behind its command, which is no thermal error.
 [[nodiscard]] std::vector<double> judged_rows(const CorrectionStudy& study, const std::vector<double>& values);
 
 }  // namespace driftwright::studies

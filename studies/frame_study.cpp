@@ -30,13 +30,13 @@ std::vector<std::string> thermometers_of(const Scenario& scenario) {
   return names;
 }
 
-/// Errors at the rings over the whole run, as a predictor has them.
+/// Errors at the rings over the whole run, by a predictor.
 struct Believed {
   std::string words;
   Errors rings_m;
 };
 
-/// The model as it is, to be made wrong as `run` makes its own.
+/// The physics with a scattered model, scattered in the same way as the one of `run`.
 compensation::Physics physics_for(const Scenario& scenario, const scenarios::Model& model, int repetition) {
   std::optional<compensation::Physics> physics = physics_of(scenario, model, 0.0, 0);
   if (physics) {
@@ -70,7 +70,8 @@ Believed by_observer(const Scenario& scenario, const scenarios::Model& model, co
   const compensation::Physics p = physics_for(scenario, model, repetition);
   const std::vector<std::string> sensors = thermometers_of(scenario);
   const Thermometers& instrument = scenario.table->instrument;
-  const double reading_K = std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // of rounding
+  const double reading_K =
+      std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // includes the rounding error
   const Observer observer(
       p.system, p.start, p.start_ambient_K, sensors, "table_1_x",
       {.reading_K = reading_K, .longest_step_s = 600.0, .period_s = readings.time_s.at(1) - readings.time_s.at(0)});
@@ -82,7 +83,7 @@ Believed by_observer(const Scenario& scenario, const scenarios::Model& model, co
           rings_of(scenario, model, felt, std::move(run), repetition)};
 }
 
-/// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured in the training time.
+/// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured during training.
 Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   std::vector<std::string> sensors = thermometers_of(scenario);
@@ -100,7 +101,7 @@ Believed by_regression(const Scenario& scenario, const TableRun& truth, const Re
       training.channels[sensors.size() + static_cast<std::size_t>(k)].values.push_back(1e6 *
                                                                                        measured.rings_m[m].reshaped()(k));
   }
-  // as many thermometers as the few measurements carry
+  // As many thermometers as the few measurements allow.
   const int n_sensors = std::max(1, static_cast<int>(training.n_samples()) / 4);
   Believed believed{"", Errors(readings.n_samples(), Eigen::Matrix3Xd::Zero(3, n_rings))};
   std::vector<std::string> used;

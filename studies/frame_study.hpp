@@ -1,5 +1,5 @@
 #pragma once
-// Predictors that drive a table's frame, beside the ring measurement: what `compensate --through frame` shows.
+// Predictors that correct a table's frame, compared with the ring measurement: what `compensate --through frame` shows.
 
 #include "studies/table_study.hpp"
 
@@ -11,11 +11,11 @@ struct FrameStudy {
   std::string predictor = {};       ///< in words
   std::vector<double> time_s = {};  ///< of the judged rows
   std::vector<TableStrategy> corrections =
-      {};  ///< none, rings, the predictor, both; each repeated with other noise and another wrong model
+      {};  ///< none, rings, the predictor, both; each repeated with other noise and another scattered model
 };
 
 /// @param model  one of kFrameModels
-/// @throws InputError  where the model needs a linear reduced one
+/// @throws InputError  if the model needs a linear reduced machine and there is none
 [[nodiscard]] FrameStudy correct_through_frame(const scenarios::Scenario& scenario, const std::string& model,
                                                const Listener& listener);
 

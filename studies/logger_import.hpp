@@ -1,5 +1,5 @@
 #pragma once
-// A logger's file as a record, by a map that is given or guessed.
+// Reads a logger's file as a record, with a given or a guessed map of its columns.
 
 #include <optional>
 #include <string>
@@ -12,12 +12,12 @@ namespace driftwright::studies {
 
 struct LoggerImport {
   ColumnMap map;
-  std::string read_by;               ///< the file that says the map; empty: it was guessed
-  std::vector<std::string> guesses;  ///< what the file does not say
+  std::string read_by;               ///< file with the map; empty: the map was guessed
+  std::vector<std::string> guesses;  ///< assumptions about what the file does not say
   ReadRecord read;
 };
 
-/// @param by  YAML with the key `columns`: a scenario, or what an import has written; empty: the map is guessed
+/// @param by  YAML with the key `columns`: a scenario, or a file that an import has written; empty: the map is guessed
 /// @throws InputError  as read_columns(), guess_columns() and read_record()
 [[nodiscard]] LoggerImport import_logger(const std::string& path, const std::string& by, const GuessHints& hints);
 

@@ -23,7 +23,7 @@ using mesh::OuterFacet;
 using mesh::OuterPlane;
 
 constexpr double kFilm_W_m2K = 10.0, kWarms_K = 2.0;
-constexpr double kLarge = 0.02;  ///< of a region's surface: smaller planes are taken for pieces of curved faces
+constexpr double kLarge = 0.02;  ///< share of a region's surface: smaller planes are treated as pieces of curved faces
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -49,12 +49,12 @@ std::string likely_material(const std::string& region) {
   return "cast_iron_gjl250";
 }
 
-/// What is known while a draft is made.
+/// The data used while a draft is made.
 struct Geometry {
   const mesh::Mesh& mesh;
   std::vector<OuterFacet> facets;
   std::vector<OuterPlane> planes;
-  std::map<int, std::string> surface_of_plane;  ///< that has been picked, or that the file names
+  std::map<int, std::string> surface_of_plane;  ///< named by the file, or chosen so far
 
   [[nodiscard]] const std::string& region(int index) const { return mesh.regions[static_cast<std::size_t>(index)]; }
   [[nodiscard]] const OuterFacet& facet(int index) const { return facets[static_cast<std::size_t>(index)]; }
@@ -66,7 +66,7 @@ struct Geometry {
   }
 };
 
-/// The surface of the file that is this plane and nothing else; "" where there is none.
+/// The surface of the file that consists of exactly this plane; "" if there is none.
 std::string file_surface(const Geometry& g, const OuterPlane& plane) {
   for (int surface : g.facet(plane.facets.front()).surfaces) {
     const bool has_all = std::all_of(plane.facets.begin(), plane.facets.end(), [&](int f) {
@@ -79,7 +79,7 @@ std::string file_surface(const Geometry& g, const OuterPlane& plane) {
   return "";
 }
 
-/// The name of a plane: the file's, or one that is picked from now on.
+/// The name of a plane: the file's, or a new one.
 std::string name_plane(Geometry& g, MachineDraft& draft, int index, const std::string& wanted) {
   if (const auto named = g.surface_of_plane.find(index); named != g.surface_of_plane.end()) return named->second;
   std::string name = file_surface(g, g.plane(index));
@@ -97,8 +97,8 @@ std::string name_plane(Geometry& g, MachineDraft& draft, int index, const std::s
   return name;
 }
 
-/// Joints of the file, then one for each pair of planes of different parts that lie on each other. Returns for each part of the mesh a number that parts
-/// which are joined share.
+/// Adds the joints of the file, then one for each pair of touching planes of different parts. Returns a number for each
+/// part of the mesh; joined parts have the same number.
 std::map<int, int> add_joints(Geometry& g, MachineDraft& draft) {
   for (const mesh::Joint& joint : g.mesh.joints) draft.joints.push_back({joint.name, "", ""});
   std::map<int, int> whole;
@@ -120,10 +120,10 @@ std::map<int, int> add_joints(Geometry& g, MachineDraft& draft) {
   return whole;
 }
 
-/// Planes that look along -`up` at the lower end of the part of the mesh that `counts`, and are no joint.
+/// Planes that face -`up` at the lower end of the parts of the mesh that `counts` selects, and that are no joint.
 std::vector<int> lowest_planes(const Geometry& g, const Eigen::Vector3d& up,
                                const std::function<bool(const OuterPlane&)>& counts) {
-  constexpr double kNear = 1e-3;  // of the height
+  constexpr double kNear = 1e-3;  // share of the height
   double low = 1e300, high = -1e300;
   for (const OuterPlane& plane : g.planes) {
     if (!counts(plane)) continue;
@@ -144,7 +144,8 @@ std::vector<int> lowest_planes(const Geometry& g, const Eigen::Vector3d& up,
   return found;
 }
 
-/// What carries one body that is held together: its lowest planes, with z up, or else along the axis where they are largest.
+/// Adds the supports of one connected body: its lowest planes, with z up, or otherwise along the axis where they are
+/// largest.
 void add_feet_of(Geometry& g, MachineDraft& draft, const std::function<bool(const OuterPlane&)>& counts, double share) {
   std::vector<int> best = lowest_planes(g, Eigen::Vector3d::UnitZ(), counts);
   double best_m2 = 0.0;
@@ -165,7 +166,7 @@ void add_feet_of(Geometry& g, MachineDraft& draft, const std::function<bool(cons
   std::set<std::string> surfaces;
   for (int p : best)
     surfaces.insert(name_plane(g, draft, p, best.size() == 1 ? "feet" : "feet_" + g.region(g.plane(p).region)));
-  if (best.empty()) {  // nothing plane looks down: it hangs in springs by what is left of its first region
+  if (best.empty()) {  // no plane faces down: springs hold the rest of its first region
     for (const OuterPlane& plane : g.planes) {
       if (!counts(plane)) continue;
       surfaces.insert(plain_name(g.region(plane.region) + "_rest"));
@@ -177,10 +178,10 @@ void add_feet_of(Geometry& g, MachineDraft& draft, const std::function<bool(cons
   for (const std::string& surface : surfaces) draft.feet.push_back({surface, share / static_cast<double>(surfaces.size())});
 }
 
-/// What the bodies are, and between which of them the drawing leaves a gap where a joint was meant.
+/// Adds remarks about the connected bodies, and about gaps between them where a joint may have been meant.
 void add_remarks_of_bodies(const Geometry& g, MachineDraft& draft, const std::map<int, int>& whole,
                            const std::set<int>& bodies) {
-  constexpr double kWidestGap = 0.02;  // of the machine's largest extent
+  constexpr double kWidestGap = 0.02;  // share of the machine's largest extent
   std::map<int, std::set<std::string>> regions_of;
   for (const OuterPlane& plane : g.planes) regions_of[whole.at(plane.part)].insert(g.region(plane.region));
   std::vector<std::string> names;
@@ -214,7 +215,7 @@ void add_feet(Geometry& g, MachineDraft& draft, const std::map<int, int>& whole)
         g, draft, [&, body](const OuterPlane& plane) { return whole.at(plane.part) == body; }, 1.0);
 }
 
-/// Everything that is no joint and no foot is in the air.
+/// All surfaces that are no joint and no foot are exposed to air.
 void add_films(const Geometry& g, MachineDraft& draft) {
   std::set<std::string> taken;
   for (const auto& foot : draft.feet) taken.insert(foot.surface);
@@ -253,15 +254,15 @@ void add_films(const Geometry& g, MachineDraft& draft) {
   }
 }
 
-/// The centre of that outer face of a region which `score` likes best, among the faces of its larger planes where it has such: they lie where they are
-/// however fine the mesh.
+/// The centre of the outer face of a region with the best `score`, among the faces of its larger planes if it has some:
+/// their position does not depend on the mesh size.
 MachineDraft::Point point_on(const Geometry& g, int region, const std::function<double(const OuterFacet&)>& score) {
   const double area_m2 = g.area_of_region_m2(region);
   const OuterFacet* best = nullptr;
   for (const bool planes_alone : {true, false}) {
     for (std::size_t p = 0; p < g.planes.size(); ++p) {
       const OuterPlane& plane = g.planes[p];
-      const bool is_hidden = g.surface_of_plane.contains(static_cast<int>(p));  // a joint or a foot
+      const bool is_hidden = g.surface_of_plane.contains(static_cast<int>(p));  // it is a joint or a foot
       if (plane.region != region || (planes_alone && (is_hidden || plane.area_m2 < kLarge * area_m2))) continue;
       for (int f : plane.facets) {
         const OuterFacet& facet = g.facet(f);
@@ -281,7 +282,7 @@ int named_region(const mesh::Mesh& mesh, const std::vector<const char*>& words) 
   return -1;
 }
 
-/// Without a name to go by: the region with most curved surface, as a shaft has it, or the smallest where all are boxes.
+/// Without a helpful name: the region with the largest curved surface, like a shaft, or the smallest if all are boxes.
 int likely_spindle(const Geometry& g, int table) {
   int spindle = 0;
   double most_curved_m2 = 0.0, least_m3 = 1e300;
@@ -311,7 +312,7 @@ void add_tool_and_table(const Geometry& g, MachineDraft& draft) {
     draft.tool = point_on(g, spindle, [&](const OuterFacet& f) { return (f.centre_m - centre.at_m).norm(); });
     draft.table = point_on(g, table, [&](const OuterFacet& f) {
       const Eigen::Vector3d line = draft.tool.at_m - f.centre_m;
-      return line.norm() * (f.normal.dot(line) > 0.5 * line.norm() ? 1.0 : 10.0);  // faces that look at the tool
+      return line.norm() * (f.normal.dot(line) > 0.5 * line.norm() ? 1.0 : 10.0);  // prefers faces towards the tool
     });
     return;
   }

@@ -1,5 +1,6 @@
 #pragma once
-// A first scenario of a machine of which only the geometry is known: what the geometry tells, and guesses for the rest, which are marked as such.
+// A first scenario of a machine of which only the geometry is known: facts from the geometry, and marked guesses for the
+// rest.
 
 #include <optional>
 #include <string>
@@ -12,9 +13,9 @@ namespace driftwright::studies {
 struct MachineDraft {
   struct Region {
     std::string name;
-    std::string material;                     ///< of the library: a guess
-    std::optional<Eigen::Vector3d> inside_m;  ///< a point in a solid that the file does not name
-    double mesh_size_m = 0.0;                 ///< 0: of a mesh, whose nodes are there
+    std::string material;                     ///< from the library: a guess
+    std::optional<Eigen::Vector3d> inside_m;  ///< a point in a solid that has no name in the file
+    double mesh_size_m = 0.0;                 ///< 0: for a mesh, which has its nodes already
   };
   struct Plane {
     std::string surface, region;
@@ -22,11 +23,11 @@ struct MachineDraft {
   };
   struct Joint {
     std::string name;
-    std::string a, b;  ///< surfaces; empty where the file has the joint already
+    std::string a, b;  ///< surfaces; empty if the file has the joint already
   };
   struct Foot {
     std::string surface;
-    double share;  ///< of the springs that carry the machine
+    double share;  ///< share of the springs that carry the machine
   };
   struct Point {
     std::string region;
@@ -34,22 +35,22 @@ struct MachineDraft {
   };
   std::vector<Region> regions;
   std::vector<Plane> planes;
-  std::vector<std::string> remaining;  ///< regions that have outer faces on no surface: "<region>_rest"
+  std::vector<std::string> remaining;  ///< regions with outer faces on no surface: "<region>_rest"
   std::vector<Joint> joints;
   std::vector<Foot> feet;
-  std::vector<std::string> films;  ///< surfaces in the air
-  std::string spindle;             ///< the region that is heated: a guess
-  double heat_W = 0.0;             ///< that warms the whole machine by about 2 K
+  std::vector<std::string> films;  ///< surfaces exposed to air
+  std::string spindle;             ///< heated region: a guess
+  double heat_W = 0.0;             ///< heat that warms the whole machine by about 2 K
   Point tool;
   std::optional<Point> table;
-  std::vector<Point> thermometers;   ///< one a region
+  std::vector<Point> thermometers;   ///< one per region
   std::vector<std::string> remarks;  ///< what the geometry leaves open
 };
 
 /// @throws InputError  for a mesh without outer faces
 [[nodiscard]] MachineDraft draft_of(const mesh::UnnamedGeometry& geometry);
 
-/// A name as a surface or sensor may have it: what is neither letter, digit, '_' nor '-' becomes '_'.
+/// A valid name of a surface or sensor: all characters except letters, digits, '_' and '-' become '_'.
 [[nodiscard]] std::string plain_name(const std::string& name);
 
 }  // namespace driftwright::studies

@@ -13,7 +13,7 @@
 namespace driftwright::studies {
 namespace {
 
-/// As YAML takes any text.
+/// Any text as a YAML string.
 std::string quoted(const std::string& text) {
   const bool is_plain = is_name(text) && !std::isdigit(static_cast<unsigned char>(text.front())) && text.front() != '-';
   if (is_plain) return text;
@@ -27,7 +27,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string at_mm(const Eigen::Vector3d& x_m) {
-  const auto mm = [](double x) { return std::abs(x) < 5e-6 ? 0.0 : 1e3 * x; };  // no "-0.00"
+  const auto mm = [](double x) { return std::abs(x) < 5e-6 ? 0.0 : 1e3 * x; };  // avoids "-0.00"
   return fmt::format("[{:.2f} mm, {:.2f} mm, {:.2f} mm]", mm(x_m[0]), mm(x_m[1]), mm(x_m[2]));
 }
 
@@ -40,7 +40,7 @@ constexpr const char* kGuess =
     "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` is for one that\n"
     "  # you know (docs/how-to/scenario.md).\n";
 
-/// Two digits: it is a guess.
+/// Two digits, since it is a guess.
 double rounded(double x) {
   const double step = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
   return step * std::round(x / step);
@@ -91,7 +91,7 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
   return text;
 }
 
-/// What both kinds of machines are run with and judged by.
+/// The runs, and the study that judges them, for both kinds of machines.
 std::string runs_block() {
   return "\nambient: 20 degC                            # or rows of [time, temperature], or a record "
          "(docs/how-to/cyclograms.md)\n"

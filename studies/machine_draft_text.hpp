@@ -1,5 +1,5 @@
 #pragma once
-// A draft of a machine as a scenario: YAML whose comments say what was read and what was guessed.
+// A draft of a machine as the text of a scenario; its comments say what was read and what was guessed.
 
 #include <string>
 
@@ -12,7 +12,7 @@ namespace driftwright::studies {
 [[nodiscard]] std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry,
                                         const std::string& name, const std::string& file);
 
-/// A machine of two lumped nodes, all of it guesses.
+/// The scenario of a machine of two lumped nodes; all numbers are guesses.
 [[nodiscard]] std::string lumped_scenario_text(const std::string& name);
 
 }  // namespace driftwright::studies

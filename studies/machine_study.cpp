@@ -18,7 +18,7 @@ namespace {
 using namespace compensation;
 using scenarios::Scenario;
 
-constexpr const char* kByRegression = "regression";  // what goes through the axis, too
+constexpr const char* kByRegression = "regression";  // the predictor that also goes through the axis
 
 std::vector<Record> training_records(const MachineStudy& study) {
   std::vector<Record> records;
@@ -49,7 +49,7 @@ ModalError modal_error(const Record& predicted, const Record& full, const std::v
   return error;
 }
 
-/// The modes that correct: completed ones.
+/// The modes used for correction: the completed ones.
 ModalPredictor fit_modal(MachineStudy& study, const Scenario& scenario, const scenarios::Model& model) {
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
@@ -91,8 +91,8 @@ double largest_miss_um(const compensation::DeployedPredictor& d, const std::vect
 
 void correct(MachineStudy& study, const Scenario& scenario) {
   const scenarios::Study& settings = *scenario.study;
-  // The injector works on readings of the run itself. A schedule is written before the run: what it may know of the
-  // temperatures is the modal model's prediction of them.
+  // The injector uses readings of the run itself. A schedule is written before the run; it may only use the temperatures
+  // that the modal model predicts.
   const auto as_observed = [&](const scenarios::SimulatedRun& run) {
     return compensation::ObservedRun{scenario.cyclogram(run.record.source), scenario.machine->ambient,
                                      as_read(run.record, {.resolution_K = settings.sensor_resolution_K}, 0)};
@@ -132,7 +132,8 @@ void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
   std::vector<Record> records = training_records(study);
   records.push_back(study.judged.record);
   for (const scenarios::Sensor& sensor : scenario.machine->sensors) {
-    if (!std::holds_alternative<scenarios::PointOnRegion>(sensor.place)) continue;  // the air says nothing of the machine
+    if (!std::holds_alternative<scenarios::PointOnRegion>(sensor.place))
+      continue;  // a thermometer in the air shows nothing of the machine
     const auto ambiguity = temperature_ambiguity(records, sensor.name, scenario.study->target);
     if (ambiguity) study.ambiguities.push_back({sensor.name, *ambiguity});
   }

@@ -1,5 +1,6 @@
 #pragma once
-// The main job: simulate the training cyclograms and the judged one, fit the predictors on the former, correct the latter.
+// The study behind `run`: simulates the training cyclograms and the judged one, fits predictors on the former and
+// corrects the latter.
 
 #include <optional>
 
@@ -14,7 +15,7 @@
 
 namespace driftwright::studies {
 
-/// How far a modal model is from the full model on one run.
+/// The difference between a modal model and the full model in one run.
 struct ModalError {
   int n_modes = 0;
   bool with_steady_responses = false;
@@ -34,16 +35,17 @@ struct MachineStudy {
   std::vector<std::string> displacements;               ///< channels in um
   compensation::Ranking ranking;                        ///< of the thermometers against the target
   std::vector<compensation::Regression> regressions;    ///< on the best sensors, one per displacement
-  std::vector<compensation::Regression> single_sensor;  ///< on the very best one: what temperature alone can do
+  std::vector<compensation::Regression> single_sensor;  ///< on the best one only: what temperature alone achieves
   std::vector<double> modal_time_constant_s;
   Record modal_prediction;               ///< of the judged cyclogram
-  std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: bare modes, then completed ones
-  /// Displacement by displacement: one thermometer, regression, thermal modes.
+  std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: first bare modes, then completed ones
+  /// For each displacement: one thermometer, regression, thermal modes.
   std::vector<compensation::DeployedPredictor> predictors;
-  /// In the order of the predictors, each through pulse injector and schedule.
+  /// In the order of the predictors, each first through the pulse injector, then the schedule.
   std::vector<compensation::CorrectedRun> corrections;
-  std::optional<compensation::AxisLoopRun> axis_loop;  ///< the regression through the injector, where the scenario says how
-  std::vector<SensorAmbiguity> ambiguities;            ///< of the target at each point on the machine, worst first
+  std::optional<compensation::AxisLoopRun>
+      axis_loop;                             ///< the regression through the injector, if the scenario has an `axis_loop`
+  std::vector<SensorAmbiguity> ambiguities;  ///< of the target at each point on the machine, worst first
   double worst_energy_gap = 0.0;
 
   /// The corrections of one channel.

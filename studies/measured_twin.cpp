@@ -17,10 +17,11 @@
 namespace driftwright::studies {
 namespace {
 
-/// Sizes, over the machine's own, of the mesh that tells what the mesh itself does. Not every size can be meshed: the first that can.
+/// Sizes of the second mesh relative to the machine's own, to determine the error of the mesh. Gmsh cannot make every
+/// size: the first that works is used.
 constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
 
-/// Whether two files hold one record.
+/// Whether two files contain the same record.
 bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun& b) {
   if (a.time_s != b.time_s || a.channels.size() != b.channels.size()) return false;
   for (const diagnosis::MeasuredChannel& c : a.channels) {
@@ -39,11 +40,11 @@ diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
   diagnosis::NoiseFloor floor;
   const bool is_stepped = !system.is_linear() && system.size() > solver::kMostOfExponentialRun;
   if (is_stepped ||
-      !system.thermostats.empty()) {  // integrated in steps, and thermostats that switch a little early or late
+      !system.thermostats.empty()) {  // integrated in steps, with thermostats that switch slightly early or late
     floor.slow_K = 0.02;
     floor.slow_m = 5e-8;
   }
-  if (!system.thermostats.empty()) {  // a tenth of a second of a chiller, wherever the record comes from
+  if (!system.thermostats.empty()) {  // a chiller's change in a tenth of a second, whichever record it is
     floor.white_K = std::max(floor.white_K, 0.01);
     floor.white_m = std::max(floor.white_m, 1e-8);
   }
@@ -87,7 +88,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
     return parts;
   };
   m.fine = open(scenario);
-  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough
+  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is accurate enough
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);

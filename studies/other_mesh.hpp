@@ -1,5 +1,5 @@
 #pragma once
-// A machine on another mesh: how much its numbers move tells what the mesh does to them.
+// The same machine on another mesh: the change of its numbers shows the error of the mesh.
 
 #include <optional>
 #include <string>
@@ -10,11 +10,11 @@ namespace driftwright::studies {
 
 struct OtherMesh {
   std::optional<scenarios::MeshRecipe> recipe;
-  std::string why_none;  ///< empty where there is one
+  std::string why_none;  ///< reason for no recipe; empty if there is one
 };
 
-/// The recipe with all its mesh sizes times `size`. Whether Gmsh can mesh it is seen when it does. A kind of recipe without an answer
-/// here does not compile.
+/// The recipe with all its mesh sizes multiplied by `size`. Whether Gmsh can mesh it shows only when it does. A new kind
+/// of recipe must be handled here, or this does not compile.
 /// @param size  > 0, not 1
 [[nodiscard]] OtherMesh other_mesh(const scenarios::MeshRecipe& recipe, double size);
 

@@ -18,16 +18,17 @@ namespace {
 using compensation::DriftLeft;
 using Sets = std::vector<std::vector<int>>;
 
-constexpr int kUsual = 4, kMostUnasked = 8;        // thermometers, where nobody says how many
-constexpr int kRows = 36;                          // of each run that is chosen on
+constexpr int kUsual = 4, kMostUnasked = 8;  // thermometers, if no number is given
+constexpr int kRows = 36;                    // of each run that is used for the choice
 constexpr double kJudgedRow_s = 300.0;
-constexpr std::size_t kBlock = 250;                // nodes of the picture at once
-const std::vector<int> kDesignSeeds = {1, 2, 3};   // machines that regressions are chosen on, of each scatter
+constexpr std::size_t kBlock = 250;               // nodes of the picture per block
+const std::vector<int> kDesignSeeds = {1, 2, 3};  // machines for the choice of regressions, for each scatter
 const std::vector<int> kJudgedSeeds = {1001, 1002};
-/// Numbers of pieces: where those of each stage begin.
-constexpr std::size_t kSearch = 0, kChosen = 1'000'000, kRivals = 1'000'001, kJudged = 2'000'000, kTests = 3'000'000, kPicture = 4'000'000;
+/// First numbers of the pieces of each stage.
+constexpr std::size_t kSearch = 0, kChosen = 1'000'000, kRivals = 1'000'001, kJudged = 2'000'000, kTests = 3'000'000,
+                      kPicture = 4'000'000;
 
-/// Runs that are chosen on, as all candidates need them.
+/// The runs used for the choice, with the data that all candidates need.
 struct DesignRuns {
   const std::vector<PlacementRun>& runs;
   std::vector<std::vector<Eigen::MatrixXd>> by_factor, scattered;
@@ -59,7 +60,7 @@ std::vector<std::string> names_of(const std::vector<Cyclogram>& cyclograms) {
   return names;
 }
 
-/// Corners of cells.
+/// Whether a node is a corner of a cell.
 std::vector<bool> corners_of(const mesh::Mesh& mesh) {
   std::vector<bool> is_corner(static_cast<std::size_t>(mesh.n_nodes()));
   for (int c = 0; c < mesh.cells.size(); ++c) {
@@ -69,7 +70,7 @@ std::vector<bool> corners_of(const mesh::Mesh& mesh) {
   return is_corner;
 }
 
-/// Mid-side nodes of the skin as the mean of the corners beside them.
+/// Sets mid-side nodes of the skin to the mean of their neighbouring corners.
 void fill_mid_sides(Eigen::VectorXd& told_um, const mesh::MachineSkin& skin, const std::vector<bool>& is_corner) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(told_um.size()), n = sum;
   for (const auto& triangle : skin.triangle) {
@@ -87,8 +88,9 @@ void fill_mid_sides(Eigen::VectorXd& told_um, const mesh::MachineSkin& skin, con
   }
 }
 
-/// Nodes of the outside that may carry a thermometer, corners of cells.
-std::vector<int> nodes_to_draw(const PlacementModel& model, const mesh::MachineSkin& skin, const std::vector<bool>& is_corner) {
+/// Outer nodes at corners of cells that may carry a thermometer.
+std::vector<int> nodes_to_draw(const PlacementModel& model, const mesh::MachineSkin& skin,
+                               const std::vector<bool>& is_corner) {
   const mesh::Mesh& mesh = model.opened.reduced()->mesh;
   std::vector<int> nodes;
   for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
@@ -103,8 +105,9 @@ std::vector<int> nodes_to_draw(const PlacementModel& model, const mesh::MachineS
   return nodes;
 }
 
-/// What one thermometer at each of these nodes leaves.
-Pieces::Numbers told_at(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how, std::span<const int> nodes) {
+/// The drift left with one thermometer at each of these nodes.
+Pieces::Numbers told_at(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how,
+                        std::span<const int> nodes) {
   const scenarios::ReducedMachine& machine = *model.opened.reduced();
   const std::vector<int> mounted = model.mounted();
   const auto n_mounted = static_cast<Eigen::Index>(mounted.size()), n = static_cast<Eigen::Index>(nodes.size());
@@ -121,18 +124,19 @@ Pieces::Numbers told_at(const PlacementModel& model, const DesignRuns& design, c
   return {left.begin() + n_mounted, left.end()};
 }
 
-/// What one thermometer at each node leaves; NaN at nodes inside, and of regions that may carry none.
-Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::function<const DesignRuns&()>& design, const PlacementOptions& how,
-                                const Pieces& pieces, const Listener& listener) {
+/// The drift left with one thermometer at each node; NaN at inner nodes, and in regions that may carry none.
+Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::function<const DesignRuns&()>& design,
+                                const PlacementOptions& how, const Pieces& pieces, const Listener& listener) {
   const mesh::Mesh& mesh = model.opened.reduced()->mesh;
   const mesh::MachineSkin skin = mesh::skin_of(mesh);
   const std::vector<bool> is_corner = corners_of(mesh);
   const std::vector<int> nodes = nodes_to_draw(model, skin, is_corner);
   Eigen::VectorXd told = Eigen::VectorXd::Constant(mesh.n_nodes(), std::numeric_limits<double>::quiet_NaN());
   const std::size_t n_blocks = (nodes.size() + kBlock - 1) / kBlock;
-  for (std::size_t block = 0; block < n_blocks && !listener.wants_end(); ++block) {  // each has all cores
+  for (std::size_t block = 0; block < n_blocks && !listener.wants_end(); ++block) {  // each block uses all cores
     if (!pieces.shard.has(block)) continue;
-    const std::span<const int> of_block = std::span(nodes).subspan(block * kBlock, std::min(kBlock, nodes.size() - block * kBlock));
+    const std::span<const int> of_block =
+        std::span(nodes).subspan(block * kBlock, std::min(kBlock, nodes.size() - block * kBlock));
     const Pieces::Numbers left = pieces.of(block, [&] { return told_at(model, design(), how, of_block); });
     for (std::size_t i = 0; i < of_block.size(); ++i) told[of_block[i]] = left[i];
     listener.share(static_cast<double>(block) / static_cast<double>(n_blocks));
@@ -141,7 +145,7 @@ Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::function
   return told;
 }
 
-/// Names for sensors at the places of a set: p1, p2, ..., past those that the scenario has.
+/// Names for sensors at the places of a set: p1, p2, ..., skipping those in the scenario.
 std::vector<std::string> new_names(const scenarios::Scenario& scenario, std::size_t n) {
   std::vector<std::string> taken;
   for (const auto& s : scenario.machine->sensors) taken.push_back(s.name);
@@ -160,7 +164,7 @@ std::vector<int> sorted(std::vector<int> set) {
   return set;
 }
 
-/// A set, and the set without each that is not mounted.
+/// A set, and the set without each thermometer that is not mounted.
 Sets with_losses(const std::vector<int>& set, std::size_t n_mounted) {
   Sets sets = {set};
   for (std::size_t i = n_mounted; i < set.size(); ++i) {
@@ -170,7 +174,7 @@ Sets with_losses(const std::vector<int>& set, std::size_t n_mounted) {
   return sets;
 }
 
-/// Residuals of all sets, each judged once, whatever its order.
+/// Residuals of all sets; each set is judged once, whatever its order.
 class JudgedOnce {
  public:
   void want(const Sets& sets) {
@@ -208,13 +212,13 @@ LossOfOne loss_of_one(const JudgedOnce& judged, const std::string& way, const st
   return loss;
 }
 
-/// Sets as a piece: of each its size and its members.
+/// Sets as a piece: the size of each, then its members.
 void add(Pieces::Numbers& numbers, const std::vector<int>& set) {
   numbers.push_back(static_cast<double>(set.size()));
   numbers.insert(numbers.end(), set.begin(), set.end());
 }
 
-/// Reads a piece from its beginning on.
+/// Reads a piece from its beginning.
 class PieceReader {
  public:
   explicit PieceReader(const Pieces::Numbers& numbers) : numbers_(numbers) {}
@@ -237,7 +241,7 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-/// Random sets of each number as one way: medians, and the best.
+/// Random sets of each number as one way: their medians, and the best.
 ChosenBy of_random(const std::vector<Residual>& left, int n_most) {
   ChosenBy by{.way = "random", .sets = Sets(static_cast<std::size_t>(n_most)), .left = {}};
   for (int n = 0; n < n_most; ++n) {
@@ -247,12 +251,13 @@ ChosenBy of_random(const std::vector<Residual>& left, int n_most) {
       regression_um.push_back(left[static_cast<std::size_t>(n * kRandomSets + k)].regression_um);
     }
     by.left.push_back({median(observer_um), median(regression_um)});
-    by.best.push_back({*std::min_element(observer_um.begin(), observer_um.end()), *std::min_element(regression_um.begin(), regression_um.end())});
+    by.best.push_back({*std::min_element(observer_um.begin(), observer_um.end()),
+                       *std::min_element(regression_um.begin(), regression_um.end())});
   }
   return by;
 }
 
-/// What the judge said of the sets, into what is shown. @param own  all of the scenario's sensors
+/// Copies the residuals of the sets into the result. @param own  all of the scenario's sensors
 void add_judged(Placement& placement, const JudgedOnce& judged, const Sets& random, const std::vector<int>& own) {
   const std::size_t n_mounted = placement.mounted.size(), at_n = static_cast<std::size_t>(placement.options.n) - 1;
   placement.without = judged.of({placement.mounted}).front();
@@ -270,8 +275,8 @@ void add_judged(Placement& placement, const JudgedOnce& judged, const Sets& rand
 
 }  // namespace
 
-std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked, const Listener& listener,
-                                            const Pieces& pieces) {
+std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked,
+                                            const Listener& listener, const Pieces& pieces) {
   PlacementOptions how = asked;
   const PlacementFamilies families = placement_families(scenario, how.train, how.test);
   std::vector<const Cyclogram*> cyclograms;
@@ -279,9 +284,11 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
     for (const Cyclogram& c : *list) cyclograms.push_back(&c);
   }
   const PlacementModel model = placement_model(scenario, cyclograms, how.where, how.mounted, how.channels, listener);
-  if (how.n == 0) how.n = std::min({scenario.study ? scenario.study->sensors_to_choose : kUsual, kMostUnasked, model.n_free()});
+  if (how.n == 0)
+    how.n = std::min({scenario.study ? scenario.study->sensors_to_choose : kUsual, kMostUnasked, model.n_free()});
   if (how.n > model.n_free())
-    throw InputError(fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
+    throw InputError(
+        fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
   const std::vector<int> mounted = model.mounted();
   const std::vector<PlacementRun> chosen_on = runs_in_all_ambients(scenario, families.chosen_on, families.ambients, kRows);
@@ -289,7 +296,8 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
   const auto design = [&]() -> const DesignRuns& {
     if (!made) {
       listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
-      made.emplace(DesignRuns{chosen_on, factor_states(model, chosen_on), scattered_states(model, chosen_on, how.scatter, kDesignSeeds)});
+      made.emplace(DesignRuns{chosen_on, factor_states(model, chosen_on),
+                              scattered_states(model, chosen_on, how.scatter, kDesignSeeds)});
     }
     return *made;
   };
@@ -320,13 +328,15 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
                       .mesh = {}};
   for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
   const Pieces::Numbers chosen = pieces.of(kChosen, [&] {
-    const Criteria criteria(model, design(), how, model.rows.topRows(model.n_candidates), model.ambient.head(model.n_candidates));
+    const Criteria criteria(model, design(), how, model.rows.topRows(model.n_candidates),
+                            model.ambient.head(model.n_candidates));
     const DriftLeft& whole = criteria.of(how.placed_for);
     const compensation::LeftWithLoss with_loss(whole, mounted);
     const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
     listener.begin("choosing");
     Pieces::Numbers numbers = {whole.of(mounted)};
-    for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, listener, pieces.from(kSearch))) {
+    for (const compensation::ThermometerSet& set :
+         compensation::best_sets(objective, how.n_most, mounted, listener, pieces.from(kSearch))) {
       add(numbers, set.members);
       numbers.insert(numbers.end(), {set.left_um, criteria.observer.of(set.members), criteria.regression.of(set.members)});
     }
@@ -369,8 +379,8 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
   std::optional<PlacementJudge> made_judge;
   const auto judge = [&]() -> const PlacementJudge& {
     if (!made_judge)
-      made_judge.emplace(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.ambients, kJudgedRow_s), used, how.scatter,
-                         kJudgedSeeds, how.noise_K);
+      made_judge.emplace(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.ambients, kJudgedRow_s), used,
+                         how.scatter, kJudgedSeeds, how.noise_K);
     return *made_judge;
   };
   const auto at_n = static_cast<std::size_t>(how.n) - 1;

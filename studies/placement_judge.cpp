@@ -19,14 +19,14 @@ namespace {
 using compensation::ObservedRun;
 using compensation::Observer;
 
-constexpr int kObserverModes = 12;       // as `validate` gives it
-constexpr double kLongestStep_s = 300.0;  // of the filter; the same as between rows
+constexpr int kObserverModes = 12;        // as in `validate`
+constexpr double kLongestStep_s = 300.0;  // of the filter; equal to the time between rows
 
 std::string name_of(int candidate) {
   return fmt::format("place_{}", candidate);
 }
 
-/// Drifts and temperatures counted from the first row, for regressions.
+/// Drifts and temperatures relative to the first row, for regressions.
 Record since_start(const ObservedRun& run, const std::vector<std::string>& channels) {
   Record record = run.readings;
   for (const std::string& channel : channels) record = compensation::counted_from_start(std::move(record), channel);
@@ -35,8 +35,9 @@ Record since_start(const ObservedRun& run, const std::vector<std::string>& chann
 
 }  // namespace
 
-PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<PlacementRun>& fitted, const std::vector<PlacementRun>& judged,
-                               std::vector<int> candidates, const std::vector<double>& scatter, const std::vector<int>& seeds, double noise_K)
+PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<PlacementRun>& fitted,
+                               const std::vector<PlacementRun>& judged, std::vector<int> candidates,
+                               const std::vector<double>& scatter, const std::vector<int>& seeds, double noise_K)
     : model_(model), candidates_(std::move(candidates)), noise_K_(noise_K) {
   solver::ReducedSystem seen = model.system;
   solver::Outputs& outputs = seen.outputs;
@@ -56,8 +57,8 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Pl
     outputs.state.col(n + d) = model.system.outputs.state.col(of_model);
     outputs.ambient[n + d] = model.system.outputs.ambient[of_model];
   }
-  const compensation::ModalPredictor modes =
-      compensation::make_ritz_predictor(seen, model.start, kObserverModes, {.drive = {}, .ambient_K = model.start_ambient_K});
+  const compensation::ModalPredictor modes = compensation::make_ritz_predictor(
+      seen, model.start, kObserverModes, {.drive = {}, .ambient_K = model.start_ambient_K});
   compensation::ObserverSettings settings;
   settings.reading_K = std::max(1e-3, noise_K);
   settings.longest_step_s = kLongestStep_s;
@@ -69,7 +70,8 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Pl
     Machine& machine = machines_[m];
     machine.system = compensation::scattered(model.system, scatter[m / seeds.size()], seeds[m % seeds.size()], true);
     std::uint64_t seed = 1000 * (m + 1);
-    for (const PlacementRun& run : fitted) machine.fitted.push_back(since_start(read(machine.system, run, ++seed), model.channels));
+    for (const PlacementRun& run : fitted)
+      machine.fitted.push_back(since_start(read(machine.system, run, ++seed), model.channels));
     for (const PlacementRun& run : judged) machine.judged.push_back(read(machine.system, run, ++seed));
   });
 }
@@ -87,8 +89,8 @@ ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const Plac
     Channel channel{.name = name_of(candidate), .unit = "degC", .values = {}};
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
       const double ambient_K = run.felt.ambient.at(run.times_s[static_cast<std::size_t>(i)]);
-      channel.values.push_back(zero_K + model_.rows.row(candidate).dot(states.col(i)) + model_.ambient[candidate] * ambient_K +
-                               noise_K_ * random.normal());
+      channel.values.push_back(zero_K + model_.rows.row(candidate).dot(states.col(i)) +
+                               model_.ambient[candidate] * ambient_K + noise_K_ * random.normal());
     }
     record.channels.push_back(std::move(channel));
   }

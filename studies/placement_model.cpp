@@ -15,15 +15,16 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr double kStep = 0.01;           // of a factor, for its derivative
-constexpr double kAtWork_s = 8 * 3600.0;  // of the mean drive, where laws of temperature are frozen
+constexpr double kStep = 0.01;            // relative change of a factor, for its derivative
+constexpr double kAtWork_s = 8 * 3600.0;  // time at the mean drive after which laws of temperature are frozen
 constexpr const char* kNodeSensor = "placement_node_";
 
-/// The scenario as the model wants it: reduced, with fields, and with thermometers on its lumped nodes where there is no mesh.
+/// The scenario prepared for the model: reduced, with fields, and without a mesh with thermometers on its lumped nodes.
 scenarios::Scenario prepared(scenarios::Scenario scenario, const std::vector<std::string>& nodes) {
   scenario.solver.model = scenarios::ModelKind::kReduced;
   if (scenario.solver.fields_format == FieldsFormat::kNone) scenario.solver.fields_format = FieldsFormat::kVtu;
-  for (const std::string& node : nodes) scenario.machine->sensors.push_back({.name = kNodeSensor + node, .place = node, .where = {}});
+  for (const std::string& node : nodes)
+    scenario.machine->sensors.push_back({.name = kNodeSensor + node, .place = node, .where = {}});
   return scenario;
 }
 
@@ -34,20 +35,22 @@ std::vector<std::string> lumped_nodes(const scenarios::MachineModel& machine) {
   return names;
 }
 
-/// Laws of temperature frozen where the machine is at work.
+/// Freezes laws of temperature at the state of the machine at work.
 void linearise(solver::ReducedSystem& system, const Eigen::VectorXd& start, const scenarios::Scenario& scenario,
                const std::vector<const Cyclogram*>& cyclograms) {
   if (!system.thermostats.empty())
-    throw InputError(scenario.machine->where, fmt::format("thermostat '{}' switches; places are chosen on a linear model, which cannot "
-                                                          "follow it",
-                                                          system.thermostats.front().name));
+    throw InputError(scenario.machine->where,
+                     fmt::format("thermostat '{}' switches; places are chosen on a linear model, which cannot "
+                                 "follow it",
+                                 system.thermostats.front().name));
   const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const Cyclogram work{.name = "work", .sections = {{kAtWork_s, mean_drive(cyclograms)}}};
   Eigen::VectorXd state = start;
   (void)solver::simulate(system, work, {{0.0}, {ambient_K}}, {kAtWork_s}, scenario.solver.transient, start,
                          [&](double, const Eigen::VectorXd& z) { state = z; });
   const auto freeze = [&](solver::BoundLaw& law) {
-    for (int p : law.probes) law.frozen_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(state, ambient_K));
+    for (int p : law.probes)
+      law.frozen_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(state, ambient_K));
     law.probes.clear();
   };
   for (solver::HeatSource& source : system.sources) freeze(source.power_W);
@@ -59,8 +62,9 @@ Eigen::Index output_of(const solver::ReducedSystem& system, const std::string& n
   return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
-/// Of what an output may be called, with what there is.
-Eigen::Index known_output(const solver::ReducedSystem& system, const std::string& option, const std::string& name, bool temperature) {
+/// The index of an output; the error lists the existing ones.
+Eigen::Index known_output(const solver::ReducedSystem& system, const std::string& option, const std::string& name,
+                          bool temperature) {
   std::vector<std::string> known;
   for (std::size_t i = 0; i < system.outputs.name.size(); ++i) {
     const std::string& other = system.outputs.name[i];
@@ -68,7 +72,8 @@ Eigen::Index known_output(const solver::ReducedSystem& system, const std::string
   }
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw InputError(fmt::format("{} '{}': the machine has no such {}; there are {}.{}", option, name,
-                                 temperature ? "sensor" : "displacement", fmt::join(known, ", "), did_you_mean(name, known)));
+                                 temperature ? "sensor" : "displacement", fmt::join(known, ", "),
+                                 did_you_mean(name, known)));
   return output_of(system, name);
 }
 
@@ -90,8 +95,9 @@ std::vector<int> PlacementModel::mounted() const {
   return last;
 }
 
-PlacementModel placement_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, const SpotRules& rules,
-                               const std::vector<std::string>& mounted, const std::vector<std::string>& channels, const Listener& listener) {
+PlacementModel placement_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
+                               const SpotRules& rules, const std::vector<std::string>& mounted,
+                               const std::vector<std::string>& channels, const Listener& listener) {
   const std::vector<std::string> nodes = lumped_nodes(*scenario.machine);
   PlacementModel model{.opened = scenarios::open_model(prepared(scenario, nodes), cyclograms, listener, true),
                        .system = {},
@@ -151,7 +157,9 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
   if (asked.empty()) {
     for (const scenarios::DisplacementOutput& output : scenario.machine->displacements) asked.push_back(output.name);
   }
-  if (asked.empty()) throw InputError(scenario.machine->where, "the scenario has no displacement; thermometers are placed for the sake of one");
+  if (asked.empty())
+    throw InputError(scenario.machine->where,
+                     "the scenario has no displacement; thermometers are placed for the sake of one");
   for (const std::string& name : asked) {
     const Eigen::Index output = known_output(model.system, "--channel", name, false);
     if (model.system.outputs.unit[static_cast<std::size_t>(output)] != "m")
@@ -166,7 +174,8 @@ Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSyst
   const double warmer_K = run.felt.ambient.at(0.0) - model.start_ambient_K;
   Eigen::MatrixXd states;
   solver::Propagator propagator(system);
-  (void)propagator.run(run.felt.cyclogram, run.felt.ambient, run.times_s, model.start + warmer_K * system.ones, false, &states);
+  (void)propagator.run(run.felt.cyclogram, run.felt.ambient, run.times_s, model.start + warmer_K * system.ones, false,
+                       &states);
   return states;
 }
 
@@ -199,14 +208,15 @@ std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& mo
   std::vector<std::vector<Eigen::MatrixXd>> by_factor(runs.size(), std::vector<Eigen::MatrixXd>(n_factors));
   parallel_for(n_factors, [&](std::size_t f) {
     const solver::ReducedSystem changed = with_factor(model.system, f, 1.0 + kStep);
-    for (std::size_t r = 0; r < runs.size(); ++r) by_factor[r][f] = (states_of(model, changed, runs[r]) - nominal[r]) / std::log1p(kStep);
+    for (std::size_t r = 0; r < runs.size(); ++r)
+      by_factor[r][f] = (states_of(model, changed, runs[r]) - nominal[r]) / std::log1p(kStep);
   });
   return by_factor;
 }
 
 std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                        const std::vector<std::vector<Eigen::MatrixXd>>& by_factor, double noise_K,
-                                                        const Eigen::MatrixXd& rows) {
+                                                        const std::vector<std::vector<Eigen::MatrixXd>>& by_factor,
+                                                        double noise_K, const Eigen::MatrixXd& rows) {
   const compensation::ObserverSettings usual;
   Eigen::MatrixXd drifts(static_cast<Eigen::Index>(model.drifts.size()), model.system.size());
   for (std::size_t d = 0; d < model.drifts.size(); ++d)
@@ -223,8 +233,10 @@ std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& mo
   return result;
 }
 
-std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                           const std::vector<double>& scatter, const std::vector<int>& seeds) {
+std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model,
+                                                           const std::vector<PlacementRun>& runs,
+                                                           const std::vector<double>& scatter,
+                                                           const std::vector<int>& seeds) {
   std::vector<std::vector<Eigen::MatrixXd>> states(scatter.size() * seeds.size(), std::vector<Eigen::MatrixXd>(runs.size()));
   parallel_for(states.size(), [&](std::size_t m) {
     const solver::ReducedSystem other =
@@ -246,7 +258,8 @@ std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& 
     run.group = runs[r].group;
     run.reading_K = rows * (states[m][r].colwise() - (model.start + warmer_K * model.system.ones));
     for (Eigen::Index k = 0; k < run.reading_K.cols(); ++k)
-      run.reading_K.col(k) += (runs[r].felt.ambient.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.ambient.at(0.0)) * ambient;
+      run.reading_K.col(k) +=
+          (runs[r].felt.ambient.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.ambient.at(0.0)) * ambient;
     run.drift_um = drift_um(model, runs[r], states[m][r]);
   });
   return result;

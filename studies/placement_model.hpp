@@ -1,5 +1,5 @@
 #pragma once
-// A machine's linear model that tells the temperature of every point where a thermometer could sit, and its runs.
+// A machine's linear model with the temperature of every point where a thermometer could be, and its runs.
 
 #include "compensation/predictors/observed_run.hpp"
 #include "compensation/predictors/observer_left.hpp"
@@ -10,25 +10,25 @@
 
 namespace driftwright::studies {
 
-/// A cyclogram in one ambient, as the machine feels them.
+/// A cyclogram in one ambient: the real drive and ambient of the machine.
 struct PlacementRun {
   std::string cyclogram, ambient;  ///< names
   scenarios::FeltRun felt;
-  int group = 0;                ///< runs of one cyclogram share it
-  std::vector<double> times_s;  ///< of rows, from the start on
+  int group = 0;                ///< equal for runs of one cyclogram
+  std::vector<double> times_s;  ///< of the rows, from the start
 };
 
 struct PlacementModel {
-  scenarios::Model opened;         ///< reduced
-  solver::ReducedSystem system;    ///< linear
+  scenarios::Model opened;       ///< reduced
+  solver::ReducedSystem system;  ///< linear
   Eigen::VectorXd start;
   double start_ambient_K = 0.0;
-  std::vector<Spot> spots;         ///< candidates, of which sensors that are mounted come last; behind them the scenario's other sensors
+  std::vector<Spot> spots;  ///< candidates, with mounted sensors last; after them the scenario's other sensors
   int n_candidates = 0, n_mounted = 0;
-  Eigen::MatrixXd rows;            ///< temperature at each spot: rows * z + ambient * T_ambient [K over the reference], n_spots x size
+  Eigen::MatrixXd rows;  ///< temperature at each spot: rows * z + ambient * T_ambient [K over the reference], n_spots x size
   Eigen::VectorXd ambient;
-  std::vector<Eigen::Index> drifts;  ///< outputs of the system
-  std::vector<std::string> channels; ///< their names
+  std::vector<Eigen::Index> drifts;   ///< outputs of the system
+  std::vector<std::string> channels;  ///< their names
   std::vector<std::string> regions, left_out;
   bool is_linearised = false;
 
@@ -36,38 +36,46 @@ struct PlacementModel {
   [[nodiscard]] int n_free() const { return n_candidates - n_mounted; }
 };
 
-/// Opens the scenario's machine reduced, with temperatures everywhere. Laws that look at temperatures are frozen at those behind 8 h of the mean drive.
-/// @param mounted   sensors of the scenario that are there already
-/// @param channels  displacements or tilts that count, the drift
-/// @throws InputError  for names that are not there, for thermostats, which no linear model follows
-[[nodiscard]] PlacementModel placement_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                                             const SpotRules& rules, const std::vector<std::string>& mounted,
+/// Opens the scenario's machine as a reduced model with temperatures everywhere. Laws that depend on temperatures are
+/// frozen at those after 8 h of the mean drive.
+/// @param mounted   sensors of the scenario that are mounted already
+/// @param channels  displacements or tilts to predict, the drift
+/// @throws InputError  for unknown names, and for thermostats, which no linear model can follow
+[[nodiscard]] PlacementModel placement_model(const scenarios::Scenario& scenario,
+                                             const std::vector<const Cyclogram*>& cyclograms, const SpotRules& rules,
+                                             const std::vector<std::string>& mounted,
                                              const std::vector<std::string>& channels, const Listener& listener);
 
-/// Reduced states of a system of the same unknowns over a run, size x n_rows. It starts as the scenario says, as much warmer as its ambient is.
-[[nodiscard]] Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system, const PlacementRun& run);
+/// Reduced states of a system with the same unknowns over a run, size x n_rows. The start is the scenario's, plus the
+/// difference of the run's ambient.
+[[nodiscard]] Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system,
+                                        const PlacementRun& run);
 /// Drifts since the start, n_rows x n_drifts [um].
 [[nodiscard]] Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states);
 
-/// What each heat source, film, joint and link, all conduction and all rates of change do to the states of runs, by differences over 1 % of each:
-/// of each run and factor, size x n_rows.
-[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model, const std::vector<PlacementRun>& runs);
-/// What they do to candidates and drifts.
+/// The effect of each heat source, film, joint and link, all conduction and all rates of change on the states of runs, by
+/// differences over 1 % of each: for each run and factor a matrix size x n_rows.
+[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model,
+                                                                      const std::vector<PlacementRun>& runs);
+/// The effect of these factors on candidates and drifts.
 /// @param by_factor  factor_states() of the runs
 /// @param rows       of the candidates, as PlacementModel::rows
-[[nodiscard]] std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                                      const std::vector<std::vector<Eigen::MatrixXd>>& by_factor,
-                                                                      double noise_K, const Eigen::MatrixXd& rows);
-/// Names of these factors.
+[[nodiscard]] std::vector<compensation::RunSensitivity> sensitivities(
+    const PlacementModel& model, const std::vector<PlacementRun>& runs,
+    const std::vector<std::vector<Eigen::MatrixXd>>& by_factor, double noise_K, const Eigen::MatrixXd& rows);
+/// The names of these factors.
 [[nodiscard]] std::vector<std::string> factor_names(const PlacementModel& model);
 
-/// States of runs of machines that differ from the model by random factors (compensation::scattered()), of each machine and run.
-/// @param seeds  of each scatter, one machine each
-[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                                         const std::vector<double>& scatter, const std::vector<int>& seeds);
-/// Those machines as candidates and drifts see them. @param states  scattered_states() of the runs
-[[nodiscard]] std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                                        const std::vector<std::vector<Eigen::MatrixXd>>& states,
-                                                                        const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient);
+/// States of runs of machines that differ from the model by random factors (compensation::scattered()), for each machine
+/// and run.
+/// @param seeds  one machine for each scatter and seed
+[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model,
+                                                                         const std::vector<PlacementRun>& runs,
+                                                                         const std::vector<double>& scatter,
+                                                                         const std::vector<int>& seeds);
+/// The temperatures of candidates and the drifts of those machines. @param states  scattered_states() of the runs
+[[nodiscard]] std::vector<compensation::RunOfCandidates> scattered_runs(
+    const PlacementModel& model, const std::vector<PlacementRun>& runs,
+    const std::vector<std::vector<Eigen::MatrixXd>>& states, const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient);
 
 }  // namespace driftwright::studies

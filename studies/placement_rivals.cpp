@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSeedOfRivals = 11;
 
-/// Temperatures of all free candidates and the first drift, named by their numbers.
+/// Temperatures of all free candidates and the first drift; channels are named by number.
 Record record_of(const PlacementModel& model, const PlacementRun& run, double noise_K, std::uint64_t seed) {
   const Eigen::MatrixXd states = states_of(model, model.system, run);
   Record record{.source = run.cyclogram + ", " + run.ambient, .time_s = run.times_s, .channels = {}};
@@ -45,7 +45,8 @@ std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& mo
   const Select by_grade = [](std::span<const Record> r, const std::vector<std::string>& c, const std::string& t, int n) {
     return compensation::select_by_grey_grade(r, c, t, n);
   };
-  const Select ways[] = {by_grade, compensation::select_by_correlation, compensation::select_by_clusters};  // as kRivalWays
+  const Select ways[] = {by_grade, compensation::select_by_correlation,
+                         compensation::select_by_clusters};  // in the order of kRivalWays
   std::vector<std::vector<std::vector<int>>> rivals;
   for (const Select select : ways) {
     std::vector<std::vector<int>> sets;
@@ -57,7 +58,7 @@ std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& mo
         set.push_back(candidate);
       }
       if (set.size() != static_cast<std::size_t>(n + model.n_mounted))
-        set.clear();  // fewer clusters, or candidates that move
+        set.clear();  // fewer clusters, or fewer candidates that change
       sets.push_back(std::move(set));
     }
     rivals.push_back(std::move(sets));

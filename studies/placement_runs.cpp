@@ -36,7 +36,7 @@ bool holds(const std::vector<Cyclogram>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const Cyclogram& c) { return c.name == name; });
 }
 
-/// Drives in random order, none twice in a row.
+/// Drives in random order, with no repetition.
 Cyclogram made(const std::vector<Drive>& drives, const std::string& name, std::uint64_t purpose) {
   std::vector<Drive> choices = drives;
   choices.emplace_back();  // rest

@@ -26,7 +26,7 @@ bool is_no_place(std::string name) {
                      [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-/// Names among those there are that the rules allow; those left out by their names go into `spots`.
+/// The known names that the rules allow; those left out because of their names are added to `spots`.
 std::vector<std::string> allowed(const std::vector<std::string>& known, const SpotRules& rules, const char* what,
                                  Spots& spots) {
   const auto check = [&](const char* option, const std::vector<std::string>& names) {
@@ -55,7 +55,8 @@ std::vector<std::string> allowed(const std::vector<std::string>& known, const Sp
   return names;
 }
 
-/// The first n nodes of a chain in which each is the one furthest from all before it. It begins at the node furthest from the middle.
+/// The first n nodes of a sequence in which each is the node furthest from all previous ones. The first is furthest from
+/// the centre.
 std::vector<int> spread(const mesh::Mesh& mesh, const std::vector<int>& nodes, std::size_t n) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (int node : nodes) middle += mesh.coords.col(node) / static_cast<double>(nodes.size());
@@ -95,7 +96,7 @@ Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules) {
   for (const std::string& name : names) all_m2 += area_m2[static_cast<std::size_t>(mesh.region(name))];
   for (const std::string& name : names) {
     const auto region = static_cast<std::size_t>(mesh.region(name));
-    if (nodes[region].empty()) continue;  // inside the machine
+    if (nodes[region].empty()) continue;  // no node on the outside
     std::sort(nodes[region].begin(), nodes[region].end());
     nodes[region].erase(std::unique(nodes[region].begin(), nodes[region].end()), nodes[region].end());
     const double share = area_m2[region] / all_m2;

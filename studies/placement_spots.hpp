@@ -1,5 +1,5 @@
 #pragma once
-// Where a thermometer could sit: points of a machine's outside, spread evenly, or lumped nodes.
+// The places where a thermometer could be: points on a machine's outside, spread evenly, or lumped nodes.
 
 #include <string>
 #include <vector>
@@ -10,34 +10,35 @@
 namespace driftwright::studies {
 
 struct Spot {
-  std::string region = {};  ///< of the mesh; or the lumped node
+  std::string region = {};  ///< region of the mesh, or lumped node
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
-  int node = -1;            ///< of the mesh; -1: lumped
-  std::string sensor = {};  ///< the scenario's own, where it is there already
+  int node = -1;            ///< of the mesh; -1: a lumped node
+  std::string sensor = {};  ///< the scenario's own sensor, if there is one
 };
 
-/// Which parts of a machine may carry a thermometer.
+/// The parts of a machine that may carry a thermometer.
 struct SpotRules {
-  std::vector<std::string> regions = {};  ///< these alone; empty: all but those that kNoPlace names
+  std::vector<std::string> regions = {};  ///< only these; empty: all except those named as in kNoPlace
   std::vector<std::string> excluded = {};
-  int n_points = 400;  ///< of a mesh, about
+  int n_points = 400;  ///< approximate number, on a mesh
 };
 
-/// Parts whose names have one of these words carry no thermometer unless they are asked for: they turn, flow or hang.
+/// Parts with one of these words in their name get no thermometer unless they are named explicitly: they rotate, flow or
+/// hang.
 inline constexpr const char* kNoPlace[] = {"spindle", "bearing", "shaft", "rotor", "tool", "coolant",
                                            "cooler",  "oil",     "air",   "cable", "hose", "chip"};
 
 struct Spots {
   std::vector<Spot> points;
-  std::vector<std::string> regions;   ///< that they are in
-  std::vector<std::string> left_out;  ///< by their names, nobody having said so
+  std::vector<std::string> regions;   ///< regions that they are in
+  std::vector<std::string> left_out;  ///< regions left out because of their names
 };
 
-/// Points of a mesh's outside that a hand can reach (mesh::reachable_nodes()): each region has its share by area, twelve at least, and of its nodes
-/// always the one that lies furthest from all before it.
-/// @throws InputError  for a region that does not exist, and where none is left
+/// Points on a mesh's outside within reach of a hand (mesh::reachable_nodes()). Each region gets a share by area, but at
+/// least twelve points; each next point is the node furthest from all previous ones.
+/// @throws InputError  for a region that does not exist, and if no region is left
 [[nodiscard]] Spots spots_of(const mesh::Mesh& mesh, const SpotRules& rules);
-/// The lumped nodes. @throws InputError  the same
+/// The lumped nodes. @throws InputError  as above
 [[nodiscard]] Spots spots_of(const std::vector<std::string>& nodes, const SpotRules& rules);
 
 }  // namespace driftwright::studies

@@ -9,8 +9,8 @@ namespace driftwright::studies {
 namespace {
 
 constexpr double kRow_s = 300.0;
-constexpr double kEnough = 1.1;  // of the least that any test leaves
-constexpr int kOnAndOff = 4;     // times
+constexpr double kEnough = 1.1;  // ratio to the least drift that any test leaves
+constexpr int kOnAndOff = 4;     // number of times
 
 std::string words(const Drive& drive) {
   if (drive == Drive{}) return "rest";
@@ -35,7 +35,9 @@ std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives) {
       Cyclogram test;
       for (const Drive& drive : parts) {
         test.sections.push_back({3600.0 * hours / static_cast<double>(parts.size()), drive});
-        if (!*how) test.name += fmt::format("{}{:.3g} h {}", test.name.empty() ? "" : ", ", hours / static_cast<double>(parts.size()), words(drive));
+        if (!*how)
+          test.name += fmt::format("{}{:.3g} h {}", test.name.empty() ? "" : ", ", hours / static_cast<double>(parts.size()),
+                                   words(drive));
       }
       if (*how) test.name = fmt::format("{:.3g} h {} {}", hours, words(parts.front()), how);
       tests.push_back(std::move(test));
@@ -57,7 +59,8 @@ std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives) {
 std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const std::function<const PlacementJudge&()>& judge,
                                    const std::vector<int>& set, const Pieces& pieces, const Listener& listener) {
   const std::vector<Cyclogram> programmes = possible_tests(drives_of(scenario));
-  const std::vector<PlacementRun> runs = runs_in_turn(scenario, programmes, {scenarios::Validation::Season{"as it is", 0.0, 0.0}}, kRow_s);
+  const std::vector<PlacementRun> runs =
+      runs_in_turn(scenario, programmes, {scenarios::Validation::Season{"as it is", 0.0, 0.0}}, kRow_s);
   const std::vector<Pieces::Numbers> left = pieces.of_shard(
       0, runs.size(), [&] { (void)judge(); },
       [&](std::size_t i) {
@@ -80,7 +83,8 @@ int least_test(const std::vector<TriedTest>& tests, double Residual::*of) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     if (tests[i].left.*of > enough_um) continue;
     const bool is_better = least < 0 || tests[i].duration_s < tests[static_cast<std::size_t>(least)].duration_s ||
-                           (tests[i].duration_s == tests[static_cast<std::size_t>(least)].duration_s && less(tests[i], tests[static_cast<std::size_t>(least)]));
+                           (tests[i].duration_s == tests[static_cast<std::size_t>(least)].duration_s &&
+                            less(tests[i], tests[static_cast<std::size_t>(least)]));
     if (is_better) least = static_cast<int>(i);
   }
   return least;

@@ -1,16 +1,18 @@
 #pragma once
-// Chosen places as sensors of a scenario.
+// Writes chosen places as sensors of a scenario.
 
 #include "studies/placement.hpp"
 
 namespace driftwright::studies {
 
-/// An entry of the key `sensors`: {name: p1, region: headstock, at: [170.0 mm, 180.0 mm, 1320.0 mm]}, {name: p1, node: housing}.
+/// An entry of the key `sensors`: {name: p1, region: headstock, at: [170.0 mm, 180.0 mm, 1320.0 mm]}, {name: p1, node:
+/// housing}.
 [[nodiscard]] std::string sensor_entry(const std::string& name, const Spot& spot);
 
-/// The scenario's file with these entries at the end of its key `sensors`, comments and all; paths in it are absolute.
+/// The scenario's text with these entries at the end of its key `sensors`; comments are kept, and paths are made
+/// absolute.
 /// @param head  comment lines for the top
-/// @throws InputError  where the file cannot be edited in place: a list or path that is an alias
+/// @throws InputError  if the file cannot be edited in place: a list or path that is an alias
 [[nodiscard]] std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries,
                                        const std::vector<std::string>& head);
 

@@ -13,7 +13,7 @@
 namespace driftwright::studies {
 namespace {
 
-/// The machine's own instruments, and a thermometer on each of its parts that has none.
+/// The machine's own instruments, and a thermometer on each of its parts without one.
 void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
   const solver::Outputs& outputs = p.twin->outputs();
   std::vector<std::string> measured_parts;
@@ -22,7 +22,7 @@ void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
   }
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const bool is_further = effects::is_mean_output(outputs.name[o]);
-    if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;  // on the ambient, which is recorded
+    if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;  // on the ambient, which is recorded anyway
     if (is_further && std::find(measured_parts.begin(), measured_parts.end(), outputs.name[o]) != measured_parts.end())
       continue;
     (is_further ? p.further : p.channels).push_back({outputs.name[o], static_cast<int>(o), outputs.unit[o], {}});
@@ -56,7 +56,7 @@ PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::st
   for (const Cyclogram& c : like) runs.push_back(diagnosis::planned_run(c, interval_s, p.ambient, true, {}));
   p.parts = std::make_unique<TwinParts>(TwinParts{diagnosis::augment(scenario, p.mesh, runs), {}});
   p.parts->machine = scenarios::open_reduced(p.parts->augmented.model, p.parts->augmented.plan, listener);
-  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough
+  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is accurate enough
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(p.parts->augmented, p.parts->machine, tolerances);

@@ -1,5 +1,6 @@
 #pragma once
-// Which policy plans corrections: the one that `schedule` writes programs by is the one that `run`, `validate` and `compensate` judge.
+// The policy that plans corrections: `run`, `validate` and `compensate` judge the same one that `schedule` writes
+// programs with.
 
 #include <string>
 
@@ -11,7 +12,7 @@ namespace driftwright::studies {
 /// @param name  one of scenarios::kSchedulePolicies
 [[nodiscard]] compensation::SchedulePolicy policy_of(const std::string& name);
 
-/// The policy of the scenario's block `schedule`; `minimal`, its default, where there is none.
+/// The policy of the scenario's block `schedule`; without the block its default, `minimal`.
 [[nodiscard]] compensation::SchedulePolicy planner_of(const scenarios::Scenario& scenario);
 
 }  // namespace driftwright::studies

@@ -35,7 +35,7 @@ std::vector<std::string> sensors_on_ambient(const scenarios::MachineModel& machi
   return names;
 }
 
-/// An effect that holds in the run before alone would have to end with it, and effects are told one name of a run.
+/// An effect that holds only in the run before would have to end with it, but effects are limited by the name of one run.
 void require_no_effect_in(const scenarios::MachineModel& machine, const std::string& run, const std::string& job) {
   for (const effects::Effect& effect : machine.effects) {
     if (effect.in == run && run != job) {
@@ -47,7 +47,7 @@ void require_no_effect_in(const scenarios::MachineModel& machine, const std::str
   }
 }
 
-/// What was before the job, as the command line names it.
+/// The run before the job, as given on the command line.
 struct Before {
   scenarios::JobOrder order;
   std::optional<Record> record;  ///< none: a cyclogram of the scenario, or nothing
@@ -107,7 +107,7 @@ std::vector<StartCheck> start_checks(const Record& recorded, const Record& model
   return checks;
 }
 
-/// Rows from the first part on, with the time counted from there.
+/// The rows from the first part on, with the time from there.
 Record from_row(const Record& record, std::size_t first) {
   Record rest{.source = record.source, .time_s = {}, .channels = {}};
   for (std::size_t i = first; i < record.n_samples(); ++i) rest.time_s.push_back(record.time_s[i] - record.time_s[first]);
@@ -133,7 +133,8 @@ scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
 
 struct PredictingModels::Known {
   std::mutex mutex;
-  std::map<std::string, std::shared_ptr<const scenarios::Model>> by_plan;  ///< "full", or what decides the reduced model
+  std::map<std::string, std::shared_ptr<const scenarios::Model>>
+      by_plan;  ///< key: "full", or what determines the reduced model
 };
 
 PredictingModels::PredictingModels() : known_(std::make_unique<Known>()) {}
@@ -171,7 +172,7 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                        : options.model == "full" ? scenarios::ModelKind::kFull
                                                  : scenarios::ModelKind::kReduced;
   TimeSeries& ambient =
-      asked.machine->ambient;  // what the model is asked for: ambients as warm as the series', behind the scenario's own
+      asked.machine->ambient;  // temperatures that the model must cover: those of the series, after the scenario's own
   for (double value_K : series.ambient.value) {
     ambient.time_s.push_back(ambient.time_s.back() + 1.0);
     ambient.value.push_back(value_K);
@@ -183,12 +184,12 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                 .before = std::move(before.record),
                 .started_from = start_words(before, options)};
   ahead.machine.ambient = ahead.series.ambient;
-  // The model's start is that of the scenario's ambient; a run that began in another ambient began as much warmer.
+  // The model's start is that of the scenario's ambient; a run in another ambient starts warmer by the difference.
   double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
   if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
     warmer_K += scenarios::felt_ambient_at_start_K(ahead.machine) - scenarios::felt_ambient_at_start_K(own);
   ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
-  if (options.start.empty())  // else the run before is told
+  if (options.start.empty())  // otherwise the run before is given
     ahead.start = scenarios::after_what_was_before(ahead.machine, scenario.solver.transient, *ahead.model, ahead.start,
                                                    ahead.series.cyclogram);
   return ahead;
@@ -225,9 +226,9 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
 
 namespace {
 
-/// Says that a record was made in another ambient than the scenario's, which is the one that is run in.
+/// Notes that a record was made in another ambient than the scenario's, which is the one used.
 void note_other_ambient(const scenarios::MachineModel& machine, const Record& record, const scenarios::RecordedRun& run) {
-  constexpr double kNoticed_K = 0.5;  // thermometers of a hall differ by less
+  constexpr double kNoticed_K = 0.5;  // thermometers of a workshop differ by less
   if (!run.has_ambient()) return;
   const std::vector<double>& recorded_C = record.at(run.ambient_channel).values;
   const auto stated_C = [&](std::size_t i) {

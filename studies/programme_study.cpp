@@ -35,7 +35,7 @@ Eigen::MatrixXd rows_of(const Record& record, const TestChannels& channels) {
   return rows;
 }
 
-/// Channels of tests: temperatures help to find the time constants that displacements share.
+/// The channels of tests; temperatures help to find the time constants that displacements share.
 struct TestBed {
   TestChannels all;                ///< displacements, tilts, temperatures
   std::vector<ThermalTest> tests;  ///< noisy
@@ -90,11 +90,12 @@ std::vector<double> row_of(const Eigen::MatrixXd& rows, Eigen::Index channel) {
   return {row.begin(), row.end()};
 }
 
-/// All channels of a cyclogram since the start, in um and urad, n_channels x n_times. @param ambient  minus the reference temperature [K]
+/// All channels of a cyclogram since the start, in um and urad, n_channels x n_times. @param ambient  minus the reference
+/// temperature [K]
 using Courses =
     std::function<Eigen::MatrixXd(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s)>;
 
-/// A predictor of each channel, which takes its row.
+/// One predictor per channel, each of which uses its row.
 std::vector<compensation::DeployedPredictor> predictors_of(const std::string& name, const TestChannels& channels,
                                                            const Courses& courses) {
   std::vector<compensation::DeployedPredictor> list;
@@ -113,7 +114,7 @@ std::vector<compensation::DeployedPredictor> predictors_of(const std::string& na
   return list;
 }
 
-/// Of a linear model and its state at the start, by what the machine feels of drive and ambient.
+/// Courses by a linear model from its state at the start, from the real drive and ambient of the machine.
 Courses by_model(const scenarios::MachineModel& machine, const TestChannels& channels, const solver::ReducedSystem& system,
                  const Eigen::VectorXd& start) {
   struct Owned {
@@ -121,9 +122,9 @@ Courses by_model(const scenarios::MachineModel& machine, const TestChannels& cha
     Owned(const Owned&) = delete;
     Owned& operator=(const Owned&) = delete;
     solver::ReducedSystem system;
-    solver::Propagator propagator;  // of the system beside it, which stays where it is
+    solver::Propagator propagator;  // refers to the system beside it, which must not move
   };
-  // shared: a function is copied, one for each channel, and all may have what was decomposed for one of them
+  // Shared, since the function is copied for each channel; all copies then use the same decompositions.
   return [machine, channels, start, owned = std::make_shared<Owned>(system)](
              const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s) {
     scenarios::MachineModel there = machine;
@@ -133,7 +134,8 @@ Courses by_model(const scenarios::MachineModel& machine, const TestChannels& cha
   };
 }
 
-/// Predictors of all channels on all judged cyclograms, before they run. @param ambient  minus the reference temperature [K]
+/// Predictions of all channels for all judged cyclograms, before they run. @param ambient  minus the reference
+/// temperature [K]
 JudgedPredictor judged(const ProgrammeStudy& study, const TimeSeries& ambient, const std::string& name,
                        const Courses& courses) {
   JudgedPredictor p{predictors_of(name, study.channels, courses), {}, {}, 0.0};
@@ -166,7 +168,7 @@ double largest_percent(const JudgedPredictor& p) {
   return largest;
 }
 
-/// Corrections planned on each prediction of a random cyclogram, and what the true drift leaves of them.
+/// Plans corrections on each prediction of a random cyclogram, and computes what the true drift leaves.
 ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const JudgedPredictor& p, std::size_t channel,
                                         double tolerance_um, SchedulePolicy policy) {
   ProgrammeStudy::Scheduled s{p.name(), study.channels.name[channel]};
@@ -179,7 +181,7 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Judge
     std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
     const std::vector<double> drift_um = row_of(j.truth, c);
-    // half the tolerance is left to the predictor's error
+    // Half of the tolerance is reserved for the predictor's error.
     const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
                                                        row_of(p.predicted[i], c), 0.5 * tolerance_um, policy);
     int changes = 0;
@@ -245,7 +247,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
     study.channels.unit.emplace_back("urad");
   }
 
-  // --- truth
+  // --- the truth
   const std::vector<Cyclogram> tests = scenarios::test_cyclograms(programme),
                                random = scenarios::random_cyclograms(programme);
   std::vector<Cyclogram> asked = programme.cyclograms;
@@ -344,7 +346,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
     }
   }
 
-  // --- schedules along the axis the study is about
+  // --- schedules along the axis of the study
   const std::string target = scenario.study ? scenario.study->target : study.channels.name.front();
   const auto channel = static_cast<std::size_t>(std::find(study.channels.name.begin(), study.channels.name.end(), target) -
                                                 study.channels.name.begin());

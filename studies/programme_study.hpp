@@ -1,5 +1,5 @@
 #pragma once
-// Predictors of drift side by side: each learns from the programme's tests, or from the model, and predicts its cyclograms.
+// Compares predictors of drift: each learns from the programme's tests, or from the model, and predicts its cyclograms.
 
 #include <functional>
 
@@ -11,11 +11,11 @@
 
 namespace driftwright::studies {
 
-/// How far a predictor is off on one channel of one cyclogram.
+/// The error of a predictor on one channel of one cyclogram.
 struct PredictionError {
   double peak = 0.0;                 ///< of the true course
   double largest = 0.0, mean = 0.0;  ///< of |true - predicted|, over its rows
-  double of = 0.0;                   ///< what per cents are of: max(peak of the channel, 10 % of the peak of the vector)
+  double of = 0.0;                   ///< reference of percentages: max(peak of the channel, 10 % of the peak of the vector)
   [[nodiscard]] double largest_percent() const { return of > 0.0 ? 100.0 * largest / of : 0.0; }
   [[nodiscard]] double mean_percent() const { return of > 0.0 ? 100.0 * mean / of : 0.0; }
 };
@@ -28,12 +28,13 @@ struct JudgedCyclogram {
   Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad, since the start
 };
 
-/// Predictors of one kind, one a channel, and what they foretold of drive and ambient alone.
+/// Predictors of one kind, one per channel, and their predictions from drive and ambient alone.
 struct JudgedPredictor {
-  std::vector<compensation::DeployedPredictor> channels;  ///< of one name, as TestChannels; those of tilts tell urad
-  std::vector<Eigen::MatrixXd> predicted;                 ///< per judged cyclogram, as its truth
-  std::vector<std::vector<PredictionError>> errors;       ///< per judged cyclogram, per channel
-  double seconds = 0.0;                                   ///< of one prediction of one channel, mean; for the terminal alone
+  std::vector<compensation::DeployedPredictor>
+      channels;                            ///< all with one name, in the order of TestChannels; those of tilts predict urad
+  std::vector<Eigen::MatrixXd> predicted;  ///< per judged cyclogram, as its truth
+  std::vector<std::vector<PredictionError>> errors;  ///< per judged cyclogram, per channel
+  double seconds = 0.0;  ///< mean time of one prediction of one channel; printed on the terminal only
 
   [[nodiscard]] const std::string& name() const { return channels.front().name; }
 };
@@ -44,25 +45,26 @@ struct ProgrammeStudy {
   std::vector<JudgedPredictor> predictors;
   compensation::IdentifiedModes identified;
   std::vector<compensation::ScaledModes::Factor> factors;
-  int n_modes_wanted = 0;     ///< of the model, completed, so that every error is at most 1 %; 0: no number reaches it
-  std::string without_model;  ///< why the model's own predictors and the hybrid are left out; empty where they are not
+  int n_modes_wanted =
+      0;  ///< number of the model's completed modes with which every error is at most 1 %; 0: no number is enough
+  std::string without_model;  ///< reason if the predictors from the model and the hybrid are left out; else empty
   std::vector<std::pair<int, double>> error_by_modes;  ///< number of modes, largest error of all [%]
   std::vector<double> time_constant_s;                 ///< of the model's modes at standstill, slowest first
   struct Scheduled {
     std::string predictor, channel;
-    int n_inside = 0, n_cyclograms = 0;  ///< random ones that the corrections keep inside the tolerance
+    int n_inside = 0, n_cyclograms = 0;  ///< random cyclograms, and how many the corrections keep within the tolerance
     double worst_um = 0.0, mean_changes = 0.0;
     int most_changes = 0;
   };
   std::vector<Scheduled> scheduled;
 };
 
-/// Of one channel over some cyclograms: the largest error, and the mean of their mean errors.
+/// The errors of one channel over some cyclograms: the largest error, and the mean of their mean errors.
 struct Summary {
   double largest = 0.0, largest_percent = 0.0, mean = 0.0, mean_percent = 0.0;
   int n = 0;
 };
-/// @param counts  which cyclograms do
+/// @param counts  selects the cyclograms
 [[nodiscard]] Summary summary(const ProgrammeStudy& study, const JudgedPredictor& predictor, std::size_t channel,
                               const std::function<bool(const JudgedCyclogram&)>& counts);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Two records of one thing beside each other: how far each channel of the second is from the first.
+// Compares two records channel by channel: the difference of the second from the first.
 
 #include <string>
 #include <vector>
@@ -8,21 +8,20 @@
 
 namespace driftwright::studies {
 
-/// Second minus first, at the first's rows that both records reach.
+/// Second minus first, at the rows of the first that lie within both records.
 struct ChannelDifference {
   std::string name, unit;
-  int n_rows = 0;        ///< in which both have a value
+  int n_rows = 0;        ///< rows in which both have a value
   double rms = 0.0;      ///< [unit]
-  double largest = 0.0;  ///< [unit] of the largest magnitude, with its sign
+  double largest = 0.0;  ///< [unit] value of the largest magnitude, with its sign
   double largest_at_s = 0.0;
   double at_end = 0.0;  ///< [unit] in the last of these rows
-  double range = 0.0;   ///< [unit] of the first there: maximum minus minimum
+  double range = 0.0;   ///< [unit] of the first in these rows: maximum minus minimum
 };
 
 struct RecordComparison {
   Record first;
-  Record
-      second_at_rows;  ///< channels of both, at the rows of the first, linear in between; NaN where the second has no value
+  Record second_at_rows;  ///< channels of both, linear at the rows of the first; NaN where the second has no value
   std::vector<ChannelDifference> channels = {};
   std::vector<std::string> only_first = {}, only_second = {};  ///< headers of channels without a partner
 };

@@ -22,11 +22,11 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr std::size_t kMostPairs = 5;    // of near-duplicates that are named
-constexpr double kCommonScatter = 0.03;  // of a sensor's share from run to run, at least
-constexpr double kWorthAWord = 0.01;     // share of rows in which a sensor is missing
+constexpr std::size_t kMostPairs = 5;    // most pairs of near-duplicates that are named
+constexpr double kCommonScatter = 0.03;  // least assumed scatter of a sensor's share from run to run
+constexpr double kWorthAWord = 0.01;     // share of missing rows above which a sensor is mentioned
 
-/// Sizes of the sensors' movements in each record, against the mean one there: n_records x n_sensors, logarithms.
+/// Sizes of the sensors' movements in each record, relative to the mean there: n_records x n_sensors, logarithms.
 Eigen::MatrixXd shares(const std::vector<Record>& records, const std::vector<std::string>& sensors) {
   Eigen::MatrixXd share(static_cast<Eigen::Index>(records.size()), static_cast<Eigen::Index>(sensors.size()));
   for (Eigen::Index r = 0; r < share.rows(); ++r) {
@@ -46,8 +46,8 @@ Eigen::MatrixXd shares(const std::vector<Record>& records, const std::vector<std
   return share;
 }
 
-/// Pairs of sensors that in one record behave as each other: exchanging them there brings that record in line with the others, and out
-/// of line it is by far more than sensors commonly are from run to run.
+/// Pairs of sensors that seem exchanged in one record: exchanging them makes that record agree with the others, and it
+/// disagrees by far more than sensors usually vary from run to run.
 std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const std::vector<Record>& records,
                                                                          const std::vector<std::string>& sensors) {
   std::vector<std::tuple<std::string, std::string, std::string>> found;
@@ -69,7 +69,7 @@ std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const s
       }
     }
   }
-  if (records.size() == 2 && found.size() == 2) found.pop_back();  // of two records, which of them it is cannot be told
+  if (records.size() == 2 && found.size() == 2) found.pop_back();  // with two records, it is unknown which of them is wrong
   return found;
 }
 
@@ -77,18 +77,18 @@ using scenarios::is_same_file;
 using scenarios::RecordPart;
 using scenarios::RunRows;
 
-/// A file, read once, whatever parts of it are asked for.
+/// A file, read once, whichever parts of it are requested.
 struct ReadFile {
   std::string path;
   Record record;
   scenarios::RecordedRun recorded;
-  scenarios::FeltRun felt;   ///< drive and ambient as the scenario's effects say that they were
-  std::size_t n_before = 0;  ///< rows in front that are of the record that this one follows
+  scenarios::FeltRun felt;   ///< drive and ambient after the changes by the scenario's effects
+  std::size_t n_before = 0;  ///< rows of the preceding record at the front
 };
 
 Record read_with_target(const std::string& path, const scenarios::Scenario& scenario, std::vector<std::string>& notes) {
   ReadRecord read = read_record(path, scenario.columns);
-  for (const std::string& note : read.notes) {  // of files that are written alike the first alone
+  for (const std::string& note : read.notes) {  // of files with the same format only the first gives notes
     const std::string what = note.starts_with(path) ? note.substr(path.size()) : note;
     if (std::none_of(notes.begin(), notes.end(), [&](const std::string& n) { return n.ends_with(what); }))
       notes.push_back(note);
@@ -102,7 +102,7 @@ Record read_with_target(const std::string& path, const scenarios::Scenario& scen
   return std::move(read.record);
 }
 
-/// The files that parts name, each once.
+/// The files of the parts, each once.
 std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const scenarios::Scenario& scenario,
                                  const std::string* ambient, StudyRecords& into) {
   const std::string& target = scenario.study->target;
@@ -139,7 +139,7 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
     file.record.time_s = file.recorded.time_s;
     files.push_back(std::move(file));
   }
-  // the ambient is an input where every record has it, in the same channel
+  // The ambient is an input if every record has it in the same channel.
   into.ambient = files.front().recorded.ambient_channel;
   const bool is_same =
       std::all_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.recorded.ambient_channel == into.ambient; });
@@ -183,7 +183,7 @@ compensation::ObservedRun observed(const ReadFile& file, const RunRows& rows, co
   return run;
 }
 
-/// Says where a single record was cut, or why not.
+/// Says where a single record was split, or why it was not.
 std::string words_of_cut(const RecordPart& part, const ReadFile& file, const std::vector<RunRows>& runs) {
   if (file.recorded.cyclogram.sections.empty())
     return fmt::format("{} does not say what drove the machine, so that it is not cut into runs at rests", part.words);

@@ -1,5 +1,5 @@
 #pragma once
-// Records that sensors are ranked on and strategies judged by.
+// Reads the records on which sensors are ranked and strategies judged.
 
 #include <span>
 
@@ -9,7 +9,7 @@
 
 namespace driftwright::studies {
 
-/// Records as the command line names them: files, or parts of them such as run.csv:0h..20h.
+/// Records as on the command line: files, or parts of them such as run.csv:0h..20h.
 struct RecordPaths {
   std::vector<std::string> train = {};
   std::vector<std::string> test = {};
@@ -17,30 +17,34 @@ struct RecordPaths {
 
 struct StudyRecords {
   std::vector<compensation::ObservedRun> train, test;
-  std::string ambient;                ///< channel of the ambient in every record; "": not all have it in the same one
-  std::vector<std::string> notes;     ///< how records were read and cut, a sentence each
-  std::vector<std::string> findings;  ///< what is wrong with drive and ambient, a sentence each
+  std::string ambient;             ///< channel of the ambient in every record; "": the records do not all have the same one
+  std::vector<std::string> notes;  ///< how records were read and split, one sentence each
+  std::vector<std::string> findings;  ///< faults in drive and ambient, one sentence each
 };
 
-/// Reads the records, or parts of them (scenarios/reader/record_part.hpp), and checks that they have the study's target. Drive and ambient are what the
-/// scenario's effects say of the recorded ones. A part goes on from what came before it in its record. A single record to train on is cut
-/// into runs at rests of its drive (scenarios/reader/record_runs.hpp).
-/// @throws InputError  for a missing file or channel, and when rows are given twice: trained on and judged by, or trained on twice
-/// @param ambient  null: the ambient is read from the channel that all records have it in; else from this one alone, "" for none
+/// Reads the records, or parts of them (scenarios/reader/record_part.hpp), and checks that they have the study's target.
+/// Drive and ambient are the recorded ones as changed by the scenario's effects. A part continues the rows before it in
+/// its record. A single training record is split into runs at rests of its drive (scenarios/reader/record_runs.hpp).
+/// @throws InputError  for a missing file or channel, and for rows that are given twice: for training and judging, or
+/// twice for training
+/// @param ambient  null: the ambient is read from the channel that all records have; otherwise only from this one, "" for
+/// none
 [[nodiscard]] StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths& paths,
                                         const std::string* ambient = nullptr);
 
-/// The rows of the runs alone, as records.
+/// The rows of the runs only, as records.
 [[nodiscard]] std::vector<Record> own_records(std::span<const compensation::ObservedRun> runs);
 
-/// The records that the runs were cut from, each once and with what came before: what is looked at for broken sensors.
+/// The records that the runs were split from, each once and with the rows before: the search for broken sensors needs
+/// them.
 [[nodiscard]] std::vector<Record> whole_records(std::span<const compensation::ObservedRun> runs, const std::string& target);
 
-/// What a person would want to know of the candidates before anything is fitted to them: never changing, missing in part or moving as one. A line each.
+/// Warnings about the candidates before anything is fitted to them: constant, partly missing, or moving together. One
+/// line each.
 [[nodiscard]] std::vector<std::string> sensor_warnings(const std::vector<Record>& records,
                                                        const std::vector<std::string>& candidates);
 
-/// Channels that read the ambient: sensors on it.
+/// Channels that read the ambient: sensors placed on it.
 [[nodiscard]] std::vector<std::string> ambient_sensors(const scenarios::Scenario& scenario);
 
 }  // namespace driftwright::studies

@@ -12,10 +12,10 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr double kLeastPart = 1e-4;  // of the largest amount of a channel; less is not written
-constexpr double kTurns = 0.01;      // of the top speed, as identification has it
+constexpr double kLeastPart = 1e-4;  // share of the largest amount of a channel; smaller amounts are not written
+constexpr double kTurns = 0.01;      // share of the top speed above which the spindle turns, as in identification
 
-/// Six digits: more say nothing.
+/// Six digits; more would not be significant.
 double rounded(double value) {
   return std::stod(fmt::format("{:.6g}", value));
 }
@@ -25,7 +25,7 @@ std::string unit_of(const diagnosis::MeasuredChannel& c) {
   return c.unit == "rad" ? "urad" : "um";
 }
 
-/// From the twin's units into those of a record.
+/// Converts the twin's units into those of a record.
 Eigen::VectorXd shown(const diagnosis::MeasuredChannel& c, Eigen::VectorXd values, double reference_K) {
   if (c.unit != "K") return 1e6 * values;
   if (unit_of(c) == "degC") values.array() += reference_K - kZeroCelsius_K;
@@ -51,7 +51,7 @@ bool changes(const std::vector<Record>& records, const std::string& channel) {
   });
 }
 
-/// Whether a column may drive heat: not one of temperatures, which is a medium's or a body's.
+/// Whether a column may drive heat: not a temperature, which belongs to a medium or a body.
 bool may_drive(const std::string& unit) {
   static const char* const kUnits[] = {"W", "V", "percent", "count", "1", "W_m2", "mm_min"};
   return std::find(std::begin(kUnits), std::end(kUnits), unit) != std::end(kUnits);
@@ -142,7 +142,8 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
     const auto make = [&] {
       return effects::make_effect("learned", is_sensor ? effects::Place::kSensor : effects::Place::kDisplacement, c.name);
     };
-    std::map<std::size_t, std::map<double, double>> of_law;  // time constant [min] -> amount; beyond the laws: the ambient
+    std::map<std::size_t, std::map<double, double>>
+        of_law;  // time constant [min] -> amount; the index after the laws is the ambient
     const std::size_t ambient = extension.structure.laws.size();
     double largest = 0.0;
     for (std::size_t b = 0; b < extension.bodies.size(); ++b) {

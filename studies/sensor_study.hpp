@@ -1,5 +1,5 @@
 #pragma once
-// Sensors of records ranked and chosen: what `select` shows.
+// Ranks and chooses the sensors of records: what `select` shows.
 
 #include <optional>
 
@@ -15,16 +15,16 @@ struct OtherRanking {
   compensation::Image image;
   compensation::Quantity quantity;
   std::vector<std::string> best;
-  std::string not_defined;  ///< why there is no such ranking; empty: there is
+  std::string not_defined;  ///< reason if there is no such ranking; else empty
 };
 
-/// What a selector chose, and the regression that it leads to.
+/// The choice of a selector, and the regression on it.
 struct ChosenSensors {
   std::string selector;
   compensation::Selection selection;
   compensation::Regression regression;
   compensation::RegressionQuality quality;
-  std::string not_possible;  ///< why it chose nothing; empty: it did
+  std::string not_possible;  ///< reason if it chose nothing; else empty
 };
 
 struct SensorStudy {
@@ -34,7 +34,7 @@ struct SensorStudy {
   compensation::RankingStability stability;
   std::vector<OtherRanking> others;
   std::vector<ChosenSensors> chosen;
-  std::vector<std::string> warnings;  ///< about records and sensors, a sentence each
+  std::vector<std::string> warnings;  ///< about records and sensors, one sentence each
 };
 
 /// Ranks the candidates of the scenario's study on the records and lets every selector choose.

@@ -37,7 +37,7 @@ double scalar_of(const Record& record, const Channel& channel, scenarios::Scalar
 
 namespace {
 
-/// The scalars of the cyclograms that they name, each run once by `run(felt run, output times)`.
+/// The scalars of the named cyclograms, each run once by `run(felt run, output times)`.
 template <class Run>
 std::vector<double> collected(const scenarios::Scenario& scenario, const solver::Outputs& outputs,
                               const std::vector<scenarios::CollectedScalar>& collect, const Run& run) {
@@ -77,7 +77,7 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
                                     const std::vector<scenarios::CollectedScalar>& collect) {
   solver::ReducedSystem system = machine.system;
   solver::bind_laws(system, effects::with_radiation_as_films(effects::heat_balance(scenario.machine->effects)));
-  std::optional<solver::Propagator> propagator;  // keeps decompositions from one cyclogram to the next
+  std::optional<solver::Propagator> propagator;  // keeps its decompositions between cyclograms
   if (system.is_linear()) propagator.emplace(system);
   return collected(
       scenario, system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {

@@ -22,7 +22,7 @@ using scenarios::Scenario;
 using scenarios::Shared;
 using scenarios::SweepPlan;
 
-/// Calls `work`; a failure that belongs to the member goes into its outcome, all else goes on.
+/// Calls `work`; stores a failure of the member in its outcome, and passes all other exceptions on.
 template <class Work>
 void catching(MemberOutcome& outcome, const Work& work) {
   try {
@@ -38,35 +38,36 @@ void catching(MemberOutcome& outcome, const Work& work) {
   }
 }
 
-/// What the members of a group have in common.
+/// The data that the members of a group share.
 struct Structure {
   mesh::Mesh mesh;
   Eigen::MatrixXd influence;
-  std::unique_ptr<const Machine> machine;  ///< where they share all of it
+  std::unique_ptr<const Machine> machine;  ///< if they share all of it
 };
 
-/// The factor of an elastic stiffness may take half of the memory (solver/elasticity.cpp): two at once would not fit.
+/// The factor of an elastic stiffness may take half of the memory (solver/elasticity.cpp), so only one may exist at a
+/// time.
 std::mutex& large_factor() {
   static std::mutex one_at_a_time;
   return one_at_a_time;
 }
 
-/// Reduced machines, made when the first member wants one. Each spans the laws of all members of the plan, whichever of them are run
-/// here, so that shards and resumed sweeps give the same numbers.
+/// Reduced machines, made when the first member needs one. Each spans the laws of all members of the plan, whichever
+/// members run here, so that shards and resumed sweeps give the same numbers.
 class ReducedMachines {
  public:
   explicit ReducedMachines(const SweepPlan& plan) {
     for (std::size_t member = 0; member < plan.n_members; ++member) {
-      MemberOutcome passed_over;  // it will say so itself when its turn comes
+      MemberOutcome passed_over;  // it will report its error when it runs
       catching(passed_over, [&] { ask(scenarios::read_scenario(plan.scenario_of(member))); });
     }
   }
   /// Whether some member runs on finite elements.
   [[nodiscard]] bool some_are_full() const { return some_are_full_; }
 
-  /// Of a member. Where no basis holds for all of them (one cannot lose its heat), each gets one of its own.
+  /// The machine of a member. If no common basis is possible (one member cannot lose its heat), each member gets its own.
   std::shared_ptr<const scenarios::ReducedMachine> of(const Scenario& scenario) {
-    const std::lock_guard lock(mutex_);  // of one's own, too: members of one machine keep it in one folder
+    const std::lock_guard lock(mutex_);  // also for its own basis: members of one machine keep it in one folder
     Asked& asked = by_machine_.at(scenarios::machine_text(*scenario.machine));
     const std::lock_guard large(large_factor());
     const Listener quiet;
@@ -74,7 +75,7 @@ class ReducedMachines {
       try {
         asked.machine =
             std::make_shared<const scenarios::ReducedMachine>(scenarios::open_reduced(asked.model, asked.plan, quiet));
-      } catch (const std::exception&) {  // the member to blame will say why
+      } catch (const std::exception&) {  // the faulty member will report it
         asked.failed = true;
       }
     }
@@ -116,7 +117,7 @@ class ReducedMachines {
   std::mutex mutex_;
 };
 
-/// From the first member that can be read and placed; where none can, each will say why itself.
+/// Made from the first member that can be read and placed; if none can, each member reports its own error.
 Structure build_structure(const SweepPlan& plan, ReducedMachines& reduced, std::span<const std::size_t> members,
                           bool with_machine) {
   Structure shared;
@@ -146,7 +147,7 @@ Structure build_structure(const SweepPlan& plan, ReducedMachines& reduced, std::
   return shared;
 }
 
-/// The machine that a thread has built last.
+/// The machine that a thread built last.
 struct LastMachine {
   std::string key;
   std::optional<Machine> machine;
@@ -170,7 +171,7 @@ std::vector<double> run_member(const SweepPlan& plan, std::size_t member, Reduce
   return simulate_member(scenario, *last.machine, plan.collect);
 }
 
-/// Reports outcomes one at a time; keeps the first exception that belongs to no member, after which nothing more is begun.
+/// Reports outcomes one at a time; keeps the first exception that belongs to no member, after which no more work starts.
 class Collector {
  public:
   explicit Collector(const std::function<void(const MemberOutcome&)>& done) : done_(done) {}
@@ -196,7 +197,7 @@ class Collector {
   std::exception_ptr why_;
 };
 
-/// Members of one structure, side by side unless this is one of several groups that already are.
+/// Runs the members of one structure, in parallel unless several groups already run in parallel.
 void run_group(const SweepPlan& plan, ReducedMachines& reduced, std::span<const std::size_t> members, Collector& collector) {
   const std::string first_key = scenarios::sharing_key(plan, members.front(), Shared::kMachine);
   const bool one_machine = std::all_of(members.begin(), members.end(), [&](std::size_t m) {
@@ -218,7 +219,7 @@ void run_group(const SweepPlan& plan, ReducedMachines& reduced, std::span<const 
           catching(outcome, [&] { outcome.results = run_member(plan, members[i], reduced, shared, last); });
         collector.report(outcome);
       } catch (...) {
-        collector.stop(std::current_exception());  // none may leave the parallel loop
+        collector.stop(std::current_exception());  // no exception may leave the parallel loop
       }
     }
   }
@@ -233,7 +234,7 @@ std::string table_row(const SweepPlan& plan, const MemberOutcome& outcome) {
   for (std::size_t i = 0; i < plan.collect.size(); ++i)
     row += outcome.failure.empty() ? fmt::format(",{:.7g}", outcome.results[i]) : ",";
   if (outcome.failure.empty()) return row + ",done";
-  const std::string message = outcome.failure.substr(0, outcome.failure.find('\n'));  // without the line it points at
+  const std::string message = outcome.failure.substr(0, outcome.failure.find('\n'));  // without the quoted line of the file
   return fmt::format("{},{}", row, csv_cell((outcome.is_refused ? "refused: " : "gave up: ") + message));
 }
 
@@ -257,8 +258,8 @@ void run_members(const SweepPlan& plan, const std::vector<std::size_t>& members,
   }
   ReducedMachines reduced(plan);
   Collector collector(done);
-  // Either groups run side by side or the members of one; within a member all loops then stay on its core, since OpenMP opens
-  // no team inside a team.
+  // Either groups run in parallel, or the members of one group. Within a member all loops then stay on its core, since
+  // OpenMP opens no team inside a team.
 #pragma omp parallel for schedule(dynamic, 1) if (groups.size() >= static_cast <std::size_t>(omp_get_max_threads()))
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (collector.has_stopped()) continue;

@@ -46,7 +46,7 @@ double rank_correlation(const std::vector<double>& x, const std::vector<double>&
   }
   a = ranks(a);
   b = ranks(b);
-  const double mean = 0.5 * (static_cast<double>(a.size()) + 1.0);  // of ranks 1 ... n
+  const double mean = 0.5 * (static_cast<double>(a.size()) + 1.0);  // of the ranks 1 ... n
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - mean) * (b[i] - mean);

@@ -57,7 +57,7 @@ Record table_readings(const scenarios::Scenario& scenario, const scenarios::Felt
     ambient.values.push_back(felt.ambient.at(t_s) + scenario.machine->reference_K - kZeroCelsius_K);
   thermometers.channels.push_back(ambient);
   result.channels.push_back(ambient);
-  // other seeds than the rings': their noise has nothing to do with that of thermometers
+  // Other seeds than those of the rings, since their noise is independent of the thermometers' noise.
   const auto seed = static_cast<std::uint64_t>(s.seed + 1000 * repetition + 500);
   const Record read = compensation::running_mean(
       compensation::as_read(compensation::sampled(thermometers, s.update_s), s.instrument, seed), s.sensor_mean_s);

@@ -1,5 +1,6 @@
 #pragma once
-// How corrections of a table are judged: each with other noise and another wrong model, five times, and with the same instruments.
+// How corrections of a table are judged: five repetitions, each with other noise and another scattered model, with the
+// same instruments.
 
 #include <cmath>
 #include <functional>
@@ -12,15 +13,16 @@ namespace driftwright::studies {
 
 inline constexpr int kTableRepetitions = 5;
 
-/// Repeats a correction and keeps what is typical and what is worst.
-/// @param correct  of the repetition, from 0 on: what it leaves on the table, one matrix a judged time
+/// Repeats a correction and keeps its median and worst result.
+/// @param correct  takes the number of the repetition, from 0; returns what is left on the table, one matrix per judged
+/// time
 [[nodiscard]] TableStrategy repeated(const std::string& name,
                                      const std::function<std::vector<Eigen::Matrix3Xd>(int)>& correct);
 
-/// Expansions of a library are known to 3 %: grey iron from 10.0 to 11.7, say its standards.
+/// Random factors on expansions, which libraries know to 3 %: standards give 10.0 to 11.7 for grey iron.
 [[nodiscard]] ExpansionFactors wrong_expansions(const scenarios::TableSettings& s, int repetition);
 
-/// The same machine, full or reduced, off by random factors in each power and coefficient.
+/// The same machine, full or reduced, with random factors on each power and coefficient.
 template <class System>
 [[nodiscard]] System wrong_system(System system, const scenarios::TableSettings& s, int repetition) {
   Random random(static_cast<std::uint64_t>(s.seed), 50 + static_cast<std::uint64_t>(repetition));
@@ -29,11 +31,11 @@ template <class System>
 
 [[nodiscard]] compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every_s, int repetition);
 
-/// Channel of table_readings() with the ambient that the machine feels; no sensor has a name with a blank.
+/// Channel of table_readings() with the real ambient of the machine; it has a blank, as no sensor's name may.
 inline constexpr const char* kFeltAmbient = "felt ambient";
 
-/// The record with its temperatures as the table's instrument gives them: read every `update`, averaged backwards, held.
-/// @param felt  of the run, for the ambient
+/// The record with its temperatures as read by the table's instrument: every `update`, averaged backwards, held.
+/// @param felt  drive and ambient of the run
 [[nodiscard]] Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt,
                                     const Record& record, int repetition);
 

@@ -17,7 +17,7 @@ namespace {
 using compensation::TableErrors;
 using Errors = std::vector<Eigen::Matrix3Xd>;
 
-/// The run of a model that is wrong, in the ambient that was recorded.
+/// The run of a scattered model, in the recorded ambient.
 TableRun wrong_run(const scenarios::Scenario& scenario, const scenarios::Model& model, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
@@ -55,7 +55,7 @@ const solver::Expansion& table_expansion(const scenarios::Scenario& scenario) {
       ->material.expansion_1_K;
 }
 
-/// Errors at points of the table as its thermometer and those of its scales have them, with expansions as wrong as the model's.
+/// Errors at points of the table from its thermometer and those of its scales, with the model's wrong expansions.
 Errors by_thermometers(const scenarios::Scenario& scenario, const Record& readings,
                        std::span<const Eigen::Vector3d> points_m, const ExpansionFactors& factor) {
   const scenarios::TableSettings& s = *scenario.table;
@@ -127,7 +127,7 @@ TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun 
                     n_times = run.record.n_samples();
   const std::vector<double> scale_x_K = mean_K(run.record, s.scale_x.sensors);
   const std::vector<double> scale_y_K = s.scale_y ? mean_K(run.record, s.scale_y->sensors) : std::vector<double>{};
-  std::vector<const std::vector<double>*> u_um;  // three a point
+  std::vector<const std::vector<double>*> u_um;  // three per point
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (char axis : {'x', 'y', 'z'}) u_um.push_back(&run.record.at(fmt::format("table_{}_{}", p + 1, axis)).values);
   }

@@ -1,5 +1,6 @@
 #pragma once
-// What `run` does with a scenario's `table:`: the table's errors over the run, and every correction of them through the frame.
+// The study behind `run` of a scenario with `table`: the table's errors over the run, and each correction of them by the
+// frame.
 
 #include "compensation/frames/ambient_models.hpp"
 #include "compensation/frames/table_shift.hpp"
@@ -8,26 +9,27 @@
 
 namespace driftwright::studies {
 
-/// Errors of a simulated run over the table, and at its rings.
+/// Errors over the table in a simulated run, and at its rings.
 struct TableRun {
   Record record;
   solver::Trajectory trajectory;
   compensation::TableErrors table;
-  std::vector<Eigen::Matrix3Xd> rings_m;                 ///< errors there, a column a ring
-  std::vector<double> table_only_x_um, scale_only_x_um;  ///< growth of table and scale from end to end of what is judged
+  std::vector<Eigen::Matrix3Xd> rings_m;                 ///< errors there, one column per ring
+  std::vector<double> table_only_x_um, scale_only_x_um;  ///< growth of table and scale between the ends of the judged area
 };
 
-/// Factors on expansions, for a model that has them wrong.
+/// Factors on expansions, for a model with wrong expansions.
 struct ExpansionFactors {
   double table = 1.0, scale_x = 1.0, scale_y = 1.0;
 };
 
 /// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its scales'
-/// thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel that does not exist
+/// thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel that
+/// does not exist
 [[nodiscard]] TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun run,
                                  const ExpansionFactors& factor = {});
 
-/// A correction over the judged time, repeated with other noise and another wrong model.
+/// A correction over the judged time, repeated with other noise and another scattered model.
 struct TableStrategy {
   std::string name = {};
   compensation::PeakErrors peak = {};  ///< median of the repetitions
@@ -44,7 +46,7 @@ struct IntervalRow {
 
 struct TableStudy {
   TableRun run;
-  std::size_t n_judged = 0;               ///< times of the run that are judged, from the first on
+  std::size_t n_judged = 0;               ///< number of the run's times that are judged, from the first
   std::vector<TableStrategy> strategies;  ///< the first is none
   std::vector<IntervalRow> intervals;
   compensation::AxisTemperature control;

@@ -13,23 +13,23 @@
 namespace driftwright::studies {
 namespace {
 
-/// A search: how finely programmes are run, and by how many laws of each kind they are judged.
+/// The fineness of a search: steps per slot of a programme, and laws of each kind that judge it.
 struct Fineness {
   int rows_per_slot;
   std::size_t most_of_a_kind;
 };
-constexpr Fineness kCoarse = {1, 2}, kFine = {3, 8};  // all are tried coarsely, the best of them finely
+constexpr Fineness kCoarse = {1, 2}, kFine = {3, 8};  // all are tried coarsely, the best of them also finely
 constexpr std::size_t kBatch = 250;
-constexpr std::size_t kParents = 20;  // the best so far, which others are changes of
+constexpr std::size_t kParents = 20;  // the best so far, which are changed
 constexpr std::size_t kTriedFinely = 200;
-constexpr std::size_t kTogether = 10;  // programmes of a piece
-constexpr int kAsked = 4;              // programmes asked for, for each one that shall be tried: some come twice
-constexpr double kRandom = 0.5;        // share of all that is tried
+constexpr std::size_t kTogether = 10;  // programmes per piece
+constexpr int kAsked = 4;              // programmes generated for each one tried, since some repeat
+constexpr double kRandom = 0.5;        // share of random ones
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
-constexpr double kWork = 1.8e11;         // multiplications, some ten seconds of two cores
-constexpr double kWorthASection = 0.01;  // of the best
+constexpr double kWork = 1.8e11;         // multiplications, about ten seconds on two cores
+constexpr double kWorthASection = 0.01;  // share of the best
 
-/// Numbers of pieces: where those of each stage begin.
+/// First numbers of the pieces of each stage.
 constexpr std::size_t kPlanSearch = 0, kFineSearch = 5'000'000, kFound = 10'000'000, kPlanJudged = 10'000'001;
 
 struct Tried {
@@ -37,10 +37,10 @@ struct Tried {
   double share = 0.0;
 };
 
-/// All that were tried, the best first.
+/// All programmes that were tried, the best first.
 class Search {
  public:
-  /// @param n_kept  of the best
+  /// @param n_kept  number of best programmes that are kept
   Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, int rows_per_slot, std::size_t n_kept,
          Pieces pieces)
       : machine_(machine), question_(question), rows_per_slot_(rows_per_slot), n_kept_(n_kept), pieces_(std::move(pieces)) {}
@@ -81,7 +81,7 @@ class Search {
   std::vector<Tried> best_;
 };
 
-/// Without sections that are worth little.
+/// The programme without sections that are worth little.
 Tried simplified(const Search& search, const Tried& best) {
   Tried simple = best;
   for (bool goes_on = true; goes_on;) {
@@ -101,11 +101,11 @@ Tried simplified(const Search& search, const Tried& best) {
   return simple;
 }
 
-/// Tries programmes, the usual and the stepped one first.
+/// Tries programmes; the usual and the stepped one come first.
 void look_for(Search& search, const TestLevels& levels, int n_programmes, unsigned seed, const Listener& listener) {
   search.attempt({usual_test(levels), stepped_test(levels)});
   std::mt19937_64 random(seed);
-  const int most_asked = kAsked * n_programmes;  // a small machine has fewer programmes than that
+  const int most_asked = kAsked * n_programmes;  // a small machine has fewer different programmes
   for (int asked = 0; search.n_tried() < n_programmes && asked < most_asked && !listener.wants_end();) {
     const std::size_t n = std::min(kBatch, static_cast<std::size_t>(n_programmes - search.n_tried()));
     std::vector<TestProgramme> programmes;
@@ -129,7 +129,7 @@ void add(Pieces::Numbers& numbers, const auto& matrix) {
   numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
 }
 
-/// What a test would tell, and the shares by channel, as a piece.
+/// The prospect of a test, and the shares by channel, as a piece.
 Pieces::Numbers numbers_of(const diagnosis::Prospect& p, const std::vector<double>& by_channel) {
   Pieces::Numbers numbers = {p.share_named};
   for (const Eigen::VectorXd* v : {&p.seen, &p.named, &p.nats, &p.number_sigma}) add(numbers, *v);
@@ -158,13 +158,13 @@ diagnosis::Prospect prospect_of(const Pieces::Numbers& numbers, const diagnosis:
   return p;
 }
 
-/// What tests would tell, each with what it tells without each channel of the machine's own, and with each further one.
+/// The prospects of tests, each also without each of the machine's own channels, and with each further one.
 std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts& doubts, std::size_t n_tests,
                                    const Pieces& pieces, const Listener& listener,
                                    const std::function<diagnosis::MeasuredRun(std::size_t)>& run_of) {
   std::vector<Pieces::Numbers> told(n_tests);
   const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
-  for (std::size_t t = 0; t < n_tests; ++t) {  // each has all cores
+  for (std::size_t t = 0; t < n_tests; ++t) {  // each test uses all cores
     if (!pieces.shard.has(t)) continue;
     told[t] = pieces.of(kPlanJudged + t, [&] {
       const std::vector<Eigen::MatrixXd> of_channels =
@@ -184,7 +184,7 @@ std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts
   return told;
 }
 
-/// A programme's cost: every doubt from row to row, and the products of its columns.
+/// The number of programmes to try, from the cost of one: every doubt from row to row, and the products of its columns.
 int programmes_of(const PlannedTwin& p, const diagnosis::Doubts& doubts) {
   const double size = p.twin->machine().system.size(), n_doubts = static_cast<double>(doubts.question.n());
   const double n_rows = kTestSlots * kCoarse.rows_per_slot, n_readings = n_rows * static_cast<double>(p.channels.size());

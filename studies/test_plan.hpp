@@ -1,5 +1,6 @@
 #pragma once
-// Before any measurement: the test programme behind which most effects of the catalogue would be named, in a given time.
+// Plans a test programme of given length before any measurement: the one after which a diagnosis would name most effects
+// of the catalogue.
 
 #include "base/pieces.hpp"
 #include "diagnosis/prospect.hpp"
@@ -13,18 +14,18 @@ struct TestPlanOptions {
   double interval_s = 60.0;     ///< of rows
   double most_speed_rpm = 0.0;  ///< 0: the fastest of the scenario
   InstrumentNoise noise = {};
-  int n_programmes = 0;  ///< tried; 0: 10000, of a large machine as many as some ten seconds allow
+  int n_programmes = 0;  ///< to try; 0: 10000, for a large machine as many as fit in about ten seconds
   unsigned seed = 1;
 };
 
-/// A programme and what its record is expected to tell.
+/// A programme, and what a diagnosis of its record is expected to find.
 struct JudgedTest {
   std::string name;
   Cyclogram cyclogram;
   diagnosis::Prospect prospect;
 };
 
-/// The expected share without one of the instruments, or with one more.
+/// The expected share of named effects without one of the instruments, or with one more.
 struct ChannelWorth {
   std::string name;
   double share_named = 0.0;
@@ -33,21 +34,26 @@ struct ChannelWorth {
 struct TestPlan {
   double duration_s = 0.0, interval_s = 0.0;
   InstrumentNoise noise;
-  std::vector<diagnosis::Knob> numbers;  ///< of the scenario, as the question has them
+  std::vector<diagnosis::Knob> numbers;  ///< numbers of the scenario, as in the question
   diagnosis::Question question;
   JudgedTest usual = {}, stepped = {}, planned = {};
-  double search_share = 0.0;  ///< expected of the planned one by the machine that the search ran on
+  double search_share = 0.0;  ///< expected share for the planned programme, by the machine of the search
   int n_tried = 0;
-  std::vector<ChannelWorth> without = {}, with = {};  ///< each channel; each part without a thermometer, best first
+  std::vector<ChannelWorth>
+      without = {},
+      with = {};  ///< without each channel; with each further thermometer, on parts that have none, best first
   std::vector<std::string> channels = {};
   Record usual_record = {}, planned_record = {};  ///< of the machine as written, without noise
 };
 
-/// Tries programmes on a linear machine (diagnosis/level_machine.hpp), half of them random, the others a few changes off the best so far: all of them in steps of a slot by up to three laws
-/// of each kind of effect, the best 200 of these in thirds of a slot by up to eight; takes away sections that are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
-/// @param pieces  programmes tried, ten a piece, and tests judged. Every shard needs what all have tried
-/// @returns nothing where this is one shard of several
+/// Tries programmes on a linear machine (diagnosis/level_machine.hpp), half of them random, the others a few changes from
+/// the best so far. All programmes are tried in steps of a slot with up to three laws of each kind of effect, and the
+/// @returns nothing if this is one shard of several
 /// @throws InputError  as open_planned_twin(), test_levels()
+/// and the best is judged by the signatures that `diagnose` itself uses. If the usual or the stepped test is as good,
+/// that one is the plan.
+/// @param pieces  the programmes tried, ten per piece, and the tests judged. Every shard needs the results of all
+/// @returns nothing if this is one shard of several
 [[nodiscard]] std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options,
                                                 const Listener& listener, const Pieces& pieces = {});
 

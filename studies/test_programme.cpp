@@ -10,12 +10,12 @@ namespace {
 
 constexpr int kMostSections = 10;
 
-/// 0 to n - 1; the standard library fixes its engines, not its distributions.
+/// A number from 0 to n - 1; the standard library defines its engines exactly, but not its distributions.
 int pick(std::mt19937_64& random, std::size_t n) {
   return static_cast<int>(random() % n);
 }
 
-/// First slot of each section, then the end.
+/// The first slot of each section, then the end.
 std::vector<int> edges_of(const TestProgramme& programme) {
   std::vector<int> edges = {0};
   for (std::size_t i = 1; i < programme.size(); ++i) {
@@ -119,7 +119,7 @@ TestProgramme changed_test(TestProgramme programme, const TestLevels& levels, st
     case 0:
       fill(programme, first, end, pick(random, levels.drives.size()));
       break;
-    case 1:  // where two meet
+    case 1:  // moves the border of two sections
       if (section > 0) {
         const int low = edges[section - 1] + 1, to = low + pick(random, static_cast<std::size_t>(end - low));
         const int before = programme[static_cast<std::size_t>(first - 1)],

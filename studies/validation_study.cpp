@@ -23,16 +23,16 @@ using namespace compensation;
 using scenarios::Scenario;
 using scenarios::Validation;
 
-constexpr int kModesOfObserver = 12;  // the slowest of the model, beside its steady responses
-constexpr double kRounding = 0.289;   // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
+constexpr int kModesOfObserver = 12;  // the slowest modes of the model, in addition to its steady responses
+constexpr double kRounding = 0.289;   // standard deviation of a rounding error of one step, 1 / sqrt(12)
 
-/// One simulation to make.
+/// One simulation.
 struct Job {
   const Cyclogram* cyclogram;
   const Validation::Season* season;
 };
 
-/// Simulates, true: no noise, no rounding.
+/// Simulates without noise and rounding.
 compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
   scenarios::MachineModel machine = *scenario.machine;
   machine.ambient = scenarios::ambient_in(*job.season, machine.ambient, job.cyclogram->duration_s());
@@ -55,7 +55,7 @@ Thermometers instrument_of(const Validation& v) {
   return {.noise_K = v.noise_K, .resolution_K = v.resolution_K};
 }
 
-/// @param run  index among training runs and, behind them, those judged
+/// @param run  index among the training runs followed by the judged ones
 std::uint64_t seed_of(const Validation& v, std::size_t run) {
   return 1000 * static_cast<std::uint64_t>(v.seed) + run;
 }
@@ -74,10 +74,10 @@ std::string ambient_channel(const Scenario& scenario, const Record& record) {
   return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
 }
 
-constexpr double kWarm_K = 4.0;  // beside the ambient, that a model starts as warm as
+constexpr double kWarm_K = 4.0;  // largest difference to the ambient at which a model may start from it
 
-/// Why a run does not begin in balance with its ambient, going by its first readings; "" where it does, and for a machine that is warmer than
-/// its ambient at rest.
+/// Why a run does not begin in balance with its ambient, judged by its first readings; "" if it does, and for a machine
+/// that is warmer than its ambient at rest.
 std::string why_not_in_balance(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
   if (machine.start == scenarios::Start::kSteady) return "";
   const double ambient_C = run.ambient.at(0.0) + machine.reference_K - kZeroCelsius_K;
@@ -92,7 +92,7 @@ std::string why_not_in_balance(const scenarios::MachineModel& machine, const com
   return "";
 }
 
-/// What strategies may know of the machine behind records, or why nothing.
+/// What strategies may know of the machine for records, or the reason why nothing.
 struct RecordedPhysics {
   std::optional<compensation::Physics> physics;
   std::string why_none;
@@ -117,7 +117,7 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     cyclograms.push_back(&run->cyclogram);
   }
   Scenario reduced = scenario;
-  for (const compensation::ObservedRun* run : runs) {  // what the model is asked for: ambients as warm as recorded
+  for (const compensation::ObservedRun* run : runs) {  // temperatures that the model must cover: the recorded ambients
     TimeSeries& ambient = reduced.machine->ambient;
     for (double v : run->ambient.value) {
       ambient.time_s.push_back(ambient.time_s.back() + 1.0);
@@ -137,9 +137,9 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     std::optional<compensation::Physics> physics = physics_of(scenario, model, 0.0, 1);
     if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
     return {std::move(physics), ""};
-  } catch (const InputError& e) {  // a machine that no reduced model follows
+  } catch (const InputError& e) {  // a machine that cannot be reduced
     return {std::nullopt, e.what()};
-  } catch (const SolveError& e) {  // such as heat without a way out
+  } catch (const SolveError& e) {  // for example heat that cannot leave
     return {std::nullopt, e.what()};
   }
 }
@@ -214,6 +214,34 @@ std::optional<Record> as_judged(const Validation& v, const std::string& cyclogra
   return std::nullopt;
 }
 
+/// For strategies that are judged in simulation. The reduced model of a network costs nothing: it is opened though the scenario asks for the full one.
+RecordedPhysics physics_for_simulation(const Scenario& scenario, const scenarios::Model& model) {
+  const Validation& v = *scenario.validation;
+  try {
+    std::optional<scenarios::Model> own;
+    if (!model.reduced() && std::holds_alternative<scenarios::LumpedMachine>(scenario.machine->mesh)) {
+      Scenario reduced = scenario;
+      reduced.solver.model = scenarios::ModelKind::kReduced;
+      std::vector<const Cyclogram*> cyclograms;
+      for (const Cyclogram& c : v.train) cyclograms.push_back(&c);
+      own.emplace(scenarios::open_model(reduced, cyclograms, {}, false));
+    }
+    const scenarios::Model& used = own ? *own : model;
+    if (!used.reduced())
+      return {std::nullopt,
+              "they need the reduced model, and the scenario asks for the full one; `solver: {model: reduced}` is required"};
+    std::optional<compensation::Physics> physics = physics_of(scenario, used, v.model_scatter, v.seed);
+    if (!physics)
+      return {std::nullopt,
+              "they need a linear model, and in the scenario's machine films, heat or thermostats follow temperatures"};
+    return {std::move(physics), ""};
+  } catch (const InputError& e) {
+    return {std::nullopt, e.what()};
+  } catch (const SolveError& e) {
+    return {std::nullopt, e.what()};
+  }
+}
+
 Record read_in_validation(const Validation& v, Record exact, std::size_t run) {
   return as_read(std::move(exact), instrument_of(v), seed_of(v, run));
 }
@@ -244,7 +272,9 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
   how.ambient = ambient_channel(scenario, runs.front().readings);
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
   how.drift_um = std::max(0.1, v.drift_noise_um);
-  how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
+  RecordedPhysics physics = physics_for_simulation(scenario, model);
+  how.physics = std::move(physics.physics);
+  how.without_physics = std::move(physics.why_none);
   return {std::move(runs), std::move(how)};
 }
 

@@ -23,7 +23,7 @@ double total_s(const Sections& sections) {
   return sum_s;
 }
 
-/// The shortest rest behind which the job stays within the tolerance.
+/// The shortest rest after which the job stays within the tolerance.
 WarmUp rested(const WarmUpSearch& search, double most_s) {
   WarmUp best = search.least_time(0.0, most_s);
   best.way = "at rest";
@@ -74,11 +74,13 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
     drawn.emplace(trials, options.model_error, 1, kDraws);
     const WarmUp fast = WarmUpSearch(trials, options.tolerance_um, most_rpm, options.most_s, listener).constant();
     const double speed_rpm = fast.sections.empty() ? most_rpm : fast.sections.front().drive.speed_rpm;
-    const std::optional<double> share = free_share(trials, *drawn, speed_rpm, options.most_s, options.tolerance_um, listener);
+    const std::optional<double> share =
+        free_share(trials, *drawn, speed_rpm, options.most_s, options.tolerance_um, listener);
     if (!share)
-      throw InputError(fmt::format("--model-error: no warm-up of up to {:.0f} min at {:.0f} rpm keeps the job within {:g} um on 95 of 100 machines; "
-                                   "allow more drift or time, or correct it (`schedule`, `compensate`)",
-                                   options.most_s / 60.0, speed_rpm, options.tolerance_um));
+      throw InputError(fmt::format(
+          "--model-error: no warm-up of up to {:.0f} min at {:.0f} rpm keeps the job within {:g} um on 95 of 100 machines; "
+          "allow more drift or time, or correct it (`schedule`, `compensate`)",
+          options.most_s / 60.0, speed_rpm, options.tolerance_um));
     kept_free = *share;
   }
   const double tolerance_um = options.tolerance_um * (1.0 - kept_free);
@@ -99,12 +101,14 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
   plan.at_rest = rested(search, options.most_s);
   plan.by_jobs = by_jobs(trials, tolerance_um, options.most_s);
   plan.constant = search.constant();
-  const bool rests = plan.at_rest.is_enough && (!plan.constant.is_enough || plan.at_rest.duration_s() < plan.constant.duration_s());
+  const bool rests =
+      plan.at_rest.is_enough && (!plan.constant.is_enough || plan.at_rest.duration_s() < plan.constant.duration_s());
   plan.staged = search.staged_best(rests ? plan.at_rest : plan.constant);
   listener.begin("minutes against micrometres");
   constexpr int kLevels = 8;
   const double longest_s = plan.staged.is_enough ? std::max(1.5 * plan.staged.duration_s(), 600.0) : options.most_s;
-  const WarmUpSearch least(trials, 0.0, most_rpm, options.most_s, listener);  // of no tolerance: as little as there can be
+  const WarmUpSearch least(trials, 0.0, most_rpm, options.most_s,
+                           listener);  // with tolerance zero: searches the least drift
   WarmUpSearch::Shape shape = {1.0, 0.5, 0.5};
   for (int i = 0; i <= kLevels && !listener.wants_end(); ++i) {
     const double time_s = std::min(longest_s, options.most_s) * i / kLevels;
@@ -121,7 +125,9 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
     plan.levels.push_back({.duration_s = time_s, .constant_um = one.peak_um, .staged_um = two.peak_um});
     listener.share(static_cast<double>(i) / kLevels);
   }
-  const auto is_one_speed = [](const Sections& sections) { return sections.size() == 1 && sections.front().drive.speed_rpm > 0.0; };
+  const auto is_one_speed = [](const Sections& sections) {
+    return sections.size() == 1 && sections.front().drive.speed_rpm > 0.0;
+  };
   if (is_one_speed(plan.staged.sections)) plan.constant = plan.staged;
   plan.at_once.way = "at once";
   plan.constant.way = "one speed";
@@ -131,16 +137,19 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
     plan.finest = std::move(finest);
   }
   if (drawn && plan.best().is_enough) {
-    const auto n_kept = [&](const DrawnMachines& machines) { return machines.n_kept(plan.best().sections, options.tolerance_um, listener); };
+    const auto n_kept = [&](const DrawnMachines& machines) {
+      return machines.n_kept(plan.best().sections, options.tolerance_um, listener);
+    };
     const DrawnMachines fresh(trials, options.model_error, 1 + kDraws, kDraws);
     plan.held = {.n = kDraws, .n_kept = n_kept(*drawn), .n_fresh = kDraws, .n_fresh_kept = n_kept(fresh)};
   }
   const auto& counted = plan.channels;
   if (scenario.study && std::find(counted.begin(), counted.end(), scenario.study->target) != counted.end()) {
     const bool turns = !plan.constant.sections.empty();
-    plan.corrected = corrected_warm_ups(scenario, trials, turns ? plan.constant.sections.front().drive.speed_rpm : most_rpm,
-                                        plan.best().is_enough ? std::min(std::max(1.5 * plan.best().duration_s(), 600.0), options.most_s) : options.most_s,
-                                        tolerance_um, listener);
+    plan.corrected = corrected_warm_ups(
+        scenario, trials, turns ? plan.constant.sections.front().drive.speed_rpm : most_rpm,
+        plan.best().is_enough ? std::min(std::max(1.5 * plan.best().duration_s(), 600.0), options.most_s) : options.most_s,
+        tolerance_um, listener);
   }
   plan.job_at_once = trials.job_rows({});
   plan.job_warm = trials.job_rows(plan.best().sections);

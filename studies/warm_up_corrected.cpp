@@ -10,9 +10,9 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kCorrectedTimes = 12;   // of warm-ups, from none to the longest
-constexpr int kHalvings = 4;          // between two of them
-constexpr std::size_t kNoise = 1000;  // of readings: that of no run of the validation
+constexpr int kCorrectedTimes = 12;   // number of warm-ups, from none to the longest
+constexpr int kHalvings = 4;          // bisections between two of them
+constexpr std::size_t kNoise = 1000;  // index of the readings' noise, which no run of the validation has
 
 /// Warm-up and job as thermometers read them, with the true drift.
 struct ReadRun {
@@ -29,7 +29,7 @@ ReadRun read_run(const scenarios::Validation& validation, const WarmUpTrials& tr
   return read;
 }
 
-/// The tool is set at the job's first row, with the correction of that moment in force.
+/// The peak of the corrected drift; the tool is set at the job's first row, with the correction in force at that moment.
 double peak_left_um(const compensation::DeployedPredictor& strategy, const ReadRun& read) {
   const std::vector<double>& of_target = read.run.readings.at(strategy.target).values;
   std::vector<double> drift_um;

@@ -9,10 +9,10 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kErrorTimes = 16;  // of a warm-up at one speed, from none to the longest
-constexpr int kBetween = 8;      // then between the last that is not enough and the first that is
+constexpr int kErrorTimes = 16;  // times of a warm-up at one speed, from none to the longest
+constexpr int kBetween = 8;      // then between the last insufficient and the first sufficient one
 
-/// Without what only pictures need.
+/// The scattered model without the parts that only pictures need.
 std::shared_ptr<const scenarios::Model> drawn(const scenarios::Model& model, double sigma, int seed) {
   Random random(static_cast<std::uint64_t>(seed), 7);
   auto other = std::make_shared<scenarios::Model>(scenarios::Model{.machine = {}, .balance = model.balance});

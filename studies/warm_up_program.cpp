@@ -10,8 +10,9 @@ constexpr std::size_t kLongestRemark = 200;
 }  // namespace
 
 std::string warm_up_program(const std::vector<Cyclogram::Section>& sections, const std::string& remark) {
-  std::string plain;  // a bracket would end the comment, and what follows would be read
-  for (char c : remark.substr(0, kLongestRemark)) plain += c >= ' ' && c <= '~' && c != '(' && c != ')' && c != ';' ? c : '_';
+  std::string plain;  // a bracket would end the comment, and the rest would be executed
+  for (char c : remark.substr(0, kLongestRemark))
+    plain += c >= ' ' && c <= '~' && c != '(' && c != ')' && c != ';' ? c : '_';
   std::string text = fmt::format("({})\nG21 G94\n", plain);
   bool turns = false;
   for (const Cyclogram::Section& section : sections) {

@@ -1,5 +1,5 @@
 #pragma once
-// A warm-up as an NC program.
+// Writes a warm-up as an NC program.
 
 #include <string>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace driftwright::studies {
 
-/// An NC program for LinuxCNC that turns the spindle as the sections say, and stops it: G21 G94, M3 S, G4 P in seconds.
-/// @param remark  in the first comment; what NC programs do not take in one becomes "_"
+/// An NC program for LinuxCNC that turns the spindle as in the sections and stops it: G21 G94, M3 S, G4 P in seconds.
+/// @param remark  for the first comment; characters that are not allowed in comments become "_"
 [[nodiscard]] std::string warm_up_program(const std::vector<Cyclogram::Section>& sections, const std::string& remark);
 
 }  // namespace driftwright::studies

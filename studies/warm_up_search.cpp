@@ -11,17 +11,18 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr double kLeast_s = 1.0;         // shorter sections are left out
-constexpr double kExact = 0.005;         // of a warm-up's time: how closely the shortest is looked for
-constexpr int kTimes = 16;               // at which one speed is tried before times are halved
-constexpr int kSpeeds = 25;              // up to the limit, of one speed
-constexpr double kBeyond = 1.2;          // of the best time so far: the least of a peak shows between times alone
-constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
+constexpr double kLeast_s = 1.0;  // shorter sections are left out
+constexpr double kExact = 0.005;  // relative accuracy of the shortest time
+constexpr int kTimes = 16;        // times at which one speed is tried before the bisection
+constexpr int kSpeeds = 25;       // number of speeds up to the limit, for one speed
+constexpr double kBeyond = 1.2;   // relative to the best time so far: the minimum of a peak appears only between times
+constexpr int kStages = 7,
+              kShares = 7;  // for two speeds: speeds from rest to the limit, and shares of the first in the time
 constexpr std::size_t kMostWarmUpSections = 4;
-constexpr int kEnds = 10;            // parts of the time, at whose ends one of three sections may end
-constexpr int kImproved = 3;         // of programmes with another section, the best ones
-constexpr double kFirstGain = 0.02;  // of its time, by another section
-constexpr int kScanned = 8;          // times at which two are tried where one is never enough
+constexpr int kEnds = 10;            // divisions of the time, at which one of three sections may end
+constexpr int kImproved = 3;         // number of best programmes with another section that are improved
+constexpr double kFirstGain = 0.02;  // first share of its time that another section is tried to save
+constexpr int kScanned = 8;          // times at which two speeds are tried if one is never enough
 
 bool has_less_drift(const WarmUp& a, const WarmUp& b) {
   return a.peak_um < b.peak_um;
@@ -31,7 +32,7 @@ std::size_t n_sections(const WarmUpSearch::Shape& shape) {
   return (shape.size() + 1) / 2;
 }
 
-/// Whole seconds and tens of rpm, so that what is written is what was judged.
+/// Whole seconds and tens of rpm, so that the written programme is the judged one.
 std::vector<Cyclogram::Section> staged(double time_s, const WarmUpSearch::Shape& shape, double most_rpm) {
   const auto rpm = [&](double share) {
     return std::min(most_rpm, kWarmUpStep_rpm * std::round(std::clamp(share, 0.0, 1.0) * most_rpm / kWarmUpStep_rpm));
@@ -64,7 +65,7 @@ WarmUpSearch::Shape shape_of(const WarmUp& way, double most_rpm) {
   return speeds;
 }
 
-/// Another section of a tenth of the time in front of section `at`, or behind all.
+/// Inserts a section of a tenth of the time before section `at`, or after all.
 WarmUpSearch::Shape with_section(const WarmUpSearch::Shape& shape, std::size_t at, double share) {
   constexpr double kTenth = 0.1;
   const std::size_t n = n_sections(shape);
@@ -98,7 +99,8 @@ WarmUp WarmUpSearch::least_time(double share, double most_s) const {
     time_s.push_back(most_s * std::pow(static_cast<double>(ways.size()) / kTimes, 2.0));
     ways.push_back(constant(time_s.back(), share));
   }
-  // A job may be within the tolerance for a moment between two of these, on the way from too cold to too warm: there the peak has a least.
+  // Between two of these times the job may be within the tolerance briefly, on the way from too cold to too warm: the
+  // peak has a minimum there.
   for (std::size_t i = 1; i + 1 < ways.size(); ++i) {
     if (ways[i].peak_um > ways[i - 1].peak_um || ways[i].peak_um > ways[i + 1].peak_um) continue;
     const WarmUp least = least_between(time_s[i - 1], time_s[i + 1], share);
@@ -201,7 +203,7 @@ WarmUp WarmUpSearch::with_one_more(const WarmUp& known, double time_s) const {
   for (std::size_t at = 0; at <= n_sections(shape); ++at) {
     for (double share : {0.0, 0.25, 0.5, 0.75, 1.0}) longer.push_back(with_section(shape, at, share));
   }
-  if (n_sections(shape) == 2) {  // all or nothing, which is soonest where heat follows the drive and the machine is linear
+  if (n_sections(shape) == 2) {  // on or off, which is fastest if heat follows the drive and the machine is linear
     for (int speeds = 0; speeds < 8; ++speeds) {
       for (int i = 1; i < kEnds; ++i) {
         for (int j = i + 1; j < kEnds; ++j)
@@ -234,7 +236,7 @@ WarmUp WarmUpSearch::refined(const WarmUp& known) const {
       continue;
     }
     const double known_s = best.duration_s();
-    double least_s = 0.0;  // at which none was found
+    double least_s = 0.0;  // longest time without a sufficient programme
     for (double gain = kFirstGain; best.duration_s() - least_s > std::max(1.0, kExact * best.duration_s());) {
       if (listener_.wants_end()) break;
       const double time_s = std::round(std::max(best.duration_s() * (1.0 - gain), 0.5 * (least_s + best.duration_s())));

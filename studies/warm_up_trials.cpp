@@ -12,10 +12,10 @@
 
 namespace driftwright::studies {
 
-WarmUpTrials::WarmUpTrials(const scenarios::Scenario& scenario, const Cyclogram& job, const WarmUpOptions& options, double most_rpm,
-                           const Listener& listener)
+WarmUpTrials::WarmUpTrials(const scenarios::Scenario& scenario, const Cyclogram& job, const WarmUpOptions& options,
+                           double most_rpm, const Listener& listener)
     : job_(job), transient_(scenario.solver.transient), interval_s_(scenario.solver.output_interval_s) {
-  Cyclogram horizon = job;  // as far ahead as any programme looks, and as fast
+  Cyclogram horizon = job;  // as long and as fast as any programme
   horizon.sections.insert(horizon.sections.begin(), {options.most_s, Drive{.speed_rpm = most_rpm}});
   PredictingModels models;
   ahead_ = outlook_of(scenario, horizon, options.from, listener, "warmup", models);
@@ -30,7 +30,8 @@ WarmUpTrials::WarmUpTrials(const scenarios::Scenario& scenario, const Cyclogram&
     for (const auto& d : ahead_.machine.displacements) there += (there.empty() ? "" : ", ") + d.name;
     throw InputError(fmt::format("--channel '{}': no displacement of the machine; there are {}", name, there));
   }
-  if (channels_.empty()) throw InputError(ahead_.machine.where, "`warmup` needs a displacement that drifts: add one to `displacements`");
+  if (channels_.empty())
+    throw InputError(ahead_.machine.where, "`warmup` needs a displacement that drifts: add one to `displacements`");
   whole_before_.name = job.name;
   reads_back_ = !effects::reading_chain(ahead_.machine.effects, job.name).empty();
   for (const Cyclogram::Section& section : ahead_.series.cyclogram.sections) {
@@ -64,7 +65,7 @@ void WarmUpTrials::go_to_now() {
     outputs_.push_back(std::find(names.begin(), names.end(), name) - names.begin());
   }
   before_ = whole_before_;
-  if (!reads_back_ && !switches && now_s_ > 0.0) {  // what was before is in the state alone
+  if (!reads_back_ && !switches && now_s_ > 0.0) {  // the run before is fully described by the state
     (void)scenarios::simulate_run(ahead_.machine, transient_, model, ahead_.start, before_, {now_s_},
                                   [&](double, const Eigen::VectorXd& state) { now_ = state; });
     transient_.from_s = now_s_;
@@ -74,7 +75,8 @@ void WarmUpTrials::go_to_now() {
   }
 }
 
-Cyclogram WarmUpTrials::joined(const Cyclogram& before, const std::vector<Cyclogram::Section>& sections, double& start_s) const {
+Cyclogram WarmUpTrials::joined(const Cyclogram& before, const std::vector<Cyclogram::Section>& sections,
+                               double& start_s) const {
   Cyclogram all = before;
   all.sections.insert(all.sections.end(), sections.begin(), sections.end());
   start_s = all.duration_s();
@@ -87,7 +89,7 @@ Record WarmUpTrials::job_rows(const std::vector<Cyclogram::Section>& sections) c
   const Cyclogram all = joined(before_, sections, start_s);
   std::vector<double> time_s;
   const double end_s = all.duration_s();
-  if (reads_back_) {  // instruments remember what was before, from the first row on
+  if (reads_back_) {  // instruments depend on earlier rows, from the first one on
     for (double t_s : scenarios::output_times_s(all, interval_s_)) {
       if (t_s < start_s - 1e-6) time_s.push_back(t_s);
     }
@@ -108,14 +110,16 @@ Record WarmUpTrials::job_rows(const std::vector<Cyclogram::Section>& sections) c
   return rows;
 }
 
-compensation::ObservedRun WarmUpTrials::whole_run(const std::vector<Cyclogram::Section>& sections, std::size_t& n_before) const {
+compensation::ObservedRun WarmUpTrials::whole_run(const std::vector<Cyclogram::Section>& sections,
+                                                  std::size_t& n_before) const {
   double start_s = 0.0;
-  compensation::ObservedRun run{.cyclogram = joined(whole_before_, sections, start_s), .ambient = ahead_.machine.ambient, .readings = {}};
+  compensation::ObservedRun run{
+      .cyclogram = joined(whole_before_, sections, start_s), .ambient = ahead_.machine.ambient, .readings = {}};
   Cyclogram until = run.cyclogram;
   until.sections.resize(until.sections.size() - job_.sections.size());
   std::vector<double> time_s;
   if (start_s > 0.0) time_s = scenarios::output_times_s(until, interval_s_);
-  if (!time_s.empty()) time_s.pop_back();  // which is the job's first
+  if (!time_s.empty()) time_s.pop_back();  // it is the job's first row
   n_before = time_s.size();
   const double end_s = run.cyclogram.duration_s();
   for (double t_s : scenarios::output_times_s(job_, interval_s_)) time_s.push_back(std::min(start_s + t_s, end_s));
@@ -153,7 +157,8 @@ std::vector<double> WarmUpTrials::linear_peaks_um(const std::vector<Cyclogram::S
     idle_.push_back(std::move(propagator));
   }
   std::vector<double> peaks_um;
-  for (Eigen::Index output : outputs_) peaks_um.push_back(1e6 * (rows.row(output).array() - rows(output, 0)).abs().maxCoeff());
+  for (Eigen::Index output : outputs_)
+    peaks_um.push_back(1e6 * (rows.row(output).array() - rows(output, 0)).abs().maxCoeff());
   return peaks_um;
 }
 

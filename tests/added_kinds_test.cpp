@@ -1,5 +1,6 @@
-// Five kinds of effects, one of each sort, of which the program knows nothing but their files in tests/added_kinds and their names in a list: each is
-// simulated, fitted, found in records that it was hidden in, written into the scenario, and listed among the effects.
+// Five kinds of effects, one of each sort, of which the program knows nothing but their files in tests/added_kinds and
+// their names in a list: each is simulated, fitted, found in records that it was hidden in, written into the scenario,
+// and listed among the effects.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,8 +94,9 @@ TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
   const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
                                    [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });
   ASSERT_NE(number, d.calibrated.end());
-  // On the way from the scenario's number to the true one. How far depends on what else could have done it: all heats and exchanges smaller by one
-  // factor are the same temperatures, so that the priors share the tenth among them (a conductance of 7 W/K that is written as 6.3 comes to 6.5).
+  // On the way from the scenario's number to the true one. How far depends on what else could have done it: all heats and
+  // exchanges smaller by one factor are the same temperatures, so that the priors share the tenth among them (a
+  // conductance of 7 W/K that is written as 6.3 becomes 6.5).
   EXPECT_GT(number->value, 0.9 * added.value + 0.15 * 0.1 * added.value);
   EXPECT_LT(number->value, 1.05 * added.value);
 }

@@ -1,5 +1,5 @@
-// An ambient whose record is late, by its clock or its thermometer, and air that follows the machine: each is named from records made with it, with its number, and
-// written so that it is found no more.
+// An ambient whose record is late, by its clock or its thermometer, and air that follows the machine: each is named from
+// records made with it, with its number, and written so that it is found no more.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

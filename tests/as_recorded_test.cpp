@@ -53,8 +53,9 @@ Record record_of(const std::string& text, const std::string& cyclogram) {
 }
 
 TEST(AsRecorded, MachineFeelsTheTruthAndTheRecordTellsTheRest) {
-  // 150 W at 1.5 times the speed at an ambient temperature of 27 degC: cold 27 + 30 = 57, hot 57 + 75 = 132 degC; growth 3 * 112 - 37 = 299 um,
-  // and (1.5)^2 * 4 = 9 um of centrifugal force, and 6 um of the mount. Time constants of 1500 s at most: settled after 10 h.
+  // 150 W at 1.5 times the speed at an ambient temperature of 27 degC: cold 27 + 30 = 57, hot 57 + 75 = 132 degC; growth
+  // 3 * 112 - 37 = 299 um, and (1.5)^2 * 4 = 9 um of centrifugal force, and 6 um of the mount. Time constants of 1500 s
+  // at most: settled after 10 h.
   const Record record =
       record_of(two_bodies("  - {type: speed_override, factor: 1.5}\n"
                            "  - {type: ambient, offset: 2 K}\n"

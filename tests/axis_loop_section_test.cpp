@@ -1,4 +1,4 @@
-// What a run tells of its axis behind the injector.
+// The findings of a run about its axis with the injector.
 
 #include "findings/axis_loop_section.hpp"
 
@@ -24,7 +24,7 @@ scenarios::AxisLoopSettings settings() {
   return s;
 }
 
-/// A run of two samples, as sound as told.
+/// A run of two samples, sound or not.
 compensation::AxisLoopRun small_run(const compensation::AxisFaults& faults) {
   compensation::AxisLoopRun run;
   run.time_s = {0, 1};

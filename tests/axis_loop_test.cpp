@@ -23,8 +23,8 @@ AxisLoop plain_loop(Feedback feedback = Feedback::kMotor) {
   return loop;
 }
 
-// A tool +3 um too far: 3 / 0.25 = 12 counts forward, and the axis moves by -3 um. It comes to rest beyond the edge that it waits
-// for, less than a count of 0.25 um away.
+// A tool +3 um too far: 3 / 0.25 = 12 counts forward, and the axis moves by -3 um. It comes to rest beyond the edge that
+// it waits for, less than a count of 0.25 um away.
 TEST(InjectedAxis, AToolTooFarGetsCountsForwardAndTheAxisMovesBack) {
   for (double sign : {+1.0, -1.0}) {
     InjectedAxis axis(kEncoder, {}, {});
@@ -38,8 +38,8 @@ TEST(InjectedAxis, AToolTooFarGetsCountsForwardAndTheAxisMovesBack) {
   }
 }
 
-// A warm screw pushes the axis 5 um too far at +500 mm, semi-closed; the linear scale's own growth does it full closed. Perfectly
-// predicted, either leaves less than a count and the half insertion of rounding.
+// A warm screw pushes the axis 5 um too far at +500 mm, semi-closed; the linear scale's own growth does it full closed.
+// Perfectly predicted, either leaves less than a count and the half insertion of rounding.
 TEST(AxisLoop, TheSignIsRightSemiClosedAndFullClosed) {
   for (Feedback feedback : {Feedback::kMotor, Feedback::kScale}) {
     Record record{
@@ -61,8 +61,8 @@ TEST(AxisLoop, TheSignIsRightSemiClosedAndFullClosed) {
   }
 }
 
-// 10 um/m/K at 500 mm: 5 um a kelvin. A motor's encoder does not see the screw's, a scale does not see its own; what they see is
-// followed by the axis and is no error.
+// 10 um/m/K at 500 mm: 5 um a kelvin. A motor's encoder does not see the screw's, a scale does not see its own; what they
+// see is followed by the axis and is no error.
 TEST(AxisLoop, OnlyGrowthThatTheFeedbackDoesNotSeeIsAnError) {
   Record record{
       .source = "warm", .time_s = {0, 100, 200}, .channels = {{"part", "degC", {20, 21, 21}}, {"nose", "um", {0, 0, 0}}}};
@@ -102,8 +102,8 @@ StepAnswer answer_to_step(double step_um, const InjectorSettings& settings, cons
   return answer;
 }
 
-// A slew that nothing holds back makes it a step of position: P position with PI speed may pass it, by 15 % at most at these gains,
-// and settles. At 20 um/s the axis follows within two counts (the lag of kv = 40/s is 0.5 um).
+// A slew that nothing holds back makes it a step of position: P position with PI speed may pass it, by 15 % at most at
+// these gains, and settles. At 20 um/s the axis follows within two counts (the lag of kv = 40/s is 0.5 um).
 TEST(InjectedAxis, AStepOfCorrectionAtStandstillSettles) {
   const StepAnswer at_once = answer_to_step(20.0, {.largest_slew_um_s = 1e6}, {});
   EXPECT_LT(at_once.overshoot_um, 0.15 * 20.0);
@@ -115,8 +115,8 @@ TEST(InjectedAxis, AStepOfCorrectionAtStandstillSettles) {
   EXPECT_LT(slewed.settled_s, 1.2);
 }
 
-// The paper's reading, one count a cycle: a move backward ends where both lines are low, one forward does not, and there the next
-// correction waits until the axis moves.
+// The paper's reading, one count a cycle: a move backward ends where both lines are low, one forward does not, and there
+// the next correction waits until the axis moves.
 TEST(InjectedAxis, AtX1ACorrectionWaitsAtStandstillWhereALineIsHigh) {
   InjectedAxis axis(kEncoder, {.counting = Counting::kX1}, {});
   axis.set_correction(-4);
@@ -159,7 +159,8 @@ TEST(InjectedAxis, SwappedChannelsAreFoundAndFreezeTheCorrection) {
   EXPECT_FALSE(sound.faults().swapped);
 }
 
-// Braking from full speed the encoder counts against a command that has turned round: a sound axis may do so over its way to stop.
+// Braking from full speed the encoder counts against a command that has turned round: a sound axis may do so over its way
+// to stop.
 TEST(InjectedAxis, AReversalAtSpeedIsNoSwap) {
   for (double period_um : {1.0, 4.0}) {
     for (double feed_um_s : {1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5}) {
@@ -213,8 +214,8 @@ TEST(InjectedAxis, ASwapIsFoundAtAnyFeed) {
   }
 }
 
-/// Largest miss in the last half second of five after a step of 0.1 um, on an encoder so fine that rounding does not hide the loop; so
-/// small that a stable loop stays within its largest acceleration.
+/// Largest miss in the last half second of five after a step of 0.1 um, on an encoder so fine that rounding does not hide
+/// the loop; so small that a stable loop stays within its largest acceleration.
 double late_miss_um(const Servo& servo) {
   InjectedAxis axis({.period_um = 0.01},
                     {.least_separation_s = 1e-9, .largest_count_rate_1_s = 1e9, .largest_slew_um_s = 1e6}, servo);
@@ -227,7 +228,8 @@ double late_miss_um(const Servo& servo) {
   return miss_um;
 }
 
-// On both sides of the bound, 3 % off. Stable, four counts are left at most; unstable, it grows until the acceleration limits it.
+// On both sides of the bound, 3 % off. Stable, four counts are left at most; unstable, it grows until the acceleration
+// limits it.
 TEST(Servo, IsStableAboveTheLeastResetTimeAndNotBelow) {
   for (double gain_1_s : {200.0, 400.0, 1000.0}) {
     Servo servo{.position_gain_1_s = 0.1 * gain_1_s, .speed_gain_1_s = gain_1_s};
@@ -255,7 +257,7 @@ TEST(CountConverter, CarriesTheRest) {
   EXPECT_EQ(calm.insertions(0.4), 1);
 }
 
-/// A head that grows by 4 um/K: 12 um in an hour; its thermometer tells all.
+/// A head that grows by 4 um/K: 12 um in an hour; its thermometer shows all of it.
 Record warm_up() {
   Record r{.source = "warm_up", .time_s = {}, .channels = {{"head", "degC", {}}, {"nose", "um", {}}}};
   for (int i = 0; i <= 60; ++i) {
@@ -313,7 +315,7 @@ TEST(AxisLoop, SamplesDuringAPassDoNotCount) {
   EXPECT_EQ(run.with.control_quarters, run.with.encoder_quarters + run.with.inserted_quarters.back());
 }
 
-// Passes so close that the axis is never at rest at a sample: no error could be told, and none must be told as 0.
+// Passes so close that the axis is never at rest at a sample: no error is known, and it must not be reported as 0.
 TEST(AxisLoop, RefusesARunWithoutASampleAtRest) {
   AxisLoop loop = plain_loop();
   loop.sampling_s = 10.0;

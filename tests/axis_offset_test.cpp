@@ -142,7 +142,8 @@ TEST(AxisOffset, OfACorrectionThatIsNoNumberIsNone) {
   EXPECT_EQ(axis.state.counts, -50);
 }
 
-// Whatever happens while the machine is on, no cycle moves by more than the slew limit, and what LinuxCNC adds up is the offset.
+// Whatever happens while the machine is on, no cycle moves by more than the slew limit, and what LinuxCNC adds up is the
+// offset.
 TEST(AxisOffset, NeverMovesFasterThanTheSlewLimitAndKeepsWhatTheControlAddsUp) {
   Random random(7, 1);
   Axis axis;

@@ -260,8 +260,9 @@ cyclograms:
          cyclogram + "\nsolver: {output_interval: 1 min}\n";
 }
 
-// One body, 1000 J/K with 1 W/K to the ambient, of which 60 W at 1000 rpm: T' = (P - T) / 1000 s. Of a hole from 100 to 164 min the first part is 32 min long: full
-// less none there is 60 (1 - e^-1.92) at its end, and half of that is one standard deviation.
+// One body, 1000 J/K with 1 W/K to the ambient, of which 60 W at 1000 rpm: T' = (P - T) / 1000 s. Of a hole from 100 to
+// 164 min the first part is 32 min long: full less none there is 60 (1 - e^-1.92) at its end, and half of that is one
+// standard deviation.
 TEST(UnseenDrive, IsWhatTheDriveOfAHoleMayHaveDone) {
   Bench b(shaft_alone("[[60 min, 1000 rpm], [60 min, 0 rpm], [120 min, 500 rpm]]").c_str());
   b.runs[0].holes = {{6000.0, 9840.0}};
@@ -280,9 +281,10 @@ TEST(UnseenDrive, IsWhatTheDriveOfAHoleMayHaveDone) {
   }
 }
 
-// Nobody turns; the ambient goes to and fro as A sin(2 pi t / P), and a hole is as long as P. From the line between the ends of a stretch of P, which is level, it
-// strays by A (sin(u + 2 pi s) - sin(u)), whose mean square over all u is A^2 (1 - cos(2 pi s)), over s = 1/16 .. 15/16 A^2 16/15. With C dT/dt = -G (T - h) an
-// ambient that is warmer by a for so long leaves a (1 - e^-t/tau).
+// Nobody turns; the ambient goes to and fro as A sin(2 pi t / P), and a hole is as long as P. From the line between the
+// ends of a stretch of P, which is level, it strays by A (sin(u + 2 pi s) - sin(u)), whose mean square over all u is A^2
+// (1 - cos(2 pi s)), over s = 1/16 .. 15/16 A^2 16/15. With C dT/dt = -G (T - h) an ambient that is warmer by a for so
+// long leaves a (1 - e^-t/tau).
 TEST(UnseenDrive, IsTheAmbientToo) {
   Bench b(shaft_alone("[[240 min, 0 rpm]]").c_str());
   constexpr double kAmplitude_K = 1.5, kPeriod_s = 2400.0;
@@ -378,8 +380,8 @@ TEST(MissingData, IsSilentOnWhatIsThere) {
 
 TEST(MissingData, KnowsHowLongTheMachineTakes) {
   Bench b;
-  // s^2 + (12/5000 + 21/20000) s + 12/5000 21/20000 - 12/5000 12/20000 = 0: the slower time constant is 2872 s. The shaft starts with a
-  // little more than 1 K of that mode, and times are looked at in steps of a tenth.
+  // s^2 + (12/5000 + 21/20000) s + 12/5000 21/20000 - 12/5000 12/20000 = 0: the slower time constant is 2872 s. The shaft
+  // starts with a little more than 1 K of that mode, and times are looked at in steps of a tenth.
   EXPECT_GT(settling_time_s(*b.twin, b.runs[0]), 2872.0);
   EXPECT_LT(settling_time_s(*b.twin, b.runs[0]), 1.1 * 1.17 * 2872.0);
 }

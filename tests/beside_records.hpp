@@ -1,5 +1,5 @@
 #pragma once
-// Records at a row a minute with little noise, and a scenario's twin beside them: what findings of structure are tried on.
+// Records with one row per minute and little noise, and a scenario's twin with them, to test findings of structure.
 
 #include "diagnosis/scatter.hpp"
 #include "tests/lumped_records.hpp"

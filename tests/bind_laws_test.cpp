@@ -85,7 +85,7 @@ TEST(BindLaws, TwoMediaAtOnePlaceEachKeepTheirTemperature) {
   ReducedSystem bound = reduced(kMachine);
   bind_laws(bound, fixtures::balance_of(two));
   EXPECT_LT((end(bound) - end(reduced(two))).cwiseAbs().maxCoeff(), 1e-9 * end(bound).cwiseAbs().maxCoeff());
-  bind_laws(bound, fixtures::balance_of(kMachine));  // and what one of them no longer comes to rests
+  bind_laws(bound, fixtures::balance_of(kMachine));  // and a law that is gone leaves no heat
   EXPECT_LT((end(bound) - end(reduced(kMachine))).cwiseAbs().maxCoeff(), 1e-9 * end(bound).cwiseAbs().maxCoeff());
 }
 

@@ -182,7 +182,7 @@ TEST(BlindLoudness, NoLouderThanItsNoiseAllowsAndQuietWhereScatterExplainsIt) {
   const double alone = 0.2 * std::sqrt(n_rows) / plan.noise[3].against_slow(60.0);  // without any scatter
   EXPECT_LT(loudness.d_prime(bias), alone);
   EXPECT_GT(loudness.d_prime(bias), 0.3 * alone);
-  // One standard deviation of a number that scatters is no effect, however large it stands in the records.
+  // One standard deviation of a number that scatters is no effect, however large it is in the records.
   const Hidden capacity{.what = Hide::kHeatCapacity, .where = "stator", .size = 0.1};
   const Eigen::VectorXd s = loudness.signature({capacity});
   EXPECT_GT(s.norm(), 5.0);

@@ -54,7 +54,7 @@ TEST(BoundedJson, SaysFromWhereOnATextIsNoJson) {
 TEST(HashedJson, IsWholeUntilAValueIsAnother) {
   const Json json = with_hash({{"a", {1, 2.5}}, {"b", "Geh\xE4use"}, {"c", NAN}});
   EXPECT_TRUE(is_whole(json));
-  EXPECT_TRUE(is_whole(parse_json(json.dump(3))));  // the layout is nobody's business
+  EXPECT_TRUE(is_whole(parse_json(json.dump(3))));  // the layout does not matter
   for (const char* key : {"a", "b", "c", "hash"}) {
     Json other = json;
     other[key] = 3;

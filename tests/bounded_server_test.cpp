@@ -65,7 +65,8 @@ class Client {
   int fd_;
 };
 
-/// A server in a thread of its own: `/` is a page of 8 MB, `/numbers` a stream of what count() counts, `/flood` one without end.
+/// A server in a thread of its own: `/` is a page of 8 MB, `/numbers` a stream of what count() counts, `/flood` one
+/// without end.
 class Serving {
  public:
   explicit Serving(ServerBounds bounds = {})
@@ -152,7 +153,7 @@ TEST(BoundedServer, AnswersWholeAlsoOneWhoSaysNoMoreAndOneWhoSaysTooMuch) {
   ASSERT_TRUE(head.say("HEAD / HTTP/1.1\r\n\r\n"));
   EXPECT_THAT(head.all(), AllOf(HasSubstr("Content-Length: 8000000\r\n"), EndsWith("\r\n\r\n")));
   ASSERT_TRUE(posts.say("POST / HTTP/1.1\r\nContent-Length: 200000\r\n\r\n" +
-                        std::string(200000, 'z')));  // is told so before all is read
+                        std::string(200000, 'z')));  // the answer comes before all is read
   EXPECT_THAT(posts.all(), AllOf(StartsWith("HTTP/1.1 405"), HasSubstr("Allow: GET, HEAD")));
   ASSERT_TRUE(strange.say("\x16\x03\x01 TLS?\r\n\r\n"));
   EXPECT_THAT(strange.all(), StartsWith("HTTP/1.1 400"));

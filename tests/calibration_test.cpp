@@ -1,4 +1,5 @@
-// Numbers fitted to records: which rows weigh how much, what speaks against writing them, and that a machine that errs is fitted at its levels.
+// Numbers fitted to records: which rows weigh how much, what speaks against writing them, and that a machine that errs is
+// fitted at its levels.
 
 #include "diagnosis/calibration.hpp"
 
@@ -45,7 +46,7 @@ TEST(OutputErrors, CountRowsThatFollowEachOtherAsOne) {
   EXPECT_NEAR(missed(following_itself(0.0, 20000)).rows_as_one, 1.0, 0.15);
   EXPECT_NEAR(missed(following_itself(0.8, 20000)).rows_as_one, 9.0, 1.5);
   EXPECT_NEAR(missed(following_itself(0.8, 20000)).rms, 1.0, 0.05);
-  // what is off by the same in all rows is told once
+  // an error that is the same in all rows counts once
   EXPECT_NEAR(missed(Eigen::VectorXd::Constant(100, 0.5)).rows_as_one, 100.0, 1.0);
 }
 
@@ -65,7 +66,8 @@ TEST(KeptOutLosses, AreMeansOfLogarithmsOverTheFoldsThatCouldJudge) {
   EXPECT_EQ(kept_out_loss({2.0}, {1.0}).standard_error, 0.0);
 }
 
-// Two runs of 100 min, the spindle on for the first half of the one: of its four lags the first is known in closed form, each column is of one output, and as large as what that is missed by.
+// Two runs of 100 min, the spindle on for the first half of the one: of its four lags the first is known in closed form,
+// each column is of one output, and as large as what that is missed by.
 TEST(Discrepancy, IsOfOneChannelAndAsLargeAsWhatItIsMissedBy) {
   std::vector<MeasuredRun> runs = {run_missed_by(Eigen::VectorXd::Constant(101, 2.0)),
                                    run_missed_by(Eigen::VectorXd::Constant(101, 2.0))};
@@ -127,9 +129,9 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
   EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   EXPECT_LT(d.misses.extended, d.misses.as_written);
   for (const ChannelGain& g : d.gain) EXPECT_GT(g.rmse_all_before, 0.0) << g.name;
-  // All numbers are right, and none may stand for the heat: without the discrepancy five go by 1.2 to 1.6, with it 0.33 at most.
-  for (const Estimate& e : d.calibrated)
-    EXPECT_LT(std::abs(e.deviation), 0.6) << e.name;
+  // All numbers are right, and none may absorb the heat: without the discrepancy five move by 1.2 to 1.6, with it by 0.33
+  // at most.
+  for (const Estimate& e : d.calibrated) EXPECT_LT(std::abs(e.deviation), 0.6) << e.name;
 }
 
 // One record has wrong speeds, which no number mends.

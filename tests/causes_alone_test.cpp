@@ -1,4 +1,5 @@
-// Of a single record that stays unexplained: the causes with the scenario's numbers as they are written, where they hold on its end.
+// Of a single record that stays unexplained: the causes with the scenario's numbers as they are written, where they hold
+// on its end.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ cyclograms:
   day: [[60 min, 1000 rpm], [40 min, 0 rpm], [90 min, 1000 rpm], [50 min, 500 rpm], [70 min, 1000 rpm], [50 min, 0 rpm], [60 min, 1000 rpm]]
 solver: {output_interval: 60 s}
 )";
-// Heat that is missing whatever the speed, and heat that comes and goes as nobody could tell.
+// Heat that is missing whatever the speed, and heat that comes and goes without any visible cause.
 constexpr const char* kTruth =
     "{type: heat_source, node: heater, power: 20 W, exponent: 0}\n"
     "  - {type: heat_window, node: wall, power: 14 W, windows: [[10 min, 47 min]]}\n"

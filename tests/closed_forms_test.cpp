@@ -121,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CoolingCylinder,
                                            Convergence{CellShape::kHex20, {2, 4, 8}, 3.0, 7.9e-05}),
                          shape_name);
 
-/// Ball: 100 K Σ 4 (sin z - z cos z) / (2 z - sin 2z) sin(z r) / (z r) exp(-z^2 Fo), 1 - z cot z = Bi; z = (i + 1/2) pi at Bi = 1.
+/// Ball: 100 K Σ 4 (sin z - z cos z) / (2 z - sin 2z) sin(z r) / (z r) exp(-z^2 Fo), 1 - z cot z = Bi; z = (i + 1/2) pi
+/// at Bi = 1.
 double ball_K(double r, double fo) {
   double t_K = 0.0;
   for (int i = 0; i < 25; ++i) {

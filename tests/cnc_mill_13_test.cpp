@@ -61,7 +61,7 @@ TEST_F(CncMill13, TheScrewAloneMakesMostOfTheDriftWhileTheAxisRuns) {
   EXPECT_NEAR(judged_.at("drift_z").values[210], judged_.at("structure_z").values[210], 2.0 * 5.64);
 }
 
-// Rows stand every minute, so that the 60th is one of them. The spindle turns all 300 min.
+// There is a row every minute, so that the 60th minute has one. The spindle turns all 300 min.
 TEST_F(CncMill13, GivesTheFiguresOfIso2303OfItsRecord) {
   const auto& figures = summary_["iso_230_3"][0];
   EXPECT_EQ(figures["cyclogram"], summary_["judged_on"]);

@@ -11,8 +11,8 @@
 
 namespace driftwright {
 
-/// Programs that tests start keep reduced models in the test's own folder: neither does an older model help a test to pass, nor is
-/// the user's cache touched.
+/// Programs started by tests keep reduced models in the test's own folder: an older model cannot help a test to pass, and
+/// the user's cache is not touched.
 inline const bool kHasOwnCache = setenv("XDG_CACHE_HOME", (temporary_folder() / "cache").c_str(), 1) == 0;
 
 struct CommandOutcome {

@@ -36,8 +36,8 @@ TEST(CorrectByInjector, AWrongPredictionLeavesItsError) {
 }
 
 TEST(CorrectBySchedule, StepsBeforeThePredictionLeavesTheTolerance) {
-  // 4 um/min, tolerance 5 um: nothing until the prediction passes 5 um at 75 s, from there the middle of 12 - 5 and 5 + 5 um. The
-  // second operation starts at 120 s.
+  // 4 um/min, tolerance 5 um: nothing until the prediction passes 5 um at 75 s, from there the middle of 12 - 5 and 5 + 5
+  // um. The second operation starts at 120 s.
   const CorrectedRun c = correct_by_schedule(run_with_tolerance(5.0), kDrift_um, 0.0);
   ASSERT_TRUE(c.schedule.has_value());
   EXPECT_EQ(to_text(*c.schedule), "2-{1.25,0.75}-{0,8.5}\n1-{1}-{0}\n");

@@ -1,5 +1,5 @@
 #pragma once
-// Symmetric sectors of round bodies, made of boxes whose nodes are moved: curved edges for quadratic cells.
+// Symmetric sectors of round bodies, made from boxes by moving their nodes: curved edges for quadratic cells.
 
 #include <string>
 
@@ -7,8 +7,9 @@
 
 namespace driftwright::fixtures {
 
-/// Quarter of a solid cylinder about z, x >= 0 and y >= 0, from z = 0 to `height_m`: three blocks of n x n x n_z bricks about the
-/// axis, 2 n along the arc. One region per block: `region` + "0", "1", "2". Surface: `prefix` + "skin", the round one.
+/// Quarter of a solid cylinder about z, x >= 0 and y >= 0, from z = 0 to `height_m`: three blocks of n x n x n_z bricks
+/// about the axis, 2 n along the arc. One region per block: `region` + "0", "1", "2". Surface: `prefix` + "skin", the
+/// round one.
 void add_quarter_cylinder(mesh::Mesh& mesh, double radius_m, double height_m, int n, int n_z, mesh::CellShape shape,
                           const std::string& region, const std::string& prefix);
 

@@ -60,7 +60,7 @@ TEST(Cyclogram, SplitAtFurtherTimesEndsAtTheSameTimeToTheLastBit) {
 }
 
 TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheAmbient) {
-  // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies behind the end.
+  // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies after the end.
   const auto stretches = linear_stretches(kCycle, TimeSeries{{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});
   const std::vector<double> start = {0, 30, 100, 150, 200, 250}, end = {30, 100, 150, 200, 250, 400};
   const std::vector<double> speed = {2000, 2000, 0, 0, 500, 500};

@@ -1,4 +1,5 @@
-// A deployed predictor row by row, of a run whose rows are forgotten behind it, is what it is of the whole run; and it goes on from its memory.
+// A deployed predictor row by row, on a run whose old rows are dropped, gives the same as on the whole run; and it
+// continues from its memory.
 
 #include "compensation/predictors/deployed_follower.hpp"
 
@@ -39,7 +40,7 @@ class Stream {
     while (r.n_samples() > kRowsBack + 1) forget_first();
     return run_;
   }
-  /// Leaves the last row alone, as behind a restart.
+  /// Keeps only the last row, as after a restart.
   void forget_all_but_last() {
     while (run_.readings.n_samples() > 1) forget_first();
   }
@@ -84,7 +85,7 @@ DeployedPredictor observer(std::vector<std::string> sensors) {
   return d;
 }
 
-/// Follows a run row by row, with a restart behind a row; none for a number that it does not have.
+/// Follows a run row by row, with a restart after a row; no restart for a number beyond its rows.
 std::vector<double> followed(const DeployedPredictor& d, const ObservedRun& run, std::size_t restart_behind,
                              std::vector<double>* trust = nullptr) {
   Stream stream(run);

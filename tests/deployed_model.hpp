@@ -1,5 +1,5 @@
 #pragma once
-// A formula of every sort of term with its fail-safe, and records of the machine that it is for.
+// A formula with every kind of term and its fail-safe, and records of its machine.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ using compensation::DriftModel;
 using compensation::FailSafe;
 using output::DeployedModel;
 
-/// Four thermometers that tell of each other and a speed; a row in `period_s`.
+/// Four correlated thermometers and a speed; one row per `period_s`.
 inline Record machine(std::uint64_t seed, double period_s) {
   Record r = sensor_record(seed, 300, 4, 0.02, 0.1);
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
@@ -26,7 +26,7 @@ inline Record machine(std::uint64_t seed, double period_s) {
   double speed = 0.0;
   r.channels.push_back({"spindle", "rpm", {}});
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
-    if (random.chance(0.05)) speed = std::max(0.0, 4000.0 * random.uniform() - 1000.0);  // stands still, too
+    if (random.chance(0.05)) speed = std::max(0.0, 4000.0 * random.uniform() - 1000.0);  // sometimes at rest
     r.channels.back().values.push_back(speed);
   }
   return r;

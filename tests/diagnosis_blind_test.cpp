@@ -1,5 +1,5 @@
-// Effects that the diagnosis is not told of, in records it did not make (tests/blind), named at their place; and silence where there is
-// none. The full set of 400 runs in bench/blind.sh.
+// Effects unknown to the diagnosis, in records that it did not make (tests/blind), named at their place; and silence
+// where there is none. The full set of 400 runs in bench/blind.sh.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -126,7 +126,8 @@ TEST(EffectOutsideTheCatalogue, IsNotGivenAName) {
   EXPECT_NE(t.diagnosis.verdict, Verdict::kNamed) << t.diagnosis.reason;
 }
 
-// Where the catalogue is without the true law and another one at the same place does nearly the same, that one is named: its place is right.
+// Where the catalogue is without the true law and another one at the same place does nearly the same, that one is named:
+// its place is right.
 TEST(EffectOutsideTheCatalogue, IsCalledByWhatDoesTheSameAtItsPlace) {
   const Told heat = told(164);  // heat of speed at a shaft, the key taken out: another friction there
   ASSERT_FALSE(heat.diagnosis.causes.empty()) << heat.diagnosis.reason;

@@ -1,4 +1,4 @@
-// One document, four renderings: what stands where, and that the same number stands in all.
+// One document, four renderings: what each contains, and that the same number is in all.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

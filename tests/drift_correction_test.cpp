@@ -21,7 +21,8 @@ drift_term term(double lag_s) {
   return {.input = 0, .is_rise = 0, .holds = 1, .is_running = 0, .power = 1, .coefficient = 1.0, .lag_s = lag_s};
 }
 
-// On for 40 steps of 30 s, then off: 1 - exp(-t/tau), then exp(-(t - on)/tau) of what it was. The speed does not matter, its sign neither.
+// On for 40 steps of 30 s, then off: 1 - exp(-t/tau), then exp(-(t - on)/tau) of what it was. The speed does not matter,
+// its sign neither.
 TEST(DriftTerm, OfRunningIsTheMemoryOfOnAndOff) {
   drift_term t = term(600.0);
   t.is_running = 1;
@@ -41,7 +42,7 @@ TEST(DriftTerm, OfRunningIsTheMemoryOfOnAndOff) {
   EXPECT_TRUE(std::isnan(drift_term_value(&t, &state, NAN, 1.0)));
 }
 
-// Through the model of the program: 2 um + 5 um while it turns, of which 3 um come behind a lag.
+// Through the model of the program: 2 um + 5 um while it turns, of which 3 um come after a lag.
 TEST(DriftModel, CountsRunningInPlaceOfTheSpeed) {
   const DriftModel model{.kind = "",
                          .target = "d",
@@ -154,7 +155,7 @@ TEST(DriftRepair, SaysWhichInputIsInDoubtAndWhy) {
   EXPECT_EQ(inputs[0].doubt, DRIFT_JUMP);    // back by 6
   for (int i = 0; i < 4; ++i) EXPECT_EQ(row(20.5, 20, INFINITY, 10.0), 1.0);
   EXPECT_EQ(inputs[2].is_doubted, 0);
-  EXPECT_EQ(row(20.5, 20, NAN, 10.0), 0.0);  // 60 s: nothing tells of it
+  EXPECT_EQ(row(20.5, 20, NAN, 10.0), 0.0);  // 60 s: no reading shows it
   EXPECT_EQ(inputs[2].doubt, DRIFT_NO_READING);
   EXPECT_EQ(inputs[0].is_doubted, 1);
   for (int i = 0; i < 26; ++i) row(20.5, 20, 30, 10.0);  // 300 s after its last jump the first counts again
@@ -183,7 +184,8 @@ TEST(DriftCorrectionStep, IsItsThreeStages) {
   std::vector<double> got;
   for (const double T : {21.0, 21.75, 22.0, 150.0})
     got.push_back(drift_correction_step(&safe, &formula, &state, &arrays, &T, 4.0));
-  // 0.5, then 2 um/K of 0.75 and 1 K, at most 1 um in 4 s; at the end a rise of 129, 29 beyond 100 of the range: trust goes to 0.71
+  // 0.5, then 2 um/K of 0.75 and 1 K, at most 1 um in 4 s; at the end a rise of 129, 29 beyond 100 of the range: trust
+  // goes to 0.71
   EXPECT_THAT(got, ElementsAre(0.5, 1.5, 2.5, 3.5));
   EXPECT_EQ(repaired, 121.0);
   EXPECT_NEAR(state.deserved, 0.71, 1e-14);

@@ -1,4 +1,5 @@
-// What sets of thermometers leave of a drift, against covariances and least squares written out, and the search for the best against all sets.
+// What sets of thermometers leave of a drift, against covariances and least squares written out, and the search for the
+// best against all sets.
 
 #include "compensation/sensors/drift_left.hpp"
 
@@ -37,7 +38,8 @@ std::vector<RunSensitivity> random_sensitivities(std::uint64_t seed, int n_facto
   return runs;
 }
 
-// Two factors, one thermometer, one row a moment: by hand the drift j_d'w with w ~ N(0, σ²) is left with σ² (|j_d|² - σ² (j_d'j_y)² / (σ² |j_y|² + r)).
+// Two factors, one thermometer, one row a moment: by hand the drift j_d'w with w ~ N(0, σ²) is left with σ² (|j_d|² - σ²
+// (j_d'j_y)² / (σ² |j_y|² + r)).
 TEST(ObserverLeft, OfOneReadingIsTheVarianceByHand) {
   RunSensitivity run{.reading_K = {}, .drift_um = {}, .reading_K2 = 0.25};
   run.reading_K = {Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::MatrixXd::Constant(1, 1, -1.0)};
@@ -48,7 +50,8 @@ TEST(ObserverLeft, OfOneReadingIsTheVarianceByHand) {
   EXPECT_NEAR(ObserverLeft({run}, {0.2}).of({}), 0.2 * std::sqrt(29.0), 1e-12);
 }
 
-// The same with all readings up to a moment at once: var = C_dd - C_dy (C_yy + r)⁻¹ C_yd, conditioning by the covariance of readings instead of by information.
+// The same with all readings up to a moment at once: var = C_dd - C_dy (C_yy + r)⁻¹ C_yd, conditioning by the covariance
+// of readings instead of by information.
 TEST(ObserverLeft, OfAHistoryIsWhatItsReadingsLeaveOfANormalDistribution) {
   const int n_factors = 5, n_rows = 8, n_drifts = 2;
   const std::vector<RunSensitivity> runs = random_sensitivities(3, n_factors, 6, n_rows, n_drifts);
@@ -142,14 +145,15 @@ TEST(LeftWithLoss, IsTheMeanSquareOfAllAndOfTheWorstLoss) {
   EXPECT_NEAR(lasting.with_each(std::vector<int>{2, 5})[7], lasting.of(set), 1e-12);
 }
 
-// One thermometer tells the drift all by itself; two worse ones tell it together. Where any one may fail, the good one alone is no answer for two.
+// One thermometer alone predicts the drift; two worse ones predict it together. If one may fail, the good one alone is
+// not enough for two.
 TEST(LeftWithLoss, ChoosesASetThatBearsTheLossOfItsBest) {
   Random random(1);
   RunSensitivity run{
       .reading_K = {Eigen::MatrixXd::Zero(4, 4), Eigen::MatrixXd::Zero(4, 4)}, .drift_um = {}, .reading_K2 = 1e-4};
   run.drift_um = {Eigen::MatrixXd::Ones(1, 4), Eigen::MatrixXd::Constant(1, 4, 0.3)};
   run.reading_K[0].col(3) << 1.0, 1.0, 0.0,
-      0.97;  // candidate 0 tells both factors as the drift has them; 1 and 2 one each; 3 nearly as 0
+      0.97;  // candidate 0 sees both factors as the drift does; 1 and 2 one each; 3 nearly as 0
   run.reading_K[1].col(3) << 0.3, 0.0, 1.0, 0.30;
   run.reading_K[0].leftCols(3).colwise() = run.reading_K[0].col(3).eval();
   run.reading_K[1].leftCols(3).colwise() = run.reading_K[1].col(3).eval();
@@ -160,7 +164,7 @@ TEST(LeftWithLoss, ChoosesASetThatBearsTheLossOfItsBest) {
   EXPECT_LT(with_loss.worst(robust), 0.2 * with_loss.worst(std::vector<int>{0, 2}));
 }
 
-// Exchange is no proof, but seldom misses; how often stands in docs/how-to/placement.md.
+// Exchange is no proof, but seldom misses; docs/how-to/placement.md says how often.
 TEST(ExchangeSearch, FindsTheBestOfAllSets) {
   int n_equal = 0, n_all = 0;
   double worst = 1.0;

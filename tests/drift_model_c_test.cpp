@@ -1,4 +1,5 @@
-// What is judged is what is deployed: the exported C, compiled as a control would, gives the program's own bits over whole runs.
+// What is judged is what is deployed: the exported C, compiled as a control would, gives the program's own bits over
+// whole runs.
 
 #include "output/drift_model_c.hpp"
 

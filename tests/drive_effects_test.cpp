@@ -55,7 +55,7 @@ TEST(TrueCyclogram, AnOverrideInWindowsHoldsInTheseAlone) {
   const Cyclogram felt = true_cyclogram(
       change_of("{type: speed_override, factor: 0.5, windows: [[8 min, 13 min], [20 min, 30 min]]}"), kRecorded);
   EXPECT_THAT(durations_s(felt), ElementsAre(480, 120, 180, 420, 300));
-  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 500, 1500, 3000, 0));  // the spindle stands in the second one
+  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 500, 1500, 3000, 0));  // the spindle is at rest in the second one
 }
 
 TEST(TrueCyclogram, AnOverrideComesAgain) {
@@ -110,7 +110,7 @@ TEST(TrueCyclogram, AStopAtTheEndsCutsNothingEmptyOff) {
 }
 
 TEST(TrueCyclogram, EndsWhenTheRecordedOneDoesToTheLastBit) {
-  // Output at the end of the record must not lie behind the last section of what is run.
+  // Output at the end of the record must not lie after the last section of the run.
   const Cyclogram uneven{.name = "uneven", .sections = {turning(1000.0 / 7.0, 1000.0), turning(1000.0 / 3.0, 2000.0)}};
   for (int i = 1; i < 1200; ++i) {
     Effect stop = make_effect("missing_stop", Place::kSpindle, "spindle");
@@ -186,7 +186,8 @@ TEST(TrueAmbient, OfALateClockIsTheRecordAheadByAsMuch) {
 }
 
 TEST(TrueAmbient, OfASlowThermometerIsAheadOfTheRecordByItsLag) {
-  // A wave of an hour that a thermometer of 4 min follows: smaller by cos(phi), later by phi, tan(phi) = lag omega. The slope over half of a lag is 0.2 % short.
+  // A wave of an hour that a thermometer of 4 min follows: smaller by cos(phi), later by phi, tan(phi) = lag omega. The
+  // slope over half of a lag is 0.2 % short.
   const double omega_1_s = 2.0 * std::numbers::pi / 3600.0, phi = std::atan(240.0 * omega_1_s);
   TimeSeries recorded;
   for (double t_s = 0.0; t_s <= 7200.0; t_s += 10.0) {
@@ -244,7 +245,7 @@ TEST(DrivenBefore, IsTheMeanDriveOfTheRecordAndARest) {
   const Effect standby = read("{type: heat_source, node: a, power: 40 W, runs: while_spindle_turns, runs_on: 3 min}");
   const DriveChange both = drive_change({read(warm), standby}, "shift");
   const Cyclogram rests = driven_before(both, true_cyclogram(both, kRecorded));
-  EXPECT_THAT(durations_s(rests), ElementsAre(2400, 180, 420));  // what runs on behind the stop does so for its time
+  EXPECT_THAT(durations_s(rests), ElementsAre(2400, 180, 420));  // heat that continues after the stop does so for its time
   ASSERT_THAT(rests.sections[1].drive.signals, ::testing::SizeIs(1));
   EXPECT_EQ(rests.sections[1].drive.signals[0].value, 1600.0);
   EXPECT_EQ(rests.sections[2].drive.signals[0].value, 0.0);

@@ -1,4 +1,4 @@
-// A diagnosis that somebody wanted to end: whatever it was doing, it says what is known, that it is incomplete, and writes nothing.
+// A diagnosis that the user ended: at every stage it says what is known, that it is incomplete, and writes nothing.
 
 #include <gtest/gtest.h>
 

@@ -317,7 +317,7 @@ TEST(Windows, JointsAndLinksHaveThem) {
 TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
   const HeatBalance b = balance_of("{type: heat_source, node: n, power: 8 W, period: 40 min, delay: 5 min, until: 80 min}");
   const Law& power_W = b.heats.at(0).power_W;
-  for (double time_s : {300.0, 320.0, 449.0})  // alike in all of a step, wherever in it somebody asks: as in its middle
+  for (double time_s : {300.0, 320.0, 449.0})  // the same at all times of a step: as in its middle
     EXPECT_NEAR(power_W({.drive = {}, .time_s = time_s}), 8.0 * 0.195090, 1e-5);  // sin 11.25 deg
   EXPECT_NEAR(power_W({.drive = {}, .time_s = 225.0}), -8.0 * 0.195090, 1e-5);    // before its delay
   EXPECT_NEAR(power_W({.drive = {}, .time_s = 900.0}), 8.0 * 0.980785, 1e-5);     // a quarter later, and half a step
@@ -329,7 +329,8 @@ TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
 // --- documentation and errors -----------------------------------------------------------------------------------
 
 TEST(Documentation, HoldsTheTableThatTheCatalogueMakes) {
-  // after a change of the catalogue: driftwright list effects --markdown, put into docs/reference/effects.md in place of the table there
+  // after a change of the catalogue: driftwright list effects --markdown, put into docs/reference/effects.md in place of
+  // the table there
   std::ifstream file("docs/reference/effects.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(text.find("\n\n" + catalogue_table()), std::string::npos);
@@ -396,7 +397,7 @@ TEST(ChangedLaw, FollowsAPowerOfTheTemperatureDifference) {
   EXPECT_NEAR(free(at(0.0, 0.0, "", {309.0, 293.0})), 10.0, 1e-12);
   EXPECT_NEAR(free(at(0.0, 0.0, "", {293.0, 294.0})), 5.0, 1e-12);  // 10 (1/16)^0.25, whichever is the warmer
   EXPECT_NEAR(free(at(0.0, 0.0, "", {293.0, 293.0})), 10.0 * std::pow(0.05 / 16.0, 0.25), 1e-12);
-  // beside a decay, which looks at its own body as well
+  // beside a decay, which also depends on its own body
   const Law both =
       law_of({film,
               "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K, decay: 0.02 1/K, "
@@ -438,7 +439,7 @@ TEST(HeatSource, BehindEachStopLastsForAWhileAndGrowsWithTheSpeedBefore) {
     EXPECT_EQ(heat_W(more, 100.0), 0.0);   // it has not turned yet
     EXPECT_EQ(heat_W(more, 800.0), 0.0);   // it turns
     EXPECT_EQ(heat_W(more, 1000.0), 0.0);  // faster, which is no stop
-    EXPECT_EQ(heat_W(more, 1810.0), 0.0);  // 310 s behind a stop
+    EXPECT_EQ(heat_W(more, 1810.0), 0.0);  // 310 s after a stop
     EXPECT_EQ(heat_W(more, 3970.0), 0.0);  // it turns again
   }
   EXPECT_EQ(heat_W("", 1510.0), 40.0);
@@ -451,7 +452,7 @@ TEST(HeatSource, BehindEachStopLastsForAWhileAndGrowsWithTheSpeedBefore) {
       "2, at_speed: 1000 rpm}";
   const Cyclogram felt = true_cyclogram(drive_change({read(brake)}, ""), slows);
   EXPECT_EQ(law_of({brake})(Inputs{.drive = felt.drive(700.0), .ambient_K = 0.0, .time_s = 700.0, .probe_K = {}}),
-            360.0);  // a row in which it is about to stand is no other stop
+            360.0);  // a row just before rest is no other stop
   EXPECT_EQ(heat_W(by_square, 3930.0), 90.0);
 }
 
@@ -692,7 +693,7 @@ TEST(Link, OfAFanGoesWithTheSpindleAndRunsOn) {
   EXPECT_EQ(at_s(361), 0.0);
   EXPECT_EQ(felt.duration_s(), recorded.duration_s());
   EXPECT_TRUE(changes_drive(fan));
-  // a stop that the record does not have stops the fan, wherever it stands in the list
+  // a stop that the record does not have stops the fan, at any position in the list
   const Effect stop = read("{type: missing_stop, start: 1.5 min, length: 1.5 min}");
   for (const auto& list : {std::vector<Effect>{fan, stop}, std::vector<Effect>{stop, fan}}) {
     const Cyclogram long_run{.name = "run", .sections = {{600, {.speed_rpm = 100}}}};

@@ -1,5 +1,5 @@
 #pragma once
-// Effects as the user writes them, for tests of whole systems.
+// Effects in the user's YAML, for tests of whole systems.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace driftwright::fixtures {
 
-/// What a list of effects, one YAML map each, does to heat.
+/// The heat balance of a list of effects, one YAML map each.
 inline effects::HeatBalance balance_of(const std::vector<std::string>& entries) {
   std::vector<effects::Effect> effects;
   for (const std::string& text : entries) {
@@ -19,12 +19,12 @@ inline effects::HeatBalance balance_of(const std::vector<std::string>& entries) 
   return effects::heat_balance(effects);
 }
 
-/// A system of lumped nodes alone.
+/// A system of lumped nodes only.
 inline solver::FullSystem lumped_system(const std::vector<std::string>& entries) {
   return solver::assemble_heat({}, {}, balance_of(entries));
 }
 
-/// Index of a flow by its name; fails the test's run where there is none.
+/// Index of a flow by its name; fails the test if it does not exist.
 inline Eigen::Index flow(const solver::Trajectory& run, const std::string& name) {
   for (std::size_t j = 0; j < run.flows.size(); ++j) {
     if (run.flows[j].name == name) return static_cast<Eigen::Index>(j);

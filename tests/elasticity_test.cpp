@@ -203,10 +203,11 @@ TEST(Influence, DotProductIsTheDisplacementOfAFullSolve) {
   EXPECT_EQ(elastic.displacement(longer), u);
 }
 
-// theta = 10 K times cos(pi x_d) of each direction d that it varies in, on a box of length 1 m in these, whose faces slide (normal
-// direction fixed). Goodier's potential, u = grad phi with Laplace phi = alpha (1 + nu)/(1 - nu) theta, meets the equations
-// without body force and, with phi = -alpha (1 + nu)/(1 - nu) theta / (m pi^2), m the number of these directions, the supports
-// without shear. In a direction that theta does not vary in the box has one layer of cells: plane strain.
+// theta = 10 K times cos(pi x_d) of each direction d that it varies in, on a box of length 1 m in these, whose faces
+// slide (normal direction fixed). Goodier's potential, u = grad phi with Laplace phi = alpha (1 + nu)/(1 - nu) theta,
+// meets the equations without body force and, with phi = -alpha (1 + nu)/(1 - nu) theta / (m pi^2), m the number of these
+// directions, the supports without shear. In a direction that theta does not vary in the box has one layer of cells:
+// plane strain.
 double goodier_error_m(CellShape shape, int n, const std::array<bool, 3>& varies = {true, true, true}) {
   fixtures::Box box{.n = {n, n, n}, .shape = shape};
   int n_directions = 0;
@@ -274,9 +275,9 @@ INSTANTIATE_TEST_SUITE_P(Orders, ElasticityManufactured,
 class SerendipityManufactured : public ::testing::TestWithParam<Order> {};
 
 TEST_P(SerendipityManufactured, L2ErrorFallsByTheOrderOfTheCellsInEachPlane) {
-  // These elements lack x² y² and its like, whose error is of order h^4 and large beside the h^3 of this field: on cubes the order
-  // seen falls from 3.5 (6 to 9 along an edge) through 3.16 (16 to 20) towards 3. A field of two directions reaches fine meshes
-  // at little cost and has those terms, too.
+  // These elements lack x² y² and its like, whose error is of order h^4 and large beside the h^3 of this field: on cubes
+  // the order seen falls from 3.5 (6 to 9 along an edge) through 3.16 (16 to 20) towards 3. A field of two directions
+  // reaches fine meshes at little cost and has those terms, too.
   for (int across = 0; across < 3; ++across) {
     std::array<bool, 3> varies = {true, true, true};
     varies[across] = false;

@@ -1,4 +1,4 @@
-// Messages that show a line of a file: short ones whole, of long ones what stands around the column.
+// Messages that show a line of a file: short lines whole, long ones around the column.
 
 #include "base/errors.hpp"
 
@@ -16,7 +16,7 @@ std::string message(int column, const std::string& line) {
 TEST(InputErrors, AShortLineIsShownWholeWithACaretBelowTheColumn) {
   EXPECT_EQ(message(4, "ab cd"), "a.yaml:7:4: wrong\n    7 | ab cd\n      |    ^");
   EXPECT_EQ(message(1, std::string(160, 'x')), "a.yaml:7:1: wrong\n    7 | " + std::string(160, 'x') + "\n      | ^");
-  EXPECT_EQ(message(9, "ab"), "a.yaml:7:9: wrong\n    7 | ab\n      |   ^");  // behind its end
+  EXPECT_EQ(message(9, "ab"), "a.yaml:7:9: wrong\n    7 | ab\n      |   ^");  // after its end
 }
 
 TEST(InputErrors, OfALongLineOnlyTheSurroundingsAreShown) {

@@ -1,5 +1,6 @@
-// What is found is written, all of it: for each shipped scenario every law of every candidate, as text of a scenario that is read back, does to the same
-// reduced machine what it did to the twin; at one place each, and under the label long at every place.
+// What is found is written, all of it: for each shipped scenario every law of every candidate, as text of a scenario that
+// is read back, does to the same reduced machine what it did to the twin; at one place each, and under the label long at
+// every place.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ MeasuredRun run_of(const scenarios::Scenario& s, Cyclogram cyclogram, const solv
     if (!cyclogram.column(name)) cyclogram.columns.push_back({name, unit, rows});
   }
   run.cyclogram = cyclogram;
-  run.path = s.path;  // stands for its file, which nobody opens
+  run.path = s.path;  // in place of its file, which is not opened
   run.ambient = s.machine->ambient;
   for (double row = 0.0; row <= kRows; row += 1.0) run.time_s.push_back(std::min(end_s, row / kRows * end_s));
   set_grid(run);

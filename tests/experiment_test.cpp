@@ -139,8 +139,9 @@ TEST_F(OneSpeed, CannotTellConstantHeatFromHeatOfSpeedButAChangeOfSpeedDoes) {
   EXPECT_EQ(e->n_simulated, 8);  // four under each; twenty of each:
   const Check check = checked(result, e->cyclogram, 20);
   EXPECT_EQ(check.n, 40);
-  // 30 of 40, at d' 6.8, which bounds the mean over all that the numbers may be: at one speed the size of the heat is not known beside its way out,
-  // and of the machines drawn some have so little of it that the two are one machine and stay open.
+  // 30 of 40, at d' 6.8, which bounds the mean over all that the numbers may be: at one speed the size of the heat is not
+  // known beside its way out, and of the machines drawn some have so little of it that the two are one machine and stay
+  // open.
   RecordProperty("told_of_40", check.n_told);
   EXPECT_GE(check.n_told, 27);
   EXPECT_LE(check.n_told, 34);
@@ -163,8 +164,8 @@ struct Dense {
 };
 
 TEST_F(OneSpeed, DiscriminationIsWhatSimulatedRecordsShow) {
-  // Records made by the machine itself under a, numbers and noise drawn. exp(-d'²/8) is the mean of sqrt(p_b / p_a) over them (Kailath).
-  // Noise is that of a cheap instrument: the mean of a very small number would need very many records.
+  // Records made by the machine itself under a, numbers and noise drawn. exp(-d'²/8) is the mean of sqrt(p_b / p_a) over
+  // them (Kailath). Noise is that of a cheap instrument: the mean of a very small number would need very many records.
   for (const bool any_power : {false, true}) {
     const SearchResult result = any_power ? constant_or_of_any_power() : constant_or_of_speed();
     const NoiseModel kelvin{20.0, 10.0, 240.0}, metres{2e-4, 0.0, 0.0};
@@ -214,7 +215,8 @@ TEST_F(OneSpeed, DiscriminationIsWhatSimulatedRecordsShow) {
 }
 
 TEST_F(OneSpeed, WhatSaysLittleIsTriedByWhatTheOtherOneIsSureOf) {
-  // Of the free exponent nothing is known: as much heat at each speed is within what it may be, and the means are not far apart for it.
+  // Of the free exponent nothing is known: as much heat at each speed is within what it may be, and the means are not far
+  // apart for it.
   const SearchResult result = constant_or_of_any_power();
   const auto e = propose_experiment(*fitter_, result);
   ASSERT_TRUE(e);

@@ -17,7 +17,8 @@ namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
 
-/// A spindle in a bearing in a housing in the ambient: friction that falls as the bearing warms, a film that grows with the housing's temperature, a link.
+/// A spindle in a bearing in a housing in the ambient: friction that falls as the bearing warms, a film that grows with
+/// the housing's temperature, a link.
 struct Machine {
   double friction_W = 300.0, decay_1_K = 0.012, film_W_K = 12.0, link_W_K = 20.0, heat_W = 0.0, from_s = 0.0, until_s = 0.0,
          chiller_W = 0.0;

@@ -1,4 +1,4 @@
-// What a diagnosis may find, written into a scenario file and simulated from there, against the twin that was told it.
+// Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same changes.
 
 #include "diagnosis/extended_scenario.hpp"
 

@@ -1,4 +1,4 @@
-// What stands between a predictor and the axis: every kind of broken sensor, and nothing where all is well.
+// The fail-safe between a predictor and the axis: every kind of broken sensor, and no action if all is well.
 
 #include "compensation/predictors/fail_safe.hpp"
 
@@ -22,7 +22,7 @@ using ::testing::SizeIs;
 
 constexpr int kSensors = 6;
 
-/// Six sensors that are mixtures of three temperatures: any can be told from the others to its noise.
+/// Six sensors that are mixtures of three temperatures: any can be computed from the others to within its noise.
 Record machine(std::uint64_t seed, int n_rows = 400) {
   Record record = fixtures::sensor_record(seed, n_rows, kSensors, 0.0, 0.0);
   Random random(seed, 4);
@@ -144,15 +144,15 @@ TEST_P(FromStart, EachFailureIsNamedAndReplacedSoThatTheCorrectionHolds) {
       const double bound_um = 1.05 * f.safe.guards[static_cast<std::size_t>(j - 1)].most_apart + 0.5;
       const double costs_um = largest_difference(corrected(f, broken).correction_um, corrected(f, whole).correction_um);
       EXPECT_LT(costs_um, bound_um) << failure.name << j;
-      EXPECT_GT(costs_um, 0.1) << failure.name << j;  // measured 0.25 to 1.70: what stands for a sensor has its own noise
+      EXPECT_GT(costs_um, 0.1) << failure.name << j;  // measured 0.25 to 1.70: a sensor's replacement has its own noise
       const double unguarded_um = largest_difference(f.model.predict(broken), f.model.predict(whole));
       if (std::isfinite(failure.unguarded_um[j / 2])) {
         EXPECT_NEAR(unguarded_um, failure.unguarded_um[j / 2], 0.005) << failure.name << j;
       } else {
         EXPECT_EQ(unguarded_um, INFINITY);
       }
-      // Twice the bound at least (2.08 to 8.27 times), but for X1 stuck: from where it stops X1 moves by 2.60 K, and two sensors count
-      // as told apart from 1.5 K on, below which differences between instruments are what is seen.
+      // Twice the bound at least (2.08 to 8.27 times), but for X1 stuck: from where it stops X1 moves by 2.60 K, and two
+      // sensors count as distinguished from 1.5 K on; smaller differences are those between instruments.
       if (j == 1 && failure.name == std::string("stuck")) {
         EXPECT_NEAR(unguarded_um / bound_um, 1.253, 0.005);
       } else {
@@ -303,7 +303,7 @@ TEST(Repaired, ASensorThatNothingCanReplaceCostsAllTrust) {
   EXPECT_THAT(r.events, ElementsAre(HasSubstr("T gives no reading")));
 }
 
-// Twins tell each other alone. Both gone, nothing tells of them.
+// Twins predict only each other. With both gone, nothing predicts them.
 TEST(Repaired, TwinsThatAreBothOutCostAllTrust) {
   FailSafe safe = by_hand();
   for (std::size_t k = 0; k < 2; ++k) {

@@ -75,7 +75,7 @@ TEST(Gap, ConductsAtRestAndFollowsBeckerAndKayeAbove) {
   EXPECT_DOUBLE_EQ(nusselt_gap(1700.0), 2.0);
   EXPECT_NEAR(nusselt_gap(5000.0), 0.128 * std::pow(5000.0, 0.367), 1e-12);
   EXPECT_NEAR(nusselt_gap(1e6), 0.409 * std::pow(1e6, 0.241), 1e-12);  // 11.42
-  // The published branches differ where they meet, by 2 % at 1700 and 0.12 % at 1e4; so does what stands between them.
+  // The published branches differ where they meet, by 2 % at 1700 and 0.12 % at 1e4; so does the blend between them.
   EXPECT_NEAR(0.128 * std::pow(1700.0, 0.367), 2.0, 0.04);
   EXPECT_NEAR(nusselt_gap(1e4), 0.409 * std::pow(1e4, 0.241), 0.0012 * 3.77);
   for (double ta = 1000.0; ta < 0.98e7; ta *= 1.01) EXPECT_LT(nusselt_gap(1.01 * ta) / nusselt_gap(ta), 1.004);

@@ -152,13 +152,13 @@ TEST(Formulas, SurviveASensorThatStandsStillInAllRunsButOne) {
     const double alone_um = held_out_rmse(product_sums(records, {"X2"}, "drift_y"), std::vector<int>{0});
     for (const Fit& fit : kFits)
       EXPECT_LT(fit(records, fixtures::sensor_names(3), "drift_y").held_out_rmse, 0.2) << stands_at;  // 0.07 of the sine
-    // of one sensor both are least squares, and left out the only run in which it moves it tells nothing
+    // of one sensor both are least squares, and without the only run in which it moves it shows nothing
     for (const auto& fit : {fit_principal_components, fit_partial_least_squares})
       EXPECT_NEAR(fit(records, {"X2"}, "drift_y").held_out_rmse / alone_um, 1.0, 1e-9) << stands_at;
   }
 }
 
-/// A sensor of random steps; the drift 3 um/K behind 20 min of its first-order lag, dL/dt = (x - L)/tau between linear readings.
+/// A sensor of random steps; the drift 3 um/K after its first-order lag of 20 min, dL/dt = (x - L)/tau between linear readings.
 Record lagging(std::uint64_t seed) {
   Random random(seed);
   Record r{.source = "lag", .time_s = {}, .channels = {{"X1", "degC", {}}, {"drift_y", "um", {}}}};
@@ -192,7 +192,8 @@ TEST(WithLags, FindsALagOfTwentyMinutes) {
   for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], judged.channels[1].values[i], 0.1);
 }
 
-/// Drift of a drive, tau d' + d = 1e-6 n^2 + 0.002 n at tau = 35 min, exact between rows; and the ambient at 0.5 um/K behind 100 min.
+/// Drift of a drive, tau d' + d = 1e-6 n^2 + 0.002 n at tau = 35 min, exact between rows; and the ambient at 0.5 um/K
+/// after 100 min.
 Record driven(std::uint64_t seed, double ambient_um_K) {
   Random random(seed);
   Record r{
@@ -261,7 +262,8 @@ TEST(Formulas, OfOneRunOrTooFewRowsAreRefused) {
   EXPECT_THROW((void)fit_from_speed({}, "speed", "", "drift_y"), InputError);
 }
 
-// tau = 60 s, step 1 at t = 0 of a drive: 1 - exp(-t/tau) from the row after. Of a temperature that ramps, r (t - tau (1 - exp(-t/tau))).
+// tau = 60 s, step 1 at t = 0 of a drive: 1 - exp(-t/tau) from the row after. Of a temperature that ramps, r (t - tau (1
+// - exp(-t/tau))).
 TEST(Lagged, IsTheFirstOrderLagOfStepsAndRamps) {
   std::vector<double> t, step, ramp;
   for (int i = 0; i < 60; ++i) {

@@ -33,9 +33,9 @@ void add_box(mesh::Mesh& mesh, const Box& box, const std::string& region, const 
 
 /// Moves every node, mid-side nodes too: x becomes map(x). Quadratic cells follow with curved edges.
 void map_nodes(mesh::Mesh& mesh, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& map);
-/// Puts the mid-side nodes of all cells into the middle of their edges.
+/// Moves the mid-side nodes of all cells to the middle of their edges.
 void straighten_edges(mesh::Mesh& mesh);
-/// Makes one node of those that lie within 1e-9 m of each other: parts that share faces become one body.
+/// Merges nodes that lie within 1e-9 m of each other: parts that share faces become one body.
 void merge_nodes(mesh::Mesh& mesh);
 
 /// A surface for supports alone that consists of one node.
@@ -54,12 +54,12 @@ using Field = std::function<double(const Eigen::Vector3d&)>;
 [[nodiscard]] Eigen::VectorXd surface_load(const mesh::Mesh& mesh, const std::string& surface);
 /// sqrt(∫ (field of nodal values - exact)^2 dV) by a rule of degree 5 or more.
 [[nodiscard]] double l2_error(const mesh::Mesh& mesh, const Eigen::VectorXd& nodal, const Field& exact);
-/// Order between the last two of errors that belong to mesh widths h.
+/// Order of convergence from the last two errors, which belong to the mesh widths h.
 [[nodiscard]] double observed_order(const std::vector<double>& h, const std::vector<double>& error);
 
 /// K(u) of a full system at fixed inputs.
 [[nodiscard]] solver::SparseRow stiffness(const solver::FullSystem& system, const effects::Inputs& at = {});
-/// Steady temperatures K(u)⁻¹ f(u), by a direct solver that the program does not use.
+/// Steady temperatures K(u)⁻¹ f(u), by a direct solver that the program itself does not use.
 [[nodiscard]] Eigen::VectorXd steady(const solver::FullSystem& system, const effects::Inputs& at = {});
 
 /// Steel-like: rho 8000 kg/m^3, k 40 W/(m K), c 500 J/(kg K), E 200 GPa, nu 0.3, alpha 12e-6 1/K.
@@ -70,7 +70,7 @@ using Field = std::function<double(const Eigen::Vector3d&)>;
 /// A law that does not depend on the inputs.
 [[nodiscard]] effects::Law constant(double value);
 
-/// Reads outputs off unknowns: one output per unknown listed.
+/// Reads outputs from unknowns: one output per listed unknown.
 void observe_unknowns(solver::FullSystem& system, const std::vector<int>& unknowns);
 
 /// Two lumped bodies, C1 T1' = P - H1 T1 - G (T1 - T2), C2 T2' = -H2 T2 - G (T2 - T1), in closed form (Sylvester's

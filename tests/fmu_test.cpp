@@ -1,5 +1,5 @@
-// Functional mock-up units as an importer of the standard runs them: the numbers of `predict` and of the observer, in both versions, in
-// co-simulation at any step and in model exchange with the importer's own integrator.
+// Functional mock-up units as an importer of the standard runs them: the numbers of `predict` and of the observer, in
+// both versions, in co-simulation at any step and in model exchange with the importer's own integrator.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ struct Unit {
   }
 };
 
-/// What is asked of an importer.
+/// What an importer must do.
 struct Asked {
   bool co_simulation = true;
   double step_s = 60.0;
@@ -236,7 +236,8 @@ TEST_P(Fmu, TakesTheAmbientAsAnInput) {
     ambient.values.push_back(fp3.scenario.machine->ambient.at(t_s) + fp3.scenario.machine->reference_K - kZeroCelsius_K);
   inputs.channels.push_back(ambient);
   fp3.expect_as(predicted, import_unit(unit, inputs, fp3.outputs, {.step_s = 7.0, .ambient_from_input = 1}), kSame_um);
-  // Of a machine that starts as warm as its ambient, in an ambient that is 3 K warmer all the time, everything is as much warmer.
+  // Of a machine that starts as warm as its ambient, in an ambient that is 3 K warmer all the time, everything is as much
+  // warmer.
   FmuOrder order = fp3.order(GetParam());
   order.model.start_follows_ambient = true;
   for (double& value : inputs.channels[1].values) value += 3.0;

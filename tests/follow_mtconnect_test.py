@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """`driftwright follow` at an agent of MTConnect: a server of HTTP that answers as the standard says, is away, lacks an item. follow_mtconnect_test.py PROGRAM"""
+import csv
 import functools
 import http.server
 import json
@@ -24,6 +25,7 @@ CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
         <Samples>
           <RotaryVelocity dataItemId="c3" name="S1speed" sequence="4" subType="ACTUAL" timestamp="2026-11-23T11:59:59.1Z">{speed}</RotaryVelocity>
           <Load dataItemId="c4" sequence="5" timestamp="2026-11-23T11:59:59.1Z">12</Load>
+          <AxisFeedrate dataItemId="c5" name="Xfrt" sequence="6" subType="ACTUAL" timestamp="2026-11-23T11:59:59.1Z">50</AxisFeedrate>
         </Samples>
       </ComponentStream>
       <ComponentStream component="Environmental" componentId="e1">
@@ -34,20 +36,38 @@ CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
   </Streams>
 </MTConnectStreams>
 """
+PROBE = """<?xml version="1.0"?><MTConnectDevices xmlns="urn:mtconnect.org:MTConnectDevices:1.5"><Header/><Devices><Device id="d" name="mill" uuid="000"><Components>
+<Axes id="a"><Components><Rotary id="c1" name="C"><DataItems>
+<DataItem category="SAMPLE" id="c3" name="S1speed" type="ROTARY_VELOCITY" subType="ACTUAL" units="REVOLUTION/MINUTE" nativeUnits="REVOLUTION/MINUTE"/>
+<DataItem category="SAMPLE" id="c5" name="Xfrt" type="AXIS_FEEDRATE" subType="ACTUAL" units="{feed}" nativeUnits="MILLIMETER/MINUTE"/>
+</DataItems></Rotary></Components></Axes><Environmental id="e1"><DataItems><DataItem category="SAMPLE" id="e2" type="TEMPERATURE" units="CELSIUS"/></DataItems></Environmental>
+</Components></Device></Devices></MTConnectDevices>"""
 WRONG = """<?xml version="1.0"?><MTConnectError xmlns="urn:mtconnect.org:MTConnectError:1.5"><Header/><Errors>
 <Error errorCode="NO_DEVICE">Could not find the device turn</Error></Errors></MTConnectError>"""
 
 
 class Agent:
-    """What it tells is `values`; None: it is away."""
+    """What it tells is `values`. `feed`: the unit in its probe; None: it has no probe. `mode`: "html", a page for who asks for no XML; 301 ... 308, a redirection;
+    "loop", one without end."""
 
-    def __init__(self, values, port=0):
+    def __init__(self, values, port=0, feed="MILLIMETER/SECOND", mode=""):
         agent = self
         self.values = values
 
         class Answer(http.server.BaseHTTPRequestHandler):
             def do_GET(self):
-                text = CURRENT.format(**agent.values) if self.path in ("/current", "/mill/current") else WRONG
+                if mode == "loop" or isinstance(mode, int) and not self.path.startswith("/new"):
+                    self.send_response(302 if mode == "loop" else mode)
+                    self.send_header("Location", "/new" + self.path if mode != "loop" else self.path)
+                    self.send_header("Content-Length", "0")
+                    self.end_headers()
+                    return
+                path = self.path.removeprefix("/new")
+                text = CURRENT.format(**agent.values) if path in ("/current", "/mill/current") else WRONG
+                if feed is not None and path in ("/probe", "/mill/probe"):
+                    text = PROBE.format(feed=feed)
+                if mode == "html" and "application/xml" not in self.headers.get("Accept", ""):
+                    text = "<!DOCTYPE html><html><body>MTConnect <br> current</body></html>"
                 self.send_response(200 if text is not WRONG else 404)
                 self.send_header("Content-Type", "text/xml")
                 self.end_headers()
@@ -66,8 +86,8 @@ class Agent:
         self.server.server_close()
 
 
-def follow(program, folder, address, *topics):
-    return subprocess.Popen([program, "follow", "head.yaml", "--mtconnect", address, "--every", "0.2 s", "--slew", "1000 um/s",
+def follow(program, folder, address, *topics, record=()):
+    return subprocess.Popen([program, "follow", "head.yaml", "--mtconnect", address, "--every", "0.2 s", "--slew", "1000 um/s", *record,
                              *(word for topic in topics for word in ("--topic", topic))],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True)
 
@@ -128,6 +148,39 @@ def main():
         nobody.send_signal(signal.SIGTERM)
         assert nobody.wait(30) == 0
         again.leave()
+        # units of the probe, else of the standard; agents that answer with a page unless they are asked for XML, and that have moved
+        for feed, mode, expected, said in [("MILLIMETER/SECOND", "", 3000.0, ""), ("MILLIMETER/MINUTE", "", 50.0, ""), ("INCH/MINUTE", "", 1270.0, ""),
+                                           ("", "", 3000.0, "its probe gives no units for them, so the standard's units are taken: Xfrt (AxisFeedrate) in MILLIMETER/SECOND"),
+                                           (None, "", 3000.0, "it gives no probe (it answers: Could not find the device turn), so the standard's units are taken: S1speed (RotaryVelocity)"),
+                                           *(("MILLIMETER/SECOND", mode, 3000.0, "") for mode in ("html", 301, 302, 307, 308))]:
+            moved = Agent({"speed": "1000", "ambient": "20"}, feed=feed, mode=mode)
+            for device in ("", "/mill") if not mode else ("",):
+                pathlib.Path(folder, "units.csv").unlink(missing_ok=True)
+                running = follow(program, folder, f"http://127.0.0.1:{moved.port}{device}", "speed_rpm=S1speed", "ambient_degC=e2", "feed_x_mm_min=Xfrt", record=("--record", "units.csv"))
+                for _ in range(2):
+                    line = running.stdout.readline()
+                    assert line and json.loads(line)["state"] == "on", (feed, mode, line or running.stderr.read())
+                running.send_signal(signal.SIGTERM)
+                assert running.wait(30) == 0
+                words = running.stderr.read()
+                assert said in words and (said or "units" not in words), (feed, mode, words)
+                rows = list(csv.DictReader(line for line in pathlib.Path(folder, "units.csv").open() if not line.startswith("#")))
+                assert rows and all(abs(float(row["feed_x_mm_min"]) - expected) < 1e-9 and float(row["speed_rpm"]) == 1000.0 for row in rows), (feed, mode, rows)
+            moved.leave()
+        # a unit of another quantity, a redirection without end
+        other = Agent({"speed": "1000", "ambient": "20"}, feed="MILLIMETER")
+        wrong = follow(program, folder, f"http://127.0.0.1:{other.port}", "speed_rpm=S1speed", "ambient_degC=e2", "feed_x_mm_min=Xfrt")
+        assert wrong.wait(60) == 2
+        words = wrong.stderr.read()
+        assert "--topic feed_x_mm_min=Xfrt: the numbers of this data item are in MILLIMETER (by its probe)" in words and "must convert to the channel's unit 'mm/min'" in words, words
+        other.leave()
+        endless = Agent({"speed": "1000", "ambient": "20"}, mode="loop")
+        lost = follow(program, folder, f"http://127.0.0.1:{endless.port}", "speed_rpm=S1speed", "ambient_degC=e2")
+        first = lost.stderr.readline()
+        assert "redirects" in first and "asks it again every 0.2 s" in first, first
+        lost.send_signal(signal.SIGTERM)
+        assert lost.wait(30) == 0
+        endless.leave()
         print(f"{len(lines)} lines")
 
 

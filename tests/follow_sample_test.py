@@ -20,6 +20,10 @@ from waiting import wait_for
 
 PLACE = {"speed": ("Rotary", "RotaryVelocity", "s1", 'name="S1speed"'), "ambient": ("Environmental", "Temperature", "e2", ""), "load": ("Rotary", "Load", "l1", "")}
 
+PROBE = ('<?xml version="1.0"?><MTConnectDevices xmlns="urn:mtconnect.org:MTConnectDevices:1.7"><Devices><Device id="d"><DataItems>'
+         '<DataItem id="s1" type="ROTARY_VELOCITY" units="REVOLUTION/MINUTE"/><DataItem id="e2" type="TEMPERATURE" units="CELSIUS"/>'
+         '</DataItems></Device></Devices></MTConnectDevices>')
+
 
 def stamp(time_s):
     return datetime.datetime.fromtimestamp(time_s, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
@@ -50,7 +54,7 @@ class Agent:
                 url = urllib.parse.urlparse(self.path)
                 agent.asked.append(self.path)
                 with agent.lock:
-                    text = agent.current() if url.path == "/current" else agent.sample(urllib.parse.parse_qs(url.query))
+                    text = {"/current": agent.current, "/probe": lambda: PROBE}.get(url.path, lambda: agent.sample(urllib.parse.parse_qs(url.query)))()
                 self.send_response(200)
                 self.send_header("Content-Type", "text/xml")
                 self.end_headers()
@@ -127,11 +131,13 @@ def main():
         time.sleep(1.5)
         n_currents = sum(path == "/current" for path in agent.asked)
         assert n_currents == 1, agent.asked  # it goes on, and never begins anew
+        assert agent.asked.count("/probe") == 1, agent.asked
         # started anew: numbers begin at 1 again
         with agent.lock:
             agent.instance = 2
         agent.start_anew()
         wait_for("word of the new agent", lambda: any("started anew (instanceId 2 in place of 1)" in w for w in words))
+        wait_for("question for its units", lambda: agent.asked.count("/probe") == 2)
         said.append(1000)  # what it begins with
         observe(20)
         wait_for("row of now", lambda: time.time() - lines[-1]["time_s"] < 2.0)

@@ -164,8 +164,8 @@ TEST(FollowSession, AStreamThatLacksWhatTheModelReadsIsRefused) {
   EXPECT_THAT([&] { (void)Session(std::move(twice)); }, ThrowsMessage<InputError>(HasSubstr("corrected by another model")));
 }
 
-// Rows late, doubled, swapped, missing, with holes and impossible values, clocks that are set, for some thousand rows: no correction is other than a
-// number within the clamp, and none moves faster than the slew limit.
+// Rows late, doubled, swapped, missing, with holes and impossible values, clocks that are set, for some thousand rows: no
+// correction is other than a number within the clamp, and none moves faster than the slew limit.
 TEST(FollowSession, NoCorrectionStepsWhateverTheRowsAre) {
   const output::PredictorFile file = formula(false);
   const FailSafe& safe = *file.predictor.fail_safe;

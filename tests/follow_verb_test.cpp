@@ -1,4 +1,4 @@
-// `driftwright follow` as a user runs it: the drift that `predict` tells, row by row; restarts; replays; what it refuses.
+// `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ TEST(FollowVerb, TellsTheDriftThatPredictTells) {
   EXPECT_EQ(f.lines.back()["state"], "on");
 }
 
-// A control that no longer gives its speed, or a thermometer of the air that came off: nobody knows what the machine does now.
+// A control that no longer gives its speed, or a thermometer of the air that came off: the machine's drive is unknown now.
 TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
   write_file("head.yaml", kHead);
   for (const char* missing : {"speed", "ambient"}) {
@@ -140,7 +140,8 @@ TEST(FollowVerb, TakesSpeedAndAmbientThatComeInRowsOfTheirOwn) {
   EXPECT_EQ(f.lines.back()["axes"]["nose_z"]["trust"], 1.0);
 }
 
-// What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one simulation does.
+// What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one
+// simulation does.
 TEST(FollowVerb, LeavesARecordThatJobsStartFrom) {
   (void)predicted_day();
   const Followed f = follow("head.yaml --record seen.csv", "cat day.csv |");

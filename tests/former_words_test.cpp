@@ -1,4 +1,4 @@
-// `hall` of earlier releases is read as `ambient`, with a note for each place; both at once and what cannot be told apart are refused.
+// `hall` of earlier releases is read as `ambient`, with a note for each place; both at once, and ambiguous words, are refused.
 
 #include "scenarios/reader/former_words.hpp"
 

@@ -1,4 +1,4 @@
-// The same numbers stand in a verb's JSON, on its terminal, in its CSV files and on its page.
+// The same numbers are in a verb's JSON, on its terminal, in its CSV files and on its page.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
 
-/// A number as somebody printed it.
+/// A number as printed.
 struct Token {
   double value = 0.0;
   double half_unit = 0.0;  ///< of its last digit
@@ -34,7 +34,7 @@ std::vector<Token> tokens_of(const std::string& text) {
   return tokens;
 }
 
-/// Whether a number was printed, rounded, as itself or in per cent. A whole number stands for what is within 5 % of it alone.
+/// Whether a number was printed, rounded, as itself or in per cent. A whole number matches only values within 5 % of it.
 bool stands_in(const std::vector<Token>& tokens, double number) {
   const auto is = [](const Token& t, double x) {
     const double off = std::abs(t.value - x), slack = 1e-5 * std::abs(x);  // JSON has six digits
@@ -83,7 +83,7 @@ std::string all_csv(const fs::path& folder) {
   return text;
 }
 
-/// @param for_programs  keys that people are not shown: what is behind a sentence, or longer than a table
+/// @param for_programs  keys that people are not shown: numbers behind a sentence, or longer than a table
 void expect_same_numbers(const std::string& arguments, const fs::path& out, const std::set<std::string>& for_programs,
                          const std::string& json_file = "summary.json") {
   const CommandOutcome told = run_program(arguments + " -o " + out.string() + " --details");
@@ -125,7 +125,7 @@ TEST_F(FourRenderings, OfMesh) {
   expect_same_numbers("mesh scenarios/fp3_spindle.yaml", out("mesh"), {});
 }
 
-// What programs alone get of `run`: errors of a model that people read in a sentence, and counters behind it.
+// What programs alone get of `run`: errors of a model that people read in a sentence, and its counters.
 TEST_F(FourRenderings, OfRunSelectAndCompensate) {
   expect_same_numbers("run scenarios/cnc_mill_13.yaml", out("run"),
                       {"model.temperature_unknowns", "energy_balance_gap", "tolerance_um", "corrections.before.mean_um",

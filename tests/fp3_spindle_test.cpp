@@ -107,8 +107,8 @@ TEST_F(Fp3Spindle, EdgeByEdgeTheInjectorLeavesLittleMoreThanTheModelsError) {
   EXPECT_THAT(causes,
               ::testing::ElementsAre("none", "model", "thermometers", "sampling", "resolution", "rate limit", "axis"));
   EXPECT_GT(rms_um.front(), 20.0);
-  // Half an insertion of 1 um, evenly spread, is 0.29 um RMS, the axis rests within one count of 1 um, which is 0.29 um RMS again,
-  // and the readings' noise comes to 0.3 um: in squares beside the model's error.
+  // Half an insertion of 1 um, evenly spread, is 0.29 um RMS, the axis rests within one count of 1 um, which is 0.29 um
+  // RMS again, and the readings' noise is 0.3 um: added to the model's error in squares.
   EXPECT_LT(rms_um.back(), std::hypot(rms_um[1], 0.29, 0.29) + 0.3);
   const auto& counts = loop["counts"];
   EXPECT_EQ(counts["encoder_quarters"].get<int>() + counts["inserted_quarters"].get<int>(),
@@ -118,8 +118,8 @@ TEST_F(Fp3Spindle, EdgeByEdgeTheInjectorLeavesLittleMoreThanTheModelsError) {
   EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("through the pulse injector, edge by edge"));
 }
 
-// Samples taken during a pass carry the axis's lag, not the machine's drift: without feed-forward 10 mm/s / 40 1/s = 250 um. A pass
-// sets out half a second before a sample and takes 0.6 s.
+// Samples taken during a pass carry the axis's lag, not the machine's drift: without feed-forward 10 mm/s / 40 1/s = 250
+// um. A pass sets out half a second before a sample and takes 0.6 s.
 TEST_F(Fp3Spindle, CompensateThroughTheInjectorJudgesRowsAtRest) {
   std::string text = read_text("scenarios/fp3_spindle.yaml");
   const std::string motion = "motion: {stroke: 1 mm, feed: 600 mm/min, every: 20 s}",
@@ -213,7 +213,7 @@ TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
 }
 
 TEST_F(Fp3Spindle, EveryReadingIsThatOfTheFullModelWithinFiveMillikelvin) {
-  // The finite elements themselves, in time ten times better than what is asked of the comparison.
+  // The finite elements themselves, in time ten times more accurate than the comparison requires.
   std::string text = read_text("scenarios/fp3_spindle.yaml");
   for (const auto& [what, instead] :
        {std::pair{"model: reduced", "model: full"}, std::pair{"relative_tolerance: 1e-3", "relative_tolerance: 1e-5"},

@@ -39,7 +39,7 @@ std::string file(const std::string& name, const FrameProgram& p = program()) {
   return "no such file";
 }
 
-/// What stands after `name` and '=' up to a blank, a comma or the end of the line.
+/// The text after `name` and '=' up to a blank, a comma or the end of the line.
 std::string value_of(const std::string& text, const std::string& name) {
   const std::size_t at = text.find("\n" + name + "=");
   if (at == std::string::npos) return "";
@@ -93,7 +93,8 @@ TEST(FrameProgram, GivesSiemensTheSlopeInSettingData) {
                     HasSubstr("MD32750 acts after power-on"), HasSubstr("MD32760 after NEWCONF"), HasSubstr("\nNEWCONF\n")));
 }
 
-// A table that has grown by 132 um/m about P0 and gone 12 um: both ways move the axis along with it, whatever the control's sign is.
+// A table that has grown by 132 um/m about P0 and gone 12 um: both ways move the axis along with it, whatever the
+// control's sign is.
 TEST(FrameProgram, MovesXTheSameWayBySettingDataAndByFrame) {
   for (const bool against_dk : {false, true}) {
     FrameProgram p = program();
@@ -239,7 +240,8 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   for (std::size_t at = said.find("STRAIGHT_PROBE"); at != std::string::npos; at = said.find("STRAIGHT_PROBE", at + 1))
     ++n_probes;
   EXPECT_EQ(n_probes, 12u);  // of each ring four for the middle, one for the height and a second, slow one
-  // Each touch ends where it was sent: both middles as they were, both edges 3 mm lower; rs274 keeps inches. G59.3 is G54 with that; G54 stays.
+  // Each touch ends where it was sent: both middles as they were, both edges 3 mm lower; rs274 keeps inches. G59.3 is G54
+  // with that; G54 stays.
   const std::map<int, double> wanted = {
       {5221, 4000}, {5222, 50}, {5223, -10}, {5230, 30}, {5381, 4000}, {5382, 50}, {5383, -10 - 3 / 25.4}, {5390, 30}};
   std::istringstream after(read_text(values));

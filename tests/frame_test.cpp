@@ -102,7 +102,8 @@ TEST(TableFrame, IsThePapersAlongXWhereNothingTurns) {
   EXPECT_NEAR(table.turn_rad, 0.0, 1e-15);
 }
 
-// Twelve rings with 2 um of noise: each of six unknowns carries what least squares leaves, so the middle is met to 2 um / sqrt(12).
+// Twelve rings with 2 um of noise: each of six unknowns carries what least squares leaves, so the middle is met to 2 um /
+// sqrt(12).
 TEST(TableFrame, AveragesMoreRings) {
   Random random(4);
   const Frame truth = compose(frame_of({.shift_m = {0.0, 20e-6, 0.0}, .rotation_rad = {0.0, 0.0, 5e-6}}),

@@ -55,9 +55,9 @@ double tape_degC(const Record& record, std::size_t i) {
   return sum;
 }
 
-// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um. At 8:00 all is as warm as the ambient, and
-// what is computed is nothing but (11.5 - 11.0) um/(m K) times 9.9 m times 3 K = 14.85 um: below the paper's 20, out of its band. With
-// each expansion known to 3 % it is 15 +- 14 um. The later three lie in the band.
+// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um. At 8:00 all is as warm
+// as the ambient, and what is computed is nothing but (11.5 - 11.0) um/(m K) times 9.9 m times 3 K = 14.85 um: below the
+// paper's 20, out of its band. With each expansion known to 3 % it is 15 +- 14 um. The later three lie in the band.
 TEST(GantryTable, GrowsByTableLessScaleAsThePapersFirstDayButForItsStart) {
   const Record record = read_record_csv((outcome().folder / "record.csv").string());
   const auto& first = record.at("table_14_x").values;  // middle row of 3 x 13 points
@@ -88,8 +88,9 @@ TEST(GantryTable, JudgesTableLessScale) {
   EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
 }
 
-// docs/how-to/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
-// leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings alone miss, and 90 %, which no frame reaches.
+// docs/how-to/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5
+// um with a model; no frame leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings
+// alone miss, and 90 %, which no frame reaches.
 TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
                warmth = strategy("rings, thermometers between")["position_um"],
@@ -97,14 +98,16 @@ TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
                exact = strategy("exact rings at all times")["position_um"],
                whole = strategy("rings and model of the whole table")["position_um"],
                best = strategy("best frame (minimax) at all times")["position_um"];
-  // Both sides: what is left in either direction is seen. Seeds are written, the rest is rounding and the reduction's 20 mK: 0.01.
+  // Both sides: what is left in either direction is seen. Seeds are written, the rest is rounding and the reduction's 20
+  // mK: 0.01.
   EXPECT_NEAR(none, 77.6, 0.5);
   EXPECT_NEAR(rings / none, 0.344, 0.01);
   EXPECT_NEAR(warmth / none, 0.201, 0.01);
   EXPECT_NEAR(whole / none, 0.186, 0.01);
   EXPECT_NEAR(best / none, 0.119, 0.005);
-  // A model that tells the rings alone was once to take 30 % of what rings every three hours leave. It takes 20 %, and rings known exactly
-  // at all times, which is what it is after, 22.5 %: the rest lies beside the rings, where the whole table's model takes 46 %.
+  // A model of the rings alone was expected to remove 30 % of the error with rings every three hours. It removes 20 %;
+  // rings known exactly at all times, which is what it is after, 22.5 %: the rest lies beside the rings, where the whole
+  // table's model takes 46 %.
   EXPECT_NEAR(both / rings, 0.797, 0.02);
   EXPECT_NEAR(exact / rings, 0.775, 0.02);
   EXPECT_LT(exact, both);
@@ -113,7 +116,8 @@ TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
               0.125, 0.01);
 }
 
-// The same rings, the same wrong expansions and median as in `run`; the modes are a reduction of the same wrong model, to 0.1 um.
+// The same rings, the same wrong expansions and median as in `run`; the modes are a reduction of the same wrong model, to
+// 0.1 um.
 TEST(GantryTable, ThroughFrameJudgesAsRunDoes) {
   const auto folder = fresh_folder("gantry_modes") / "out";
   const CommandOutcome done =
@@ -157,8 +161,9 @@ CommandOutcome edited(const std::string& what, const std::string& with) {
   return run_program("check " + edited_file({{what, with}}));
 }
 
-// docs/how-to/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's instrument), 48.6 um by the
-// table's thermometer alone (30.9), 59.7 um by the control's own (47.9). All of them read the same instrument.
+// docs/how-to/table.md: 0.1 K in steps of 0.1 K without a mean leave 27.0 um between rings (15.6 um with the scenario's
+// instrument), 48.6 um by the table's thermometer alone (30.9), 59.7 um by the control's own (47.9). All of them read the
+// same instrument.
 TEST(GantryTable, ThermometersHelpNoMoreThanTheirInstrumentLetsThem) {
   const std::string file = edited_file({{"sensor_noise: 0.02 K", "sensor_noise: 0.1 K"},
                                         {"sensor_resolution: 0.01 K", "sensor_resolution: 0.1 K"},

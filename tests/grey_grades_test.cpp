@@ -18,7 +18,7 @@ using ::testing::Pair;
 using Real = long double;
 using Series = std::vector<std::vector<Real>>;  // by record
 
-/// Rows complete in all channels, per record, minus the first of the record where rises are wanted.
+/// Rows complete in all channels, per record, minus the first of the record if rises are required.
 std::vector<Series> complete(const std::vector<Record>& records, const std::vector<std::string>& names, bool rise) {
   std::vector<Series> all(names.size(), Series(records.size()));
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -234,8 +234,8 @@ TEST(RankingStability, NamesTwinsThatNothingTellsApartAndNotThoseFarApart) {
   for (const auto& [rho, best] : s.by_rho) EXPECT_EQ(best[0], "X1") << rho;
 }
 
-// 20 blocks, on n of which x has the coefficient 1/3 instead of 1 and on the others z: per block drawn the gap is +-2/3 with mean
-// 2/3 (1 - n / 10). Over 20 draws, n = 8: 0.133 +- 0.146, undecided; n = 2: 0.533 +- 0.089, decided.
+// 20 blocks, on n of which x has the coefficient 1/3 instead of 1 and on the others z: per block drawn the gap is +-2/3
+// with mean 2/3 (1 - n / 10). Over 20 draws, n = 8: 0.133 +- 0.146, undecided; n = 2: 0.533 +- 0.089, decided.
 TEST(RankingStability, WeighsAGapAgainstItsOwnDeviation) {
   for (const int n : {8, 2}) {
     Record record{.source = "steps", .time_s = {}, .channels = {{"d", "um", {}}, {"x", "degC", {}}, {"z", "degC", {}}}};
@@ -269,9 +269,9 @@ TEST(RankingStability, IsTheSameFromRunToRunAndLeavesOutTheDead) {
 
 // Two blocks that differ: the mean of a resample is one of three, and over many its deviation is that of the mean of n draws.
 TEST(RankingStability, DeviationIsThatOfABlockBootstrap) {
-  // Range images; candidate differs from the drift in the second half of the blocks only. Deng's coefficient is 1 in the first, with
-  // D = max = 1/2 on the second: (0 + 1/4)/(1/2 + 1/4) = 1/3. A grade is (1 + 2 k / 20)/3 with k binomial (20, 1/2): deviation
-  // 2/3 sqrt(1/80) = 0.0745, mean 2/3.
+  // Range images; candidate differs from the drift in the second half of the blocks only. Deng's coefficient is 1 in the
+  // first, with D = max = 1/2 on the second: (0 + 1/4)/(1/2 + 1/4) = 1/3. A grade is (1 + 2 k / 20)/3 with k binomial
+  // (20, 1/2): deviation 2/3 sqrt(1/80) = 0.0745, mean 2/3.
   Record record{.source = "steps", .time_s = {}, .channels = {{"d", "um", {}}, {"x", "degC", {}}}};
   for (int i = 0; i < 200; ++i) {
     record.time_s.push_back(i);

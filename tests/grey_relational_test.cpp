@@ -118,7 +118,7 @@ TEST(GreyRelational, AConstantChannelHasNoGradeComesLastAndDisturbsNobody) {
   EXPECT_THAT(best(ranking, 2), ElementsAre("a"));
 }
 
-// Reversed, (9,8,5) has the image (0,1/4,1) of the reference itself. As it stands: (1,3/4,0), D = (1,1/2,1),
+// Reversed, (9,8,5) has the image (0,1/4,1) of the reference itself. Unreversed: (1,3/4,0), D = (1,1/2,1),
 // xi = (1/2 + 1/2)/(D + 1/2) = (2/3, 1, 2/3), mean 7/9.
 TEST(GreyRelational, AFallingChannelIsMirroredUnlessDengIsWantedToTheLetter) {
   const Record r = record_of({{"drift", "um", {0, 1, 4}}, {"a", "degC", {9, 8, 5}}});

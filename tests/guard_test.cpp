@@ -1,4 +1,5 @@
-// Bodies behind a guard whose air has a way of its own to the ambient: what the entry says, and that one which a scenario lacks is found.
+// Bodies behind a guard whose air has a way of its own to the ambient: what the entry says, and that one which a scenario
+// lacks is found.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +57,8 @@ TEST(AGuard, TakesWhatItsBodiesLoseToTheAmbientToItsAir) {
   }
 }
 
-// 120 W into the spindle alone, two bodies without a way to a third: T_air = P / G_air over the ambient, the spindle P / G_film above the air, the table as warm as the air.
+// 120 W into the spindle alone, two bodies without a way to a third: T_air = P / G_air over the ambient, the spindle P /
+// G_film above the air, the table as warm as the air.
 TEST(AGuard, InSteadyStateIsThreeConductancesInARow) {
   const char* text = R"(name: steady
 reference_temperature: 20 degC
@@ -110,7 +112,7 @@ TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
   expect_written_is_found_no_more(beside, d, records);
 }
 
-// A film that looks at the temperatures of both sides is the same by a guard as by its own `surrounding`; so is radiation.
+// A film that depends on the temperatures of both sides is the same by a guard as by its own `surrounding`; so is radiation.
 TEST(AGuard, OfAFilmOfFreeConvectionIsItsSurrounding) {
   const std::string film = "{type: natural_convection, surface: top, length: 0.2 m, orientation: up",
                     grey = "{type: radiation, surface: top, emissivity: 0.9";
@@ -124,7 +126,7 @@ TEST(AGuard, OfAFilmOfFreeConvectionIsItsSurrounding) {
   EXPECT_EQ(by_guard.radiations[0].surrounding, by_surrounding.radiations[0].surrounding);
 }
 
-// Where a guard stands in the list does not matter: paths are changed before laws.
+// The position of a guard in the list does not matter: paths are changed before laws.
 TEST(AGuard, StandsAnywhereInTheList) {
   const std::string guard = "{type: guard, node: spindle, air: air}",
                     state = "{type: run_state, of: exchange, factor: 2, in: monday}";
@@ -160,8 +162,9 @@ TEST(AGuard, FindsSomethingToTake) {
   refused("{type: node, node: tool, capacity: 2 kJ/K}\n  - " + air + "{type: guard, node: tool, air: air}");
 }
 
-// Two guards, each of them around bodies of its own: one is written and the other one is to be found. Not reached: the first search finds it (53 nats), the second one, with sharper noise,
-// begins anew, where 'a body that follows the tank' explains more to first order, and says sensor_lag at t_tank (docs/theory/diagnosis.md).
+// Two guards, each of them around bodies of its own: one is written and the other one is to be found. Not reached: the
+// first search finds it (53 nats), the second one, with sharper noise, begins anew, where 'a body that follows the tank'
+// explains more to first order, and says sensor_lag at t_tank (docs/theory/diagnosis.md).
 TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
   const std::string other =
       "{type: node, node: motor, capacity: 3 kJ/K}\n  - {type: node, node: tank, capacity: 9 kJ/K}\n  - {type: heat_source, "

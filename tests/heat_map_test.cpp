@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Colour and number of each cell in the order of the drawing, the scale's five behind them.
+/// Colour and number of each cell in the order of the drawing, followed by the five of the scale.
 std::vector<std::pair<std::string, std::string>> cells(const std::string& svg) {
   static const std::regex cell("<rect [^>]*fill=\"(#[0-9a-f]{6})\"/><text [^>]*>([^<]*)</text>");
   std::vector<std::pair<std::string, std::string>> list;

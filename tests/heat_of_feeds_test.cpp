@@ -1,4 +1,5 @@
-// Heat of an axis that nobody has written: by a power of its feed, or while it stands and holds a weight. The other axis moves otherwise.
+// Heat of an axis that the scenario lacks: by a power of its feed, or while it holds a weight at rest. The other axis
+// moves otherwise.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

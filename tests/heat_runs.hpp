@@ -49,7 +49,7 @@ inline constexpr std::array kAllShapes = {mesh::CellShape::kTet4,  mesh::CellSha
   return {name, std::move(body), {{0.0}, {temperature_K}}, false};
 }
 
-/// An ambient that stays `theta_K` above the reference temperature.
+/// An ambient that is constant at `theta_K` above the reference temperature.
 [[nodiscard]] inline TimeSeries still_ambient(double theta_K = 0.0) {
   return {{0.0}, {theta_K}};
 }

@@ -1,4 +1,4 @@
-// Where a model errs: which body is given heat that nobody told of, how much, and that readings bent by it weigh as their covariance says.
+// Where a model errs: which body gets unknown heat, how much, and that readings bent by it weigh as their covariance says.
 
 #include "diagnosis/heat_wander.hpp"
 
@@ -66,7 +66,8 @@ TEST(HeatWander, IsInTheBodyThatWasHeatedAndAsLarge) {
   EXPECT_LT(wander->bodies.front().sd_W, 8.4 * 1.7);
 }
 
-// Knots are 13 min apart. What changes sign every 7 min is told to stay alike for no longer than the shortest time that is tried, what stands for all five hours for the longest at least.
+// Knots are 13 min apart. What changes sign every 7 min is told to stay alike for no longer than the shortest time that
+// is tried, what stands for all five hours for the longest at least.
 TEST(HeatWander, SaysWhereItsTimeIsAnEndOfThoseTried) {
   std::string fast;
   for (int i = 0; i < 20; ++i)

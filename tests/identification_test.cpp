@@ -1,4 +1,5 @@
-// A network from records alone: lags against closed forms, non-negative least squares against their conditions, a machine that is known found again.
+// A network from records alone: lags against closed forms, non-negative least squares against their conditions, a machine
+// that is known found again.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,7 +63,8 @@ TEST(NonNegativeLeastSquares, AreWhereNoNumberGains) {
   }
 }
 
-/// A machine of two bodies, each on the ambient alone: one heated while the spindle turns, 40 min, one by the speed to the 5/3, 120 min. Rows of a minute.
+/// A machine of two bodies, each on the ambient alone: one heated while the spindle turns, 40 min, one by the speed to
+/// the 5/3, 120 min. Rows of a minute.
 Record measured(const std::string& name, const std::vector<std::pair<double, double>>& minutes_rpm, std::uint64_t seed,
                 double noise) {
   Record r{
@@ -322,7 +324,7 @@ TEST(ExtendedMachine, LearnsNothingWhereTheScenarioIsRight) {
   }
 }
 
-// The scenario knows no heat that goes with the turning spindle: t_box lacks 6 K behind 40 min, the nose -12 um.
+// The scenario knows no heat that goes with the turning spindle: t_box lacks 6 K after a lag of 40 min, the nose -12 um.
 TEST(ExtendedMachine, LearnsTheHeatThatTheScenarioLacks) {
   const auto lacks = simulated(without_noise(), [](Record& r) {
     Eigen::VectorXd turns(static_cast<Eigen::Index>(r.n_samples()));
@@ -354,7 +356,8 @@ TEST(ExtendedMachine, LearnsTheHeatThatTheScenarioLacks) {
   EXPECT_NEAR(in_the_end, 6.0, 0.6);
 }
 
-// A scenario of another machine is of no use: what is kept of it falls, and the network beside it predicts as if there were none.
+// A scenario of another machine is of no use: what is kept of it falls, and the network beside it predicts as if there
+// were none.
 TEST(ExtendedMachine, KeepsLittleOfAScenarioOfAnotherMachine) {
   const auto other = simulated(three_days(), [](Record& r) {
     for (std::size_t i = 0; i < r.n_samples(); ++i) {

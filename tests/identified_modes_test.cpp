@@ -146,7 +146,7 @@ TEST(IdentifiedModes, WithOneSetOfTimeConstantsMissWhatGrowingRatesDo) {
   fixed.with_growth = false;
   const IdentifiedModes modes = identify_modes(five_tests(0.8), kChannels, fixed);
   for (const auto& m : modes.modes) EXPECT_EQ(m.growth, 0.0);
-  EXPECT_GT(error_over_peak(modes, kChaotic, 0, 0.8), 0.02);  // four times what is asked of the whole method
+  EXPECT_GT(error_over_peak(modes, kChaotic, 0, 0.8), 0.02);  // four times the limit for the whole method
 }
 
 TEST(IdentifiedModes, FromNoisyTestsAreTwoAndTheirIntervalsHoldTheTruth) {
@@ -169,7 +169,8 @@ TEST(IdentifiedModes, FromNoisyTestsAreTwoAndTheirIntervalsHoldTheTruth) {
 }
 
 TEST(IdentifiedModes, FollowTheAmbient) {
-  // One channel that follows the ambient alone, dθ/dt = (θ_ambient - θ) / τ, while it rises by 1 K/h: θ = r (t - τ (1 - e^(-t/τ))).
+  // One channel that follows the ambient alone, dθ/dt = (θ_ambient - θ) / τ, while it rises by 1 K/h: θ = r (t - τ (1 -
+  // e^(-t/τ))).
   const double rate_K_s = 1.0 / 3600.0, tau = 3000.0;
   const auto truth = [&](double t_s) { return rate_K_s * (t_s - tau * (1.0 - std::exp(-t_s / tau))); };
   std::vector<ThermalTest> tests;

@@ -24,7 +24,8 @@ class IdentifyVerb : public ::testing::Test {
   std::filesystem::path out_ = temporary_folder() / ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
-// The shipped records hold 0.1 K and 0.5 um of noise, by a model of finite elements; the network's scenario, run by the verb, is to come near that with the records as they are.
+// The shipped records hold 0.1 K and 0.5 um of noise, by a model of finite elements; the network's scenario, run by the
+// verb, is to come near that with the records as they are.
 TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
   const CommandOutcome identified = run_program(
       "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o " + out_.string());
@@ -55,7 +56,8 @@ TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
   EXPECT_GT(summary.at("bodies").size(), 2);
 }
 
-// Monday and Tuesday are of a machine that differs from the scenario in one thing; 0.1 K of noise. The file that is written runs, and leaves about the noise of the thermometer that was missed most.
+// Monday and Tuesday are of a machine that differs from the scenario in one thing; 0.1 K of noise. The file that is
+// written runs, and leaves about the noise of the thermometer that was missed most.
 TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
   const CommandOutcome learned = run_program(
       "identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/monday.csv --record "

@@ -477,7 +477,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, VtuRoundTrip,
                                            CellShape::kWedge6, CellShape::kWedge15));
 
 TEST(VtuFile, WedgesOnTheirHeadsAreTurned) {
-  // VTK's text wants the triangle 012 to look outwards; its functions, and most writers, the opposite.
+  // VTK's text requires that the triangle 012 faces outwards; its functions, and most writers, the opposite.
   for (CellShape shape : {CellShape::kWedge6, CellShape::kWedge15}) {
     Mesh written = fixtures::box_mesh({.n = {1, 1, 1}, .shape = shape});
     written.facets = {};

@@ -66,8 +66,8 @@ TEST(ImportedScenario, IsCheckedMeshedAndSimulated) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("fields in fields.pvd"), Not(HasSubstr("note:"))));  // few times, as vtu
   const Record record = read_record_csv((folder / "out" / "record.csv").string());
-  // Steady: 20 W leave through 10 W/(m^2 K) on the outside, 4 x 0.03 + (2 x 0.01 + 2 x 0.02 + 0.02 + 0.01) = 0.21 m^2: 9.52 K on
-  // its average. The head is warmer than the column, and iron conducts well: within 4 K of it.
+  // Steady: 20 W leave through 10 W/(m^2 K) on the outside, 4 x 0.03 + (2 x 0.01 + 2 x 0.02 + 0.02 + 0.01) = 0.21 m^2:
+  // 9.52 K on its average. The head is warmer than the column, and iron conducts well: within 4 K of it.
   const double t1_degC = record.at("t1").values.back();
   EXPECT_GT(t1_degC, 20.0 + 20.0 / (10 * 0.21));
   EXPECT_LT(t1_degC, 24.0 + 20.0 / (10 * 0.21));

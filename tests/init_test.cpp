@@ -1,4 +1,5 @@
-// The first hour: a scenario from a drawing, a mesh or nothing, which runs at once; the geometry alone; what there is to choose from.
+// The first hour: a scenario from a drawing, a mesh or nothing, which runs at once; the geometry alone; what there is to
+// choose from.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,8 +17,8 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Runs what `init` has written. The heat would warm a machine that loses it by 10 W/(m^2 K) everywhere by 2 K in the mean; the heated part is
-/// warmer, and nothing is colder than the ambient.
+/// Runs what `init` has written. The heat would warm a machine that loses it by 10 W/(m^2 K) everywhere by 2 K in the
+/// mean; the heated part is warmer, and nothing is colder than the ambient.
 void expect_sane_run(const std::filesystem::path& folder, const std::string& name) {
   const std::string scenario = (folder / name / (name + ".yaml")).string();
   EXPECT_EQ(run_program("check " + scenario).exit_code, 0);
@@ -77,7 +78,8 @@ TEST(Init, OfLumpedNodes) {
   const std::string scenario = (folder / "two/two.yaml").string();
   const CommandOutcome run = run_program("run " + scenario + " -o " + (folder / "results").string());
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  // At 3000 rpm 150 W leave by 5 W/K: the housing ends 30 K over the ambient, the spindle 12.5 K over it. Two nodes, two time constants, as exponentials.
+  // At 3000 rpm 150 W leave by 5 W/K: the housing ends 30 K over the ambient, the spindle 12.5 K over it. Two nodes, two
+  // time constants, as exponentials.
   const double c1 = 5600, c2 = 19000, g = 12, h = 5, p = 150, t = 7200;
   const double a = g / c1, b = g / c1, c = g / c2, d = (g + h) / c2;
   const double mean = 0.5 * (a + d), root = std::sqrt(mean * mean - (a * d - b * c)), l1 = mean - root, l2 = mean + root;

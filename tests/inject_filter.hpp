@@ -1,5 +1,5 @@
 #pragma once
-// `driftwright inject` between two files, for the tests of the verb and of what real programs make of its output.
+// Runs `driftwright inject` between two files, for tests of the verb and of real programs that read its output.
 
 #include <sys/wait.h>
 
@@ -18,7 +18,7 @@ struct Filtered {
   std::string words;  ///< standard error
 };
 
-/// Feeds text to the filter.
+/// Runs the filter on a text.
 inline Filtered inject(const std::string& name, const std::string& arguments, const std::string& rows) {
   const auto folder = fresh_folder(name);
   const std::string base = folder.string();
@@ -37,7 +37,7 @@ inline std::string row_text(const std::vector<compensation::Lines>& rows, int ti
   return text;
 }
 
-/// Legs of so many quarter steps each, from 00 on; 00 is the first row.
+/// Legs with these numbers of quarter steps, from 00; 00 is the first row.
 inline std::vector<compensation::Lines> legs(const std::vector<int>& quarters) {
   std::vector<compensation::Lines> rows = {0};
   for (int n : quarters) {
@@ -47,7 +47,7 @@ inline std::vector<compensation::Lines> legs(const std::vector<int>& quarters) {
   return rows;
 }
 
-/// What a x4 or x1 counter makes of rows of text that begin anywhere; a jump fails the test that calls.
+/// The count of an x4 or x1 counter over rows of text with any first row; a jump fails the calling test.
 inline compensation::QuadratureCounter counted(const std::string& text,
                                                compensation::Counting counting = compensation::Counting::kX4) {
   const auto lines = [&](std::size_t at) {

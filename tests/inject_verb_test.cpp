@@ -28,12 +28,12 @@ TEST(InjectVerb, InsertsCyclesBehindRowsWhereBothAreLow) {
   const Filtered f = inject("two", "--period '1 um' --correction " + c, "0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n");
   EXPECT_EQ(f.exit_code, 0);
   EXPECT_EQ(f.rows,
-            "0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n");  // one cycle behind row 5; the other finds no low row
+            "0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n");  // one cycle after row 5; the other finds no low row
   EXPECT_THAT(f.words, HasSubstr("encoder +5, inserted +4 of +8, control +9"));
 }
 
-// Sign by value: a tool +5 um too far, 1 um a count: 5 counts forward; at x4 with 4 um a cycle that is a cycle and a rest of one count,
-// which a quarter brings in.
+// Sign by value: a tool +5 um too far, 1 um a count: 5 counts forward; at x4 with 4 um a cycle that is a cycle and a rest
+// of one count, which a quarter brings in.
 TEST(InjectVerb, UnitsAndCounts) {
   const std::string rows = row_text(legs({400}));
   const std::string um = file("um.csv", "row,e_um\n1,5\n"), count = file("count.csv", "row,e_count\n1,5\n");
@@ -49,8 +49,8 @@ TEST(InjectVerb, UnitsAndCounts) {
 }
 
 TEST(InjectVerb, ACorrectionByTimeHoldsFromItsTimeOn) {
-  // Row i stands for (i - 1) ms; rows 1, 5, ... are low. Row 42 is just past a low one, row 81 is one: neither early nor late would do.
-  // Cycles against the motion, for those with it look the same wherever they stand.
+  // Row i is at (i - 1) ms; rows 1, 5, ... are low. Row 42 is just past a low one, row 81 is one: neither early nor late
+  // would do. Cycles against the motion, for those with it look the same at any position.
   const std::string rows = row_text(legs({120}));
   const std::string by_time = file("time.csv", "time_s,e_um\n0,0\n0.041,-3\n0.08,-4\n"),
                     by_row = file("row.csv", "row,e_um\n1,0\n42,-3\n81,-4\n");
@@ -89,7 +89,7 @@ TEST(InjectVerb, ClockedItGivesARowForARow) {
   EXPECT_THAT(slow.words, Not(HasSubstr("nothing was inserted")));
 }
 
-// At the turn the encoder stands twice as long: one insertion finds room there, and what is missing is told.
+// At the turn the encoder rests twice as long: one insertion fits there, and the missing rest is reported.
 TEST(InjectVerb, ClockedItTellsWhatFoundNoRoom) {
   const std::string c = file("c.csv", "row,e_um\n1,3\n");
   std::string rows = row_text(legs({40, -40}), 4) + row_text({0}, 6) + row_text(legs({40}), 4);
@@ -201,7 +201,7 @@ TEST(InjectVerb, BypassAnswersTheRowsBeforeABadOne) {
   EXPECT_THAT(f.words, HasSubstr("line 3: '0 2'"));
 }
 
-// A row that is none is as the one before it: the axis stands there for that row. None stands for one in front of all.
+// An invalid row counts as the one before it: the axis rests for that row. There is none before the first.
 TEST(InjectVerb, ABadRowHoldsIsCountedAndLogged) {
   const std::string c = file("c.csv", "row,e_um\n1,0\n");
   const Filtered f =

@@ -1,4 +1,5 @@
-// What is said without some of the rows owes nothing to them: neither noise nor statements, neither priors nor numbers to start from.
+// What is said without some of the rows owes nothing to them: neither noise nor statements, neither priors nor numbers to
+// start from.
 
 #include "diagnosis/inquiry.hpp"
 
@@ -76,7 +77,8 @@ class TwoRecords : public testing::Test {
   DiagnosisOptions how_;
 };
 
-// A thermometer that bends away by 2 K in a parabola over its record, of which the last third is not known. Curves that are fitted to two thirds say anything of the last one.
+// A thermometer that bends away by 2 K in a parabola over its record, of which the last third is not known. Curves that
+// are fitted to two thirds say anything of the last one.
 TEST_F(TwoRecords, NothingIsLeftWhereThereIsNoReading) {
   std::vector<MeasuredRun> runs = beside_.runs;
   MeasuredRun& run = runs[0];

@@ -1,4 +1,5 @@
-// Thermometers that are wrong together, by one number, and one that sits on another body than its label says: found in records made so, and written.
+// Thermometers that are wrong together, by one number, and one that sits on another body than its label says: found in
+// records made so, and written.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

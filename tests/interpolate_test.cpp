@@ -24,7 +24,7 @@ TEST(Interpolate, IsMissingOutsideAndBesideAGap) {
   for (double outside : {-1.0, 30.5, 5.0, 10.0, 15.0, double{NAN}}) {
     EXPECT_TRUE(std::isnan(interpolate(t, x, outside))) << outside;
   }
-  EXPECT_EQ(interpolate(t, x, 20.0), 3.0);  // a sample stands although its neighbour is missing
+  EXPECT_EQ(interpolate(t, x, 20.0), 3.0);  // a sample counts although its neighbour is missing
 }
 
 }  // namespace

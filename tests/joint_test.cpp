@@ -35,7 +35,7 @@ class JointOf : public ::testing::TestWithParam<Pair> {
   mesh::Mesh mesh_ = fixtures::two_boxes(GetParam().a, GetParam().b, "a.x1", "b.x0");
   int n_a_ = fixtures::box_mesh(GetParam().a).n_nodes();
 
-  [[nodiscard]] FullSystem system() const {  // 80 W in a; a film of 200 W/(m^2 K) behind b
+  [[nodiscard]] FullSystem system() const {  // 80 W in a; a film of 200 W/(m^2 K) on the far side of b
     effects::HeatBalance balance;
     balance.heats.push_back({"heat", effects::region("a"), fixtures::constant(80.0)});
     balance.exchanges.push_back(effects::make_film("film", "b.x1", fixtures::constant(200.0), "ambient"));

@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of several shards in one map, as a folder that they share would keep them.
+// Pieces of several shards in one map, which stands for the folder that they share.
 
 #include <map>
 #include <mutex>

@@ -31,7 +31,8 @@ MeasuredRun run_of(const Pieces& pieces) {
 const Pieces kSlow = {{60, 1000}, {20, 0}, {60, 1000}}, kFast = {{60, 3000}, {20, 0}, {60, 2500}};
 
 TEST(DutyCycles, AreOfRecordsThatHoldTheSameSpeedsForAboutAsLong) {
-  // The same speeds in another order, at another length and with a stop that nobody planned; a record in which nothing turns is a cycle of its own.
+  // The same speeds in another order, at another length and with an unplanned stop; a record in which nothing turns is a
+  // cycle of its own.
   const std::vector<MeasuredRun> runs = {run_of(kSlow), run_of(kFast), run_of({{300, 1000}, {60, 0}}),
                                          run_of({{60, 2500}, {12, 0}, {60, 3000}}), run_of({{200, 0}})};
   EXPECT_THAT(duty_cycles(runs), ElementsAre(ElementsAre(0u, 2u), ElementsAre(1u, 3u), ElementsAre(4u)));

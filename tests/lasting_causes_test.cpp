@@ -1,5 +1,6 @@
-// Causes that hold for more than an instant of one record: what begins in one record and lasts in the next, what is there for a while, a record
-// run in another state. Each is found in records made with it, and written so that it is found no more.
+// Causes that hold for more than an instant of one record: what begins in one record and lasts in the next, what is there
+// for a while, a record run in another state. Each is found in records made with it, and written so that it is found no
+// more.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,7 +34,8 @@ struct Cause {
   double as_heat_W = 0.0;     ///< constant heat in that body that gives the same readings; 0: none does
 };
 
-/// What is said of the file is what it would hold: numbers of written causes are those that are written, and what is left out says why and who may have taken it up.
+/// What is said of the file is what it would hold: numbers of written causes are those that are written, and what is left
+/// out says why and who may have taken it up.
 void expect_what_is_written_is_said(const Diagnosis& d) {
   for (std::size_t c = 0; c < d.causes.size(); ++c) {
     EXPECT_EQ(d.causes[c].is_written, d.causes[c].why_not_written.empty()) << d.causes[c].effect;
@@ -453,7 +455,8 @@ TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
   EXPECT_NEAR(d.causes[0].parameters[0].value, 40.0, 4.0);
 }
 
-// A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the catalogue, say by how much.
+// A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the
+// catalogue, say by how much.
 TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
   std::string machine = kTwoNodes;
   const std::string one = "      - {node: head, sensitivity: 3 um/K}\n";
@@ -488,7 +491,8 @@ cyclograms:
   shift: [[120 min, 6000 rpm], [30 min, 0 rpm], [90 min, 3000 rpm]]
 )";
 
-// A search without the first record cannot know that a pump ran from some hour of it on: in the other one that looks as if it always had.
+// A search without the first record cannot know that a pump ran from some hour of it on: in the other one that looks as
+// if it always had.
 TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
   const std::string truth = with_effect(kTwoRecords, "{type: heat_source, node: housing, power: 40 W}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "pump_", 60.0, 0.1, 0.5);
@@ -547,8 +551,8 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   expect_written_is_found_no_more(beside, d, records);
 }
 
-// The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always
-// there, is a warmer start and nothing that happened.
+// The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path
+// to the ambient, with heat that is always there, is a warmer start and nothing that happened.
 TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
   std::string nominal = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 60 W}");
   nominal = with_effect(nominal,

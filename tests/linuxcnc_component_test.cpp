@@ -1,5 +1,5 @@
-// The component for LinuxCNC: its C body with stand-ins for HAL, driven by numbers of closed form, and, where halcompile is installed,
-// halcompile itself.
+// The component for LinuxCNC: its C body with stand-ins for HAL, driven by numbers of closed form, and, where halcompile
+// is installed, halcompile itself.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -183,7 +183,8 @@ TEST(LinuxcncComponent, LeadsTheAxisThereAndBackAtTheSlewLimit) {
   EXPECT_EQ(out[1000].at("eoffset_enable"), 0.0);
 }
 
-// The heartbeat stops: 2 s later the offset goes back. The readings are then no news: after 5 s more without, the sensor is in doubt.
+// The heartbeat stops: 2 s later the offset goes back. The readings are then no news: after 5 s more without, the sensor
+// is in doubt.
 TEST(LinuxcncComponent, GoesBackWhenTheWatchdogBites) {
   Component c(exported("watchdog", two_um_per_K()));
   int heartbeat = 0;
@@ -309,7 +310,7 @@ TEST(LinuxcncComponent, NeverBearsTheNameOfTheModelsOwnFile) {
   EXPECT_THROW((void)linuxcnc_component(two_um_per_K(), "model", "model.c", "a test"), std::logic_error);
 }
 
-/// The component that `follow` feeds, with the files that must stand beside it.
+/// The component that `follow` feeds, with the files that it needs beside it.
 std::filesystem::path followed_axis(const std::string& folder_name) {
   std::filesystem::path folder = fresh_folder(folder_name);
   for (const char* name : {"followed_axis.comp", "axis_offset.h", "axis_offset.c"})
@@ -318,8 +319,8 @@ std::filesystem::path followed_axis(const std::string& folder_name) {
   return folder;
 }
 
-// 20 um at 0.5 um/s: there in 40 s. Then whoever feeds it is killed: the correction stays on its pin, the heartbeat stands still, and 10 s later the offset
-// goes back as fast as it came. It never moves faster, and no count is lost: 0.1 um each.
+// 20 um at 0.5 um/s: there in 40 s. Then its feeder is killed: the correction stays on its pin, the heartbeat stops, and
+// 10 s later the offset goes back as fast as it came. It never moves faster, and no count is lost: 0.1 um each.
 TEST(FollowedAxis, LeadsTheOffsetBackWhenFollowIsKilled) {
   Component c(followed_axis("killed"), "followed_axis.comp");
   int heartbeat = 0;

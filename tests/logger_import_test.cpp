@@ -1,9 +1,10 @@
-// Files of loggers that nobody has described: what is guessed of them, and that the guess as YAML reads them alike. The samples in tests/data/loggers mimic:
+// Files of loggers that nobody has described: what is guessed of them, and that the guess as YAML reads them alike. The
+// samples in tests/data/loggers mimic:
 //   almemo_2590        an Ahlborn ALMEMO 2590 with AMR-Control: Latin-1, semicolons, decimal commas, ranges and comments in front, date and time apart,
 //                      -.-- for a sensor that is off
 //   catman_ap          HBM catman's ASCII export: tabs, decimal commas, a head, units in a line below the names, time as a number
 //   picolog_6          PicoLog 6: no name over the stamps, which are ISO 8601 with an offset, here in the night in which clocks are set back
-//   wincc_tag_logging  a tag log of WinCC: one tag's value in each row, one tag behind the other, written when it changes
+//   wincc_tag_logging  a tag log of WinCC: one tag's value in each row, one tag after the other, written when it changes
 
 #include "studies/logger_import.hpp"
 
@@ -87,7 +88,7 @@ TEST(LoggerImport, PicoLogOverTheEndOfSummerTime) {
 
 TEST(LoggerImport, WinCcTagsHoldUntilTheyChange) {
   const Record record = import_sample("wincc_tag_logging.csv").read.record;
-  // Seconds behind 10:00:00 at which a tag was written; between them nothing changed.
+  // Seconds after 10:00:00 at which a tag was written; between them nothing changed.
   EXPECT_THAT(record.time_s, Pointwise(DoubleNear(1e-9), std::vector<double>{0, 5, 12, 65, 125, 180, 185, 245, 300, 305}));
   expect_values(record, "speed_rpm", {0, 0, 1500, 1500, 1500, 3000, 3000, 3000, 0, 0});
   expect_values(record, "temp_lager_vorn_degC", {kMissing, 20.5, 20.5, 20.75, 21.25, 21.25, 22.0, 23.5, 23.5, 24.25});
@@ -115,7 +116,7 @@ TEST(LoggerImport, GuessesWhatWasMappedByHand) {
   expect_values(simatic, "speed_rpm", {3000, 3000, 0});
 }
 
-/// Measured by others, in records: what units stand in headers is understood, whatever the columns are called.
+/// Measured by others, in records: the units in headers are understood, whatever the columns are called.
 TEST(LoggerImport, ReadsRecordsAsTheReaderOfRecordsDoes) {
   const std::string path = "../shared/data/fl_thermal/first_28h.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";

@@ -1,5 +1,5 @@
 #pragma once
-// Lumped machines and records of them, with noise, for tests of what a diagnosis says.
+// Lumped machines and noisy records of them, for tests of a diagnosis.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ inline std::vector<std::string> noisy_records(const std::string& scenario, const
   return paths;
 }
 
-/// A twin of a scenario beside records.
+/// A scenario's twin with records.
 struct Beside {
   scenarios::Scenario scenario;
   std::vector<MeasuredRun> runs;
@@ -94,7 +94,7 @@ struct Beside {
                                 augmented.plan);
     twin.emplace(augmented, machine, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
   }
-  Beside(const Beside&) = delete;  // the twin looks at its parts
+  Beside(const Beside&) = delete;  // the twin refers to its parts
   Beside& operator=(const Beside&) = delete;
   [[nodiscard]] Diagnosis diagnosed(int most_effects = 3) const {
     DiagnosisOptions how;
@@ -103,7 +103,8 @@ struct Beside {
   }
 };
 
-/// The first cause of a diagnosis, written into the scenario, and the records diagnosed by that file: nothing is found any more.
+/// Writes the first cause of a diagnosis into the scenario and diagnoses the records with that file: nothing must be
+/// found any more.
 inline void expect_written_is_found_no_more(const Beside& beside, const Diagnosis& d,
                                             const std::vector<std::string>& records) {
   const Claim& claim = d.search.hypothesis[0];

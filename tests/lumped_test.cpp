@@ -55,8 +55,8 @@ Simulated simulate(const std::string& text, const std::string& cyclogram) {
 }
 
 TEST(LumpedMachine, ReachesTheSteadyStateByHandWithoutAMesh) {
-  // Steady: 100 W / 5 W/K = 20 K over the ambient's 25 degC: cold 45 degC; 100 / 2 = 50 K more: hot 95 degC. Growth from 20 degC:
-  // 3 * 75 - 25 = 200 um. The slowest time constant is about 1500 s: after 36 000 s nothing is left of the way.
+  // Steady: 100 W / 5 W/K = 20 K over the ambient's 25 degC: cold 45 degC; 100 / 2 = 50 K more: hot 95 degC. Growth from
+  // 20 degC: 3 * 75 - 25 = 200 um. The slowest time constant is about 1500 s: after 36 000 s nothing is left of the way.
   const Simulated run = simulate(two_bodies(), "long");
   EXPECT_NEAR(run.record.at("t_cold").values.back(), 45.0, 1e-4);
   EXPECT_NEAR(run.record.at("t_hot").values.back(), 95.0, 1e-4);
@@ -147,7 +147,7 @@ TEST(Positions, MakeOneOutputEachOnAnotherSpotOfTheTable) {
   EXPECT_EQ(outputs[0].name, "travel_z_x-200");
   EXPECT_EQ(outputs[2].name, "travel_z_x200");
   const PlacedMachine placed = place(*scenario.machine);
-  // A table that bends by u_z = x²: the foot stands at x = -travel, where it rises by travel² and turns by -2 travel about y.
+  // A table that bends by u_z = x²: the foot is at x = -travel, where it rises by travel² and turns by -2 travel about y.
   // The stand carries the dial at (0, 305, 1382.5) - (foot after travel: 0, 320, 840): arm (0, -15, 542.5) mm; a turn about y
   // moves it along x alone. So travel_z = -(0.2 m)² at both ends and 0 in the middle, but for the curved cells' rounding.
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// What a geometry tells of a machine: parts that lie on each other, what it stands on, what is in the air.
+// Facts about a machine from its geometry: touching parts, its feet, surfaces in the air.
 
 #include "studies/machine_draft.hpp"
 
@@ -21,8 +21,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
-/// Two boxes as an input file of Abaqus, in mm, of one hexahedron each: a plate of 200 x 100 x 20 mm on the ground, a block of 100 x 100 x 50 mm that stands on
-/// its half, with nodes of its own; and a third 300 mm beside them.
+/// Two boxes as an input file of Abaqus, in mm, of one hexahedron each: a plate of 200 x 100 x 20 mm on the ground, a
+/// block of 100 x 100 x 50 mm that stands on its half, with nodes of its own; and a third 300 mm beside them.
 constexpr const char* kBoxes = R"(*NODE
 1, 0, 0, 0
 2, 200, 0, 0
@@ -111,7 +111,8 @@ TEST(MachineDraft, TellsTheGapThatKeepsPartsApart) {
 }
 
 TEST(MachineDraft, MeshSizesFollowThickness) {
-  // A cube of 0.3 m and a plate of 0.3 x 0.3 x 0.03 m: half of the edge (V/A = a/6), and a little over the thickness (V/A = 0.0125 m).
+  // A cube of 0.3 m and a plate of 0.3 x 0.3 x 0.03 m: half of the edge (V/A = a/6), and a little over the thickness (V/A
+  // = 0.0125 m).
   const std::vector<double> sizes_m = mesh::suggested_mesh_sizes_m({{0.027, 0.54}, {0.0027, 0.216}});
   EXPECT_NEAR(sizes_m[0], 0.15, 1e-12);
   EXPECT_NEAR(sizes_m[1], 0.0375, 1e-12);

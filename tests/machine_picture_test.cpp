@@ -71,7 +71,8 @@ TEST(MachinePicture, KeepsAllNamesInside) {
   EXPECT_THAT(drawn, HasSubstr(">and 50 more<"));
 }
 
-// Names must not be cut at the picture's edge: DejaVu Sans, the widest of the usual fonts, has 6.7 of 11 units a letter in the mean of lower case.
+// Names must not be cut at the picture's edge: DejaVu Sans, the widest of the usual fonts, has 6.7 of 11 units a letter
+// in the mean of lower case.
 TEST(MachinePicture, HasRoomForLongNames) {
   const mesh::Mesh mesh = box();
   const std::string name = "t_headstock_bearing_front_outer_ring";

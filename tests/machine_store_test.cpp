@@ -452,7 +452,7 @@ TEST(MachineStore, StandsWhereTheEnvironmentSays) {
   EXPECT_EQ(at("/var/cache", "/home/me"), "/var/cache/driftwright");
   EXPECT_EQ(at(nullptr, "/home/me"), "/home/me/.cache/driftwright");
   EXPECT_EQ(at("", "/home/me"), "/home/me/.cache/driftwright");
-  EXPECT_EQ(at("relative", "/home/me"), "/home/me/.cache/driftwright");  // as the XDG specification wants it
+  EXPECT_EQ(at("relative", "/home/me"), "/home/me/.cache/driftwright");  // as the XDG specification requires
   EXPECT_EQ(at(nullptr, nullptr), "");
   EXPECT_EQ(at(nullptr, ""), "");
   setenv("HOME", home_before.c_str(), 1);

@@ -1,8 +1,8 @@
 // Files as loggers write them, read by a map of their columns. The samples in tests/data/loggers mimic:
-//   keysight_34972a    the USB files of a Keysight 34972A (User's Guide, "Mass Memory Subsystem"): a fraction behind a colon, 9.9E+37 for overload
+//   keysight_34972a    USB files of a Keysight 34972A (User's Guide): a fraction after a colon, 9.9E+37 for overload
 //   benchlink_utf16    BenchLink Data Logger 3: UTF-16, lines before the header, an alarm column beside each channel
 //   hioki_lr8431       a HIOKI LR8431 (manual, appendix "Text File (CSV) Internal Format"): everything quoted, a table of channels in front
-//   graphtec_gl840     a Graphtec GL840: units under the header, milliseconds in a column of their own, BURNOUT, blanks behind the sign
+//   graphtec_gl840     a Graphtec GL840: units under the header, a column of milliseconds, BURNOUT, blanks after the sign
 //   labview            NI LabVIEW's .lvm ("Specification for the LabVIEW Measurement File"): tabs, decimal commas, two header blocks, comments
 //   german_latin1      a spreadsheet's export in Germany: Latin-1, semicolons, decimal commas, the night in which clocks are set back
 //   simatic_data_log   a data log of a SIMATIC S7-1200: date and time in two columns, //END before rows of an earlier log
@@ -23,6 +23,7 @@ namespace driftwright::mapped_record_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -136,7 +137,8 @@ channels:
   expect_values(read.record, "tip_z_um", {12.5, -25.0, 37.5});
 }
 
-// On 27 October 2024 clocks in Germany were set back from 3:00 to 2:00: 2:00 follows 2:59, and without the zone it would go back.
+// On 27 October 2024 clocks in Germany were set back from 3:00 to 2:00: 2:00 follows 2:59, and without the zone it would
+// go back.
 TEST(MappedRecord, GermanSpreadsheetOverAClockChange) {
   const std::string yaml = R"yaml(
 separator: ";"
@@ -209,6 +211,53 @@ TEST(MappedRecord, CountsRowsWhereThereIsNoTime) {
   expect_times(read.record, {0.0, 0.5, 1.0});
 }
 
+// A logger marks events in rows of their own: neither their time nor anything else of them counts, wherever they are.
+TEST(MappedRecord, LeavesOutRowsInWhichNoChannelHasAReading) {
+  const std::string map =
+      "missing: [---]\ntime: {column: t, format: \"%H:%M:%S\"}\nchannels: {x: {column: x, unit: um}, y: {column: y, unit: "
+      "degC}}\n";
+  const ReadRecord read = read_text_of(
+      "t;x;y;mark\n11:58:17;;;started\n11:59:00;1;20;\n12:00:00;2;;\n12:00:00;;;button\n11:59:58;---;---;button\n12:01:00;;"
+      "21;\n"
+      "13:30:00;---;;\n14:00:00;4;22;\n14:00:07;;;Logged\nend;;;\n",
+      map);
+  expect_times(read.record, {0.0, 60.0, 120.0, 7260.0});
+  expect_values(read.record, "x_um", {1, 2, kMissing, 4});
+  expect_values(read.record, "y_degC", {20, kMissing, 21, 22});
+  EXPECT_EQ(read.n_without_reading, 6u);
+  EXPECT_THAT(read.notes, Contains(HasSubstr("rows in which no channel has a reading are left out: 6 (lines 2 to 11)")));
+  // A row that was cut short is still refused.
+  EXPECT_THAT([&] { (void)read_text_of("t;x;y\n11:59:00;1;20\n12:00:00;2;21\n12:01:00;\n", map); },
+              ThrowsMessage<InputError>(HasSubstr(":4:")));
+}
+
+TEST(MappedRecord, CountsTheTimeOfRowsWithoutAReadingBetweenOthers) {
+  const ReadRecord read = read_text_of("x;mark\n;on\n1;\n;a\n;b\n2;\n3;\n;off\n",
+                                       "time: {interval: 10 s}\nchannels: {x: {column: x, unit: um}}\n");
+  expect_times(read.record, {0.0, 30.0, 40.0});
+  EXPECT_EQ(read.n_without_reading, 4u);
+}
+
+TEST(MappedRecord, LeavesOutRowsOfMarksForNoReading) {
+  std::string text = "t;a;b\n";
+  for (int i = 0; i < 20; ++i)
+    text += std::to_string(60 * i) + (i >= 17 ? ";888.8;-9999\n" : i == 5 ? ";888.8;21\n" : ";20.5;21\n");
+  const ReadRecord read =
+      read_text_of(text, "time: {column: t, unit: s}\nchannels: {a: {column: a, unit: degC}, b: {column: b, unit: degC}}\n");
+  EXPECT_EQ(read.record.n_samples(), 17u);
+  EXPECT_EQ(read.record.time_s.back(), 960.0);
+  EXPECT_TRUE(std::isnan(read.record.at("a").values[5]));
+  EXPECT_EQ(read.n_without_reading, 3u);
+  EXPECT_THAT(read.notes, Contains(HasSubstr("rows that have no other reading are left out: 3")));
+}
+
+// A record CSV may say a time alone: the last row of a plan ends it.
+TEST(MappedRecord, KeepsRowsWithoutAReadingInRecordsOfOurs) {
+  const ReadRecord read = read_record(write_file("plan.csv", "time_s,speed_rpm\n0,1000\n60,\n"), std::nullopt);
+  expect_times(read.record, {0.0, 60.0});
+  EXPECT_EQ(read.n_without_reading, 0u);
+}
+
 TEST(MappedRecord, NotesAClockThatSeemsToHaveBeenSetForward) {
   const std::string text = "t,x\n2024-03-31T01:58:00,1\n2024-03-31T01:59:00,1\n2024-03-31T03:00:00,1\n";
   const ReadRecord naive = read_text_of(text, "time: {column: t}\nchannels: {x: {column: x, unit: um}}\n");
@@ -239,6 +288,10 @@ constexpr const char* kClock = "time: {column: t, format: \"%H:%M:%S\"}\nchannel
 INSTANTIATE_TEST_SUITE_P(
     All, BadLog,
     ::testing::Values(
+        Bad{"no_reading",
+            "t;X;mark\n0;;a\n1;;b\n2;5;\n",
+            kPlain,
+            {"1 rows of data", "In 2 more no channel has a reading (lines 2 to 3)"}},
         Bad{"no_column",
             "a log\nt;Nase;Y\n0;1;2\n1;2;3\n",
             "time: {column: t, unit: s}\nchannels: {x: {column: nase, unit: um}}\n",

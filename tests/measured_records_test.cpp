@@ -95,7 +95,8 @@ TEST(FlThermal, ALongRecordIsCutIntoRunsAndJudgedByItsOtherPart) {
   ASSERT_EQ(left_out.size(), 1u) << left_out;
   EXPECT_EQ(left_out[0]["why"], "the scenario has no machine");
   EXPECT_EQ(summary["validation"]["trained_on"].size(), 3u) << summary["validation"]["trained_on"];
-  // Reference: means over the rows of 0 h to 20 h and 20 h to 28 h of the drift since the first row of the file, written independently in Python.
+  // Reference: means over the rows of 0 h to 20 h and 20 h to 28 h of the drift since the first row of the file, written
+  // independently in Python.
   const std::string csv = read_text(folder / "strategies.csv");
   EXPECT_NEAR(cell(csv, "no correction", "rms_without_fail_safe_um"), 41.240482, 1e-5);
   EXPECT_NEAR(cell(csv, "mean of the training runs", "rms_without_fail_safe_um"), 37.605422, 1e-5);
@@ -118,8 +119,8 @@ TEST(FlThermalNetwork, LeavesOfTheHoursKeptOutWhatItsTutorialSays) {
   const Record simulated = read_record_csv((folder / "out" / "record.csv").string());
   const Record measured =
       read_record_csv(file.string());  // four rows to one of the simulation, whose last row is the end itself
-  // Reference: the same network integrated in Python by matrix exponentials, bench/measured/fit_fl_thermal.py (2.18, 1.83, 2.02, 2.56, 3.84 of means
-  // of five minutes); single rows have a little more.
+  // Reference: the same network integrated in Python by matrix exponentials, bench/measured/fit_fl_thermal.py (2.18,
+  // 1.83, 2.02, 2.56, 3.84 of means of five minutes); single rows have a little more.
   const std::map<std::string, double> left_um = {{"ch1", 2.26}, {"ch2", 1.90}, {"ch3", 2.05}, {"ch4", 2.57}, {"ch5", 3.68}};
   for (const auto& [channel, expected_um] : left_um) {
     double sum = 0.0;

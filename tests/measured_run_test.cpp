@@ -102,8 +102,8 @@ TEST_F(MeasuredRunTest, TakesAThermometerInTheAmbientForTheAmbient) {
   EXPECT_EQ(run.find("t_ambient"), nullptr);  // it is an input now
 }
 
-/// The largest difference of a body's temperatures in a recorded ambient and in the ambient as it is read, from the same start, by its exact answer to straight
-/// pieces.
+/// The largest difference of a body's temperatures in a recorded ambient and in the ambient as it is read, from the same
+/// start, by its exact answer to straight pieces.
 double missed_K(const MeasuredRun& run, const std::vector<double>& ambient_K, double time_constant_s) {
   double recorded_K = run.ambient.at(0.0), read_K = recorded_K, most = 0.0;
   const double step_s = run.time_s[1] - run.time_s[0], kept = std::exp(-step_s / time_constant_s);
@@ -119,7 +119,8 @@ double missed_K(const MeasuredRun& run, const std::vector<double>& ambient_K, do
   return most;
 }
 
-// A thermometer in the open air shows gusts, and a body of five hours feels them: 0.4 K from one reading to the next are 0.03 K of its own.
+// A thermometer in the open air shows gusts, and a body of five hours feels them: 0.4 K from one reading to the next are
+// 0.03 K of its own.
 TEST_F(MeasuredRunTest, KeepsAnAmbientThatChangesByMoreThanThermometersErr) {
   for (const double wandering_K : {0.03, 0.4}) {
     Random random(11);
@@ -136,7 +137,8 @@ TEST_F(MeasuredRunTest, KeepsAnAmbientThatChangesByMoreThanThermometersErr) {
   }
 }
 
-// Of rows ten minutes apart nobody can tell what is noise of the thermometer and what is air; a course on a few knots would leave out what bodies of minutes feel.
+// Of rows ten minutes apart nobody can tell what is noise of the thermometer and what is air; a course on a few knots
+// would leave out what bodies of minutes feel.
 TEST_F(MeasuredRunTest, TakesAnAmbientOfFewRowsAsItIsRecorded) {
   Random random(12);
   std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
@@ -182,8 +184,8 @@ TEST_F(MeasuredRunTest, RecognisesStepsThatWereWrittenRoundedOrBelongToAConverte
   }
 }
 
-/// A front bearing 15 K warmer after an hour's time constant, read in steps; it stands still at some rows. The rear one follows the same
-/// course to two digits, later by 5 min.
+/// A front bearing 15 K warmer after an hour's time constant, read in steps; it stands still at some rows. The rear one
+/// follows the same course to two digits, later by 5 min.
 std::string warming(double step_K, int stuck_from, int stuck_until) {
   std::string text = "time_s,speed_rpm,t_front_degC,t_rear_degC\n";
   double held_C = 0.0;
@@ -258,8 +260,8 @@ TEST_F(MeasuredRunTest, CutsOffASensorWhoseNoiseIsLargerThanItsStep) {  // 0.1 K
 }
 
 TEST_F(MeasuredRunTest, CallsNoCoarseSensorStuckForAChannelThatGoesItsOwnWay) {  // a bearing at rest beside a draughty door
-  // the first: at its end the door swings and never told the bearing; the second: it told the rise by chance, and the bearing leaves its
-  // rest step by step
+  // the first: at its end the door swings and never told the bearing; the second: it told the rise by chance, and the
+  // bearing leaves its rest step by step
   for (const auto& [swing_K, share] : {std::pair{8.0, 0.25}, {4.0, 0.5}}) {
     std::string text = "time_s,speed_rpm,t_front_degC,door_degC\n";
     for (int i = 0; i < 200; ++i) {
@@ -292,7 +294,8 @@ TEST_F(MeasuredRunTest, LeavesOutASaturatedSensor) {  // clipped at 24 degC for 
   EXPECT_THAT(told(run), HasSubstr("at its limit of 24 degC: saturated"));
 }
 
-// Steps of 0.25 K that noise carries it across in most rows; a rest at the lowest reading is no longer than another one at a middle one.
+// Steps of 0.25 K that noise carries it across in most rows; a rest at the lowest reading is no longer than another one
+// at a middle one.
 TEST_F(MeasuredRunTest, KeepsASensorThatRestsAtItsLowestReading) {
   std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
   for (int i = 0; i < 200; ++i) {
@@ -337,7 +340,7 @@ TEST_F(MeasuredRunTest, RefusesAnAmbientInFahrenheitOrKelvin) {
 
 TEST_F(MeasuredRunTest, KeepsBothSidesOfAHoleAndReadsNothingWithinIt) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
-  for (int i = 0; i < 100; ++i) {  // rows 20 to 39 have no speed, and when it fell nobody knows
+  for (int i = 0; i < 100; ++i) {  // rows 20 to 39 have no speed, and the time of its drop is unknown
     const std::string speed = i < 20 ? "500" : i < 40 ? "" : "0";
     text += fmt::format("{},{},{:.3f}\n", 60 * i, speed, 20.0 + 0.013 * i);
   }

@@ -363,7 +363,7 @@ TEST(FreeMotion, OnAnInclinedPlaneIsNamedByItsDirections) {
 }
 
 TEST(FreeMotion, NamesThePartsThatMoveAndThoseThatMoveWithThem) {
-  // a stands, b slides on it along two directions, c is tied to b.
+  // a is fixed, b slides on it along two directions, c is tied to b.
   mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.4, 0.2, 0.1}, {2, 2, 1}, CellShape::kTet10},
                                         {{0, 0, 0.1}, {0.4, 0.2, 0.1}, {2, 2, 1}, CellShape::kTet10}, "a.z1", "b.z0");
   fixtures::add_box(mesh, {{0, 0, 0.2}, {0.1, 0.2, 0.1}, {1, 2, 1}, CellShape::kTet10}, "c", "c.");

@@ -1,4 +1,5 @@
-// Thermometers and memories against a truth of lags in closed form, against what cannot be predicted, and on a measured machine.
+// Thermometers and memories against a truth of lags in closed form, against what cannot be predicted, and on a measured
+// machine.
 
 #include "compensation/predictors/memory_regression.hpp"
 
@@ -24,8 +25,8 @@ double towards(double lag, double input, double step_s, double lag_s) {
   return lag + (1.0 - std::exp(-step_s / lag_s)) * (input - lag);
 }
 
-/// 3 um per 1000 rpm behind 7 min, -2 um per (1000 rpm)^2 behind 30 min, 4 um behind 25 min of turning, 1.5 um/K of a thermometer that
-/// follows nothing of it, and another thermometer of no part. Exact between rows of a minute.
+/// 3 um per 1000 rpm after 7 min, -2 um per (1000 rpm)^2 after 30 min, 4 um after 25 min of turning, 1.5 um/K of a
+/// thermometer that follows nothing of it, and another thermometer of no part. Exact between rows of a minute.
 struct Truth {
   double fast_um = 0.0, slow_um = 0.0, on_um = 0.0;
 
@@ -78,8 +79,9 @@ double rms_off_um(const DriftModel& model, const Record& judged) {
   return score(off).rmse;
 }
 
-// None of the truth's lags is among those of the formula; sums of these make them, and single coefficients say nothing. What has to be right is the
-// drift: on speeds and times not fitted on, and the answer to each input alone, here against its closed form.
+// None of the truth's lags is among those of the formula; sums of these make them, and single coefficients say nothing.
+// What has to be right is the drift: on speeds and times not fitted on, and the answer to each input alone, here against
+// its closed form.
 void expect_the_truth(const DriftModel& model) {
   const Record judged = record_of(9, speeds(9, 1500));
   const double moves_um = score(judged.at("drift_z").values).rmse;
@@ -123,7 +125,7 @@ TEST(Memories, FindTheSameInOneLongRecordWithNoise) {
   expect_the_truth(f.model);
 }
 
-// Turning alone tells what speed and its square do not: without it the same fit misses the step by far more.
+// Turning alone explains what speed and its square do not: without it the same fit misses the step by far more.
 TEST(Memories, OfTurningAreNeeded) {
   std::vector<Record> runs = {record_of(1, speeds(1, 1200)), record_of(2, speeds(2, 1200)), record_of(3, speeds(3, 1200))};
   const FittedFormula f = fit_with_memories(runs, {"bed", "other"}, "speed", "", "drift_z");
@@ -134,7 +136,8 @@ TEST(Memories, OfTurningAreNeeded) {
   EXPECT_GT(rms_off_um(without, judged), 10.0 * rms_off_um(f.model, judged));
 }
 
-// Thirty sensors of which none has to do with the drift: more columns than kinds of rows, and the penalty chosen leaves next to nothing of them.
+// Thirty sensors of which none has to do with the drift: more columns than kinds of rows, and the penalty chosen leaves
+// next to nothing of them.
 TEST(Memories, KeepStillWhereNothingCanBeKnown) {
   std::vector<Record> runs;
   std::vector<std::string> sensors;
@@ -169,14 +172,15 @@ TEST(Memories, TakeTheAmbientOnceAndNothingThatNeverMoves) {
     const FittedFormula f = fit_with_memories(runs, sensors, "", ambient, "drift_z");
     return std::count_if(f.model.terms.begin(), f.model.terms.end(), [&](const auto& t) { return t.input == input; });
   };
-  EXPECT_EQ(n_of({"bed", "flat"}, "other", "other"), 4);  // at once and behind three lags
+  EXPECT_EQ(n_of({"bed", "flat"}, "other", "other"), 4);  // at once and after three lags
   EXPECT_EQ(n_of({"bed", "other"}, "other", "other"), 4);
   EXPECT_EQ(n_of({"bed", "flat"}, "", "other"), 0);
   EXPECT_EQ(n_of({"bed", "flat"}, "", "flat"), 0);
 }
 
-// Four thermometers that read two hidden temperatures in shares of their own; the drift is 3 um/K of the one at once and 2 um/K of the other behind 60 min. Two common modes
-// are those two, mixed, and the formula reads the thermometers themselves.
+// Four thermometers that read two hidden temperatures in shares of their own; the drift is 3 um/K of the one at once and
+// 2 um/K of the other behind 60 min. Two common modes are those two, mixed, and the formula reads the thermometers
+// themselves.
 TEST(Memories, OfCommonModesAreThoseOfWhatThermometersShare) {
   const auto record_with = [](std::uint64_t seed, int n_min) {
     Random random(seed);
@@ -262,9 +266,10 @@ Record hours_of(const Record& whole, double from_h, double to_h) {
   return part;
 }
 
-// A machine at 0, 1250, 2500, 3750 and 5000 rpm in blocks of 4 h. Three ways to part 28 h; in two of them the part judged is faster than all that was
-// fitted on. Beside it two ridge regressions written apart from this program (bench/real/baselines.py, rows "fl_thermal" of docs/theory/measured_strategies.md): on
-// the thermometers, and on them with memories of speed, whose penalties are chosen in the same way.
+// A machine at 0, 1250, 2500, 3750 and 5000 rpm in blocks of 4 h. Three ways to part 28 h; in two of them the part judged
+// is faster than all that was fitted on. Beside it two ridge regressions written apart from this program
+// (bench/real/baselines.py, rows "fl_thermal" of docs/theory/measured_strategies.md): on the thermometers, and on them
+// with memories of speed, whose penalties are chosen in the same way.
 TEST(MeasuredMachine, IsPredictedBetterThanByPlainRidgeOnHoursNotFittedOn) {
   const std::filesystem::path data = "../shared/data/fl_thermal/first_28h.csv";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured records in " << data.parent_path();

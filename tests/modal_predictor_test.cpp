@@ -18,8 +18,9 @@ namespace driftwright::compensation::modal_predictor_test {
 namespace {
 
 TEST(ModalPredictor, FreezesFilmsInTheSteadyStateOfTheTypicalDrive) {
-  // 20 W into a cube with free convection on one face, ambient 20 K over the reference: at the end of a long run the film is that of
-  // the steady state, and so is the temperature. Frozen at the start, where cube and air are alike, there would be no film.
+  // 20 W into a cube with free convection on one face, ambient 20 K over the reference: at the end of a long run the film
+  // is that of the steady state, and so is the temperature. Frozen at the start, where cube and air are alike, there
+  // would be no film.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}});
   solver::FullSystem system = solver::assemble_heat(
       mesh, {fixtures::steel()},

@@ -33,9 +33,10 @@ const effects::Inputs kAtWork{.drive = {.speed_rpm = 2000.0}, .ambient_K = kAmbi
 const Cyclogram kWork{.name = "work", .sections = {{20000.0, {.speed_rpm = 2000.0}}}};
 const TimeSeries kAmbient{{0.0}, {kAmbient_K}};
 
-/// Nodes of 4, 5 and 10 kJ/K. Part "head" is nodes 0 and 1 with 20 W/K between them, "bed" node 2 with nothing to conduct; a joint of 15 W/K
-/// from 1 to 2; films of 6 W/K on 0 and, with air 0.7 K warmer than the ambient, 8 W/K on 2; motor into 0, screw into 1. Outputs: T0, T2 with
-/// a tenth of the ambient's, and the drift 2, 3 um/K of the head's nodes and 1.5 um/K of the bed's.
+/// Nodes of 4, 5 and 10 kJ/K. Part "head" is nodes 0 and 1 with 20 W/K between them, "bed" node 2 with nothing to
+/// conduct; a joint of 15 W/K from 1 to 2; films of 6 W/K on 0 and, with air 0.7 K warmer than the ambient, 8 W/K on 2;
+/// motor into 0, screw into 1. Outputs: T0, T2 with a tenth of the ambient's, and the drift 2, 3 um/K of the head's nodes
+/// and 1.5 um/K of the bed's.
 template <class Matrix = Eigen::MatrixXd>
 ThermalSystem<Matrix> head_and_bed() {
   const auto unit = [](int i) -> Eigen::VectorXd { return Eigen::Vector3d::Unit(i); };
@@ -253,7 +254,8 @@ TYPED_TEST(ModelFactorsOf, OneAfterTheOtherAreTheirProduct) {
   }
 }
 
-// With θ = K^-1 f: a source's factor moves θ by K^-1 P b, an exchange's by K^-1 c (g θ_ambient + o - G θ), conduction's by -K^-1 K0 θ.
+// With θ = K^-1 f: a source's factor moves θ by K^-1 P b, an exchange's by K^-1 c (g θ_ambient + o - G θ), conduction's
+// by -K^-1 K0 θ.
 TYPED_TEST(ModelFactorsOf, SensitivitiesOfTheSteadyOutputsAreThoseDerivedByHand) {
   const ThermalSystem<TypeParam> s = head_and_bed<TypeParam>();
   const Eigen::MatrixXd inverse = k_of(s).inverse(), l = s.outputs.state;

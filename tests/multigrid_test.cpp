@@ -199,10 +199,11 @@ double worst_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-// Measured: blocks and tied parts 2e-11 to 6e-10, the thin plate 2.6e-9, steel on rubber 3.5e-7, springs a million times too soft 5.0e-6
-// (with other kernels of OpenBLAS 3.2e-7 and 5.2e-6). In the last two it is multigrid that rounds: the same loads three, seven or eleven
-// times as large move its result by 5e-7 and 2e-6 to 7e-6, that of the factor by 4e-10 and 1e-7. Springs that soft miss the 1e-4 um
-// in 50 um (2e-6) that outputs are wanted to; all else is far below. A difference of nothing would be a factor beside itself.
+// Measured: blocks and tied parts 2e-11 to 6e-10, the thin plate 2.6e-9, steel on rubber 3.5e-7, springs a million times
+// too soft 5.0e-6 (with other kernels of OpenBLAS 3.2e-7 and 5.2e-6). In the last two it is multigrid that rounds: the
+// same loads three, seven or eleven times as large move its result by 5e-7 and 2e-6 to 7e-6, that of the factor by 4e-10
+// and 1e-7. Springs that soft miss the 1e-4 um in 50 um (2e-6) that outputs require; all else is far below. A difference
+// of nothing would be a factor beside itself.
 TEST(ElasticityByMultigrid, EqualsThatByAFactor) {
   for (const ElasticCase& c : elastic_cases()) {
     const Elasticity factor(c.mesh, c.materials, c.supports, c.joints, ElasticMethod::kFactor);

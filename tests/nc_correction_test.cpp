@@ -1,4 +1,4 @@
-// Offsets put into NC programs: where they may stand, and every byte of what is written.
+// Offsets put into NC programs: where they are allowed, and every byte that is written.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -169,8 +169,8 @@ TEST(CorrectedProgram, ForLinuxCncByValue) {
   EXPECT_THAT(c.lines, ElementsAre(8, 11, 15));
 }
 
-// Offsets and points are written in the unit in force: 12.7 um are 0.0005 inch. In G91 the line that commands the axis once more is
-// absolute and the mode comes back.
+// Offsets and points are written in the unit in force: 12.7 um are 0.0005 inch. In G91 the line that commands the axis
+// once more is absolute and the mode comes back.
 TEST(CorrectedProgram, KeepsInchesAndIncrementalMode) {
   const std::string text = "G20 G59.1\nG0 X1 Y1 Z1\nG91\nX2\nG1 Y1 F10\nM2\n";
   const std::vector<NcStep> steps = steps_of(text);
@@ -197,7 +197,7 @@ TEST(CorrectedProgram, CommandsAllAxesOfAChangeTogether) {
             "G10 L2 P1 X100 Z-20\nM2\n");
 }
 
-// Units may be written behind the tool change: the first offset waits for the first motion, and so for them.
+// Units may come after the tool change: the first offset waits for the first motion, and so for them.
 TEST(CorrectedProgram, SetsTheOffsetBeforeTheFirstMotion) {
   const std::string text = "T1 M6\nG20\nG0 X1\nM2\n";
   EXPECT_EQ(lines_of(corrected_nc_program(text, steps_of(text), {25.4e-6, 0, 0}, {},
@@ -234,7 +234,7 @@ TEST(CorrectedProgram, WithoutChangesIsTheProgramItself) {
   EXPECT_EQ(corrected_nc_program(text, steps_of(text), {0, 0, 0}, {}, kXZ).text, text);
 }
 
-// The last line has no end: what stands before it takes that of the others.
+// The last line has no end: the line before it gets the end of the others.
 TEST(CorrectedProgram, EndsItsOwnLinesAsTheOthersEnd) {
   const std::string text = "G21\r\nG0 X1 Z0\r\nX2\r\nM2";
   const std::vector<NcOffsetChange> changes = {{2, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};

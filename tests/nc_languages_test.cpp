@@ -1,4 +1,5 @@
-// Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes by their line.
+// Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes
+// by their line.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -317,6 +318,54 @@ TEST(NcLanguages, MakeTheSameMovesOfOnePart) {
   }
 }
 
+// Numbers that are rounded to 0.01 mm or 0.001 in: radii at start and end differ by 0.028 mm and 0.0028 in, which is just what rounding may come to.
+TEST(NcLanguages, AllowTheRoundingOfArcsAlike) {
+  const auto inch = [](const std::string& blocks) { return "BEGIN PGM T INCH\n" + blocks + "END PGM T INCH\n"; };
+  const std::vector<std::pair<NcControl, std::string>> programs = {{kS, "G71 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+                                                                   {kS, "G71 G90\nG2 X4.0# I=AC(2) J=AC(0) F600\nM30\n"},
+                                                                   {kS, "G700 G90\nG2 X0.40# I0.2 J0 F60\nM30\n"},
+                                                                   {kS, "G291\nG21 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+                                                                   {kH, din("N1 G90 I+2 J+0 *\nN2 G02 X+4.0# Y+0 F600 *\n")},
+                                                                   {kH, klartext("CC X+2 Y+0\nC X+4.0# Y+0 DR- F600\n")},
+                                                                   {kH, klartext("CC X+2 Y+0\nCP PR+2.0# PA+0 DR- F600\n")},
+                                                                   {kH, inch("CC X+0,2 Y+0\nC X+0,40# Y+0 DR- F600\n")}};
+  for (const auto& [control, text] : programs) {
+    const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
+    EXPECT_GT(read(with("28"), control).duration_s(), 0.0) << text;
+    EXPECT_THAT([&] { (void)read(with("29"), control); }, ThrowsMessage<InputError>(HasSubstr("is allowed"))) << text;
+  }
+  // Half of the chord is longer than the radius by 0.012 mm.
+  const std::vector<std::pair<NcControl, std::string>> radii = {{kS, "G71 G90\nG2 X4.02# CR=2 F600\nM30\n"},
+                                                                {kH, din("N1 G90 G02 X+4.02# Y+0 R+2 F600 *\n")},
+                                                                {kH, klartext("CR X+4.02# Y+0 R+2 DR- F600\n")}};
+  for (const auto& [control, text] : radii) {
+    const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
+    EXPECT_NEAR(read(with("4"), control).duration_s(), kPi * 2.012 / 10, 1e-9) << text;
+    EXPECT_THAT([&] { (void)read(with("5"), control); }, ThrowsMessage<InputError>(HasSubstr("cannot reach"))) << text;
+  }
+}
+
+// First blocks as posts write them.
+TEST(NcLanguages, ReadTheUsualFirstBlocks) {
+  for (const char* first : {"G17 G40 G54 G60 G64 G71 G90 G94", "G0 G40 G90 G17 G54 G64 G71 SOFT FFWON",
+                            "G90 G94 G710 G40 G17 G500 CFC", "N10 G64 G40 G17 G71 G94 G97", "G290\nG17 G90 G71 G40 G601"}) {
+    EXPECT_NEAR(read(std::string(first) + "\nG71 G0 X25\nG4 F1\nM30\n", kS).duration_s(), 0.1 + 1, 1e-12) << first;
+  }
+  for (const char* first :
+       {"G17 G21 G40 G49 G80 G90", "G0 G17 G20 G40 G49 G50 G69 G80 G90 G94 G98", "G80 G0 G40 G49 G15 G67 G97"}) {
+    EXPECT_NEAR(read(std::string("G291\n") + first + "\nG21 G0 X25\nG4 P1\nM30\n", kS).duration_s(), 0.1 + 1, 1e-12)
+        << first;
+  }
+  for (const char* first : {"N10 G40 G90 *", "N10 G00 G17 G40 G90 G71 *", "N10 G90 G80 G40 *"}) {
+    const std::string text = din(std::string(first) + "\nN20 G00 X+25 *\nN30 G04 F1 *\n");
+    if (std::string(first).find("G80") != std::string::npos) {  // no word of this control
+      EXPECT_THROW((void)read(text, kH), InputError) << first;
+    } else {
+      EXPECT_NEAR(read(text, kH).duration_s(), 0.1 + 1, 1e-12) << first;
+    }
+  }
+}
+
 struct Mistaken {
   const char* name;
   NcControl control;
@@ -347,6 +396,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"siemens_open_loop", kS, "G71\nWHILE 1\nM30\n", {":2:1: WHILE is not closed"}},
         Mistaken{"siemens_unknown_r", kS, "G71\nG1 X=R5 F100\nM30\n", {":2:", "R5 is what the operator"}},
         Mistaken{"siemens_no_label", kS, "G71\nGOTOF AWAY\nM30\n", {":2:7: no label AWAY"}},
+        Mistaken{
+            "siemens_turns", kS, "G71\nG2 I3 J0 TURN=3000000000 F600\nM30\n", {":2:15: TURN=3000000000", "0 to 100000"}},
+        Mistaken{"siemens_part_of_a_turn", kS, "G71\nG2 I3 J0 TURN=0.5 F600\nM30\n", {"TURN=0.5", "whole number"}},
         Mistaken{"siemens_scale", kS, "G71\nSCALE X2\nM30\n", {"scaling is not computed"}},
         Mistaken{"siemens_no_end", kS, "G71\n", {"the program has no end"}},
         Mistaken{"iso_no_unit", kH, "%T\nN1 G00 X+1 *\n", {":1:1: the first line has no unit"}},
@@ -358,6 +410,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"klartext_unset_q", kH, klartext("L X+Q8 F100\n"), {":2:1: Q8 is what the operator"}},
         Mistaken{"klartext_no_feed", kH, klartext("L X+8\n"), {"the feed move has no feed"}},
         Mistaken{"klartext_endless", kH, klartext("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1\n"), {"has run 500004 blocks"}},
+        Mistaken{"klartext_turns",
+                 kH,
+                 klartext("CC X+3 Y+0\nCP IPA+1000000000000 DR+ F600\n"),
+                 {":3:", "1e+12 degrees", "36000000"}},
+        Mistaken{"iso_turns", kH, din("N1 I+3 J+0 *\nN2 G13 G91 H+1000000000000 F600 *\n"), {":3:", "1e+12 degrees"}},
         Mistaken{"klartext_recursion", kH, klartext("LBL 1\nCALL LBL 1\nLBL 0\n"), {"nested more than 8 deep"}}),
     [](const auto& each) { return each.param.name; });
 
@@ -372,7 +429,8 @@ TEST(NcLanguages, KeepUnknownMWordsAndSaySoOnce) {
   }
 }
 
-// --- corrections in each control's own way ----------------------------------------------------------------------------------------
+// --- corrections in each control's own way
+// ----------------------------------------------------------------------------------------
 
 std::size_t on_line(const NcProgram& program, int line) {
   for (std::size_t i = 0; i < program.steps.size(); ++i) {
@@ -450,7 +508,7 @@ TEST(CorrectionsOfKlartext, AreIncrementsOfTheDatumShiftInNumberedBlocks) {
   EXPECT_NEAR(again.duration_s(), program.duration_s() + std::hypot(0.003, 0.0125) / (100.0 / 60.0),
               1e-4);  // the step in feed, at F100
   EXPECT_NEAR(again.steps.back().end_m[0], program.steps.back().end_m[0] - 8e-6,
-              1e-12);  // it stands where the correction has put it
+              1e-12);  // it is where the correction has put it
 }
 
 TEST(CorrectionsOfHeidenhain, AreAbsoluteWhereThatIsAsked) {
@@ -472,7 +530,7 @@ TEST(CorrectionsOfHeidenhain, RefuseAResetThatIsRunUnderSeveralCorrections) {
       ThrowsMessage<InputError>(AllOf(HasSubstr(":7:"), HasSubstr("run again"))));
 }
 
-// While a mirror is on, a modal cycle waits or a part is run more than once, no line of ours stands.
+// While a mirror is on, a modal cycle waits or a part is run more than once, no line of ours is inserted.
 TEST(NcLanguages, KnowWhereNoLineMayStand) {
   const NcProgram mirrored = read(din("N1 G00 G90 X+0 *\nN2 G28 X *\nN3 X+5 *\nN4 G28 *\nN5 X+0 *\nN6 Z+5 *\n"), kH);
   EXPECT_EQ(nc_entries(mirrored.steps, on_line(mirrored, 4))[0], NcEntry::kNever);

@@ -1,5 +1,5 @@
-// Parameters, expressions, subprograms, loops and shifts of the origin of RS-274 programs: against LinuxCNC's own interpreter, motion for motion;
-// and corrections of such programs, run by it.
+// Parameters, expressions, subprograms, loops and shifts of the origin of RS-274 programs: against LinuxCNC's own
+// interpreter, motion for motion; and corrections of such programs, run by it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -140,10 +140,10 @@ TEST(NcSubprograms, SayWhatIsKnownAtTheMachineAloneAndPlanTheRest) {
                           AllOf(HasSubstr("line 7: IF"), HasSubstr("planned as if it were false")),
                           AllOf(HasSubstr("line 1"), HasSubstr("#5221: its value is known only at the machine"))));
   EXPECT_NEAR(program.steps[2].duration_s(), 15.0, 1e-9);  // all of its way
-  EXPECT_FALSE(program.steps[3].known[2]);                 // where the probe touched nobody knows
-  EXPECT_TRUE(program.steps[4].known[2]);                  // behind G0 Z10
+  EXPECT_FALSE(program.steps[3].known[2]);                 // the touch point is unknown
+  EXPECT_TRUE(program.steps[4].known[2]);                  // after G0 Z10
   EXPECT_FALSE(program.steps[5].known[2]);                 // at what was probed
-  EXPECT_TRUE(program.steps[6].known[2]);                  // G10 L20: it stands at 0
+  EXPECT_TRUE(program.steps[6].known[2]);                  // G10 L20: it is at 0
   EXPECT_DOUBLE_EQ(program.steps[6].start_m[2], 0.0);
 }
 
@@ -194,7 +194,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistaken{"assignment", "#1 5\nM2\n", {"'=' is expected"}}),
     [](const auto& each) { return std::string(each.param.name); });
 
-// --- corrections, run by LinuxCNC -------------------------------------------------------------------------------------------------
+// --- corrections, run by LinuxCNC
+// -------------------------------------------------------------------------------------------------
 
 /// The operator's own offsets, in inches: G54 and G55 are nowhere near zero.
 const std::map<int, double> kOperator = {{5221, 10.0}, {5222, 20.0}, {5223, -3.0}, {5241, 15.0}, {5242, 22.0}, {5243, -3.1}};
@@ -246,7 +247,7 @@ void expect_shifted_by_the_corrections(const std::string& name, const std::strin
   std::size_t k = 0;
   for (std::size_t i = 0; i < program.steps.size(); ++i) {
     if (!moves(program.steps[i])) continue;
-    // The last look at a place is behind the line of the next change that commands it once more.
+    // The last look at a place comes after the line of the next change that commands it again.
     std::size_t next = i + 1;
     while (next + 1 < program.steps.size() && !moves(program.steps[next])) ++next;
     const double next_um = next < in_force_um.size() ? in_force_um[next] : in_force_um[i];
@@ -289,7 +290,7 @@ TEST(CorrectionsOnLinuxCnc, StandInLoopsAndSubprogramsAtTheRunThatIsMeant) {
       250.0, {{2, 2, 1000.0}, {3, 3, -500.0}, {12, 3, 750.0}, {3, 4, 1250.0}, {18, 2, -1000.0}});
 }
 
-// A G92 of the program's own: the correction is added to it, and the G92 that stays behind is what it would be without.
+// A G92 of the program's own: the correction is added to it, and the G92 that remains is the same as without it.
 TEST(CorrectionsOnLinuxCnc, AreAddedToTheShiftsOfTheProgram) {
   expect_shifted_by_the_corrections("own_g92",
                                     "G21 G90 G54\nG0 X0 Y0 Z5\nG92 X0 Y0 Z0\nG1 Z-1 F100\nX50\nG92.1\nG1 Z3\nX0\nG52 X5 "

@@ -109,7 +109,7 @@ TEST(SmoothCurves, FollowTheDriveItsSquareAndTheirLags) {
   Eigen::VectorXd drive = Eigen::VectorXd::Constant(121, 0.5);
   drive.head(30).setZero();
   const Eigen::MatrixXd curves = smooth_curves(t, drive);
-  // 120 min: cosines of 240 min to 40 min, the mean, and drive and square behind 0, 3 and 12 min
+  // 120 min: cosines of 240 min to 40 min, the mean, and drive and square after 0, 3 and 12 min
   ASSERT_EQ(curves.cols(), 1 + 6 + 6);
   EXPECT_NEAR(curves(120, 6), 1.0, 1e-12);  // three periods of 40 min
   EXPECT_NEAR(curves(20, 6), -1.0, 1e-12);

@@ -42,7 +42,8 @@ void note(const std::string& key, double value) {
 // --- radiation --------------------------------------------------------------------------------------------------
 
 TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
-  // dT/dt = -k T^4 into an ambient of 1 K (1e-10 of it comes back): T = (T0^-3 + 3 k t)^(-1/3), k = 0.9 sigma 0.01 m^2 / 4000 J/K.
+  // dT/dt = -k T^4 into an ambient of 1 K (1e-10 of it comes back): T = (T0^-3 + 3 k t)^(-1/3), k = 0.9 sigma 0.01 m^2 /
+  // 4000 J/K.
   FullSystem system = assemble_heat(cube(), {fixtures::lump(1e5)},
                                     fixtures::balance_of({"{type: radiation, surface: x1, emissivity: 0.9}"}), 400.0);
   fixtures::observe_unknowns(system, {0});
@@ -61,7 +62,8 @@ TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
 }
 
 TEST(Radiation, BetweenAPlateAndAHotNeighbourAsTheClosedForm) {
-  // A neighbour held at 500 degC shines on x0, x1 radiates to the ambient of 20 degC, both with 0.8: T^4 is the mean of the two.
+  // A neighbour held at 500 degC shines on x0, x1 radiates to the ambient of 20 degC, both with 0.8: T^4 is the mean of
+  // the two.
   const mesh::Mesh mesh = cube();
   FullSystem system =
       assemble_heat(mesh, {fixtures::lump(1e7)},
@@ -140,7 +142,8 @@ TEST(Nonlinear, HeatBalancesToRoundingAtAnyTolerance) {
 }
 
 TEST(Nonlinear, SteadyStateSolvesTheLawsOfASmallModel) {
-  // One lump by hand: P(T) of the bearing = h(T) A (T - T_ambient), solved by bisection on the same formulas, outside the solver.
+  // One lump by hand: P(T) of the bearing = h(T) A (T - T_ambient), solved by bisection on the same formulas, outside the
+  // solver.
   const mesh::Mesh mesh = cube();
   const FullSystem system =
       assemble_heat(mesh, {fixtures::lump(1e7)},

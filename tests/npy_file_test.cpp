@@ -63,7 +63,7 @@ TEST(NpyFile, WritesAPartOfAMatrix) {
 }
 
 TEST(NpyFile, ValuesBeginOnAMultipleOf64Bytes) {
-  // NEP 1 wants it; sizes about powers of ten change the header's length.
+  // NEP 1 requires it; sizes about powers of ten change the header's length.
   for (int n : {1, 9, 10, 99, 100, 1000, 100000}) {
     const auto file = written("aligned.npy", Eigen::VectorXd(Eigen::VectorXd::Zero(n)));
     EXPECT_EQ((std::filesystem::file_size(file) - 8u * static_cast<unsigned>(n)) % 64, 0u) << n;

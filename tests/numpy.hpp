@@ -1,5 +1,5 @@
 #pragma once
-// Python with NumPy as an independent reader of what the program writes, where it is installed.
+// Python with NumPy as an independent reader of the program's files, if it is installed.
 
 #include <sys/wait.h>
 
@@ -15,7 +15,7 @@ inline bool has_numpy() {
   return std::system("/usr/bin/python3 -c 'import numpy' > /dev/null 2>&1") == 0;
 }
 
-/// Runs Python text in the folder for temporary files, with numpy as np; returns what it prints, errors too. Nothing: it went well.
+/// Runs Python text in the folder for temporary files, with numpy as np; returns its output and errors. Empty: no error.
 inline std::string run_numpy(const std::string& text) {
   write_file("by_numpy.py", "import numpy as np\n" + text);
   FILE* pipe =

@@ -133,7 +133,8 @@ TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
   EXPECT_EQ(o.observe(judged).drift_um, o.observe(judged).drift_um);
 }
 
-// The drift counts from the start: what the machine was displaced by before, warm ambient or cold, is no part of it, whatever the scale.
+// The drift counts from the start: what the machine was displaced by before, warm ambient or cold, is no part of it,
+// whatever the scale.
 TEST(Observer, LearnsTheScaleOfTheDriftInAWarmAmbientToo) {
   solver::ReducedSystem machine = three_parts();
   machine.outputs.state.col(3) *= 1.06;
@@ -258,7 +259,8 @@ TEST(Observer, AheadItIsTheModelWithItsFactors) {
             o.with_sensors({}).observe(run).drift_um);
 }
 
-// Twice the rows are twice the readings, whose noise is taken for white; without noise the states agree but for the linearised factors.
+// Twice the rows are twice the readings, whose noise is taken for white; without noise the states agree but for the
+// linearised factors.
 TEST(Observer, TwiceAsDenseRowsTellTheSame) {
   const solver::ReducedSystem machine = with_motor(1.2);
   const ObservedRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
@@ -287,7 +289,8 @@ TEST(Observer, FactorsOnFilmsAreOfFirstOrderInTheStep) {
   }
 }
 
-// What the filter has learnt is a machine of its own: without sensors both run alike, but for films that act as heat over a step.
+// What the filter has learnt is a machine of its own: without sensors both run alike, but for films that act as heat over
+// a step.
 TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
   const solver::ReducedSystem machine =
       solver::with_factors(three_parts(), {.source = {1.2, 0.9}, .exchange = {1.3, 0.8}, .output = {1.0, 1.0, 1.0, 1.1}});
@@ -323,8 +326,9 @@ TEST(Observer, RefusesWhatTheModelHasNot) {
   EXPECT_THROW((void)observer_of(three_parts(), {"T1"}).observe(less), InputError);
 }
 
-// Only the motor's heat is uncertain and only the drift's part 1 matters: T1 tells most. By hand, one factor f of deviation s: with
-// sensitivities y and d, what is left is s^2 d^2 r^2 / (s^2 y^2 + r^2) -> the sensor with the largest |y|.
+// Only the motor's heat is uncertain and only the drift's part 1 matters: T1 shows most. By hand, one factor f of
+// deviation s: with sensitivities y and d, what is left is s^2 d^2 r^2 / (s^2 y^2 + r^2) -> the sensor with the largest
+// |y|.
 TEST(Observability, TakesTheSensorThatSeesWhatIsUncertain) {
   solver::ReducedSystem s = three_parts();
   s.sources.resize(1);

@@ -1,4 +1,5 @@
-// An observer whose model is wrong says so: trust falls, the interval grows, the correction fades. One whose model is right is trusted.
+// An observer whose model is wrong says so: trust falls, the interval grows, the correction fades. One whose model is
+// right is trusted.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,8 +35,8 @@ Cyclogram day(std::uint64_t seed) {
   return c;
 }
 
-/// As `validate` teaches one: its model is off by a tenth in each number, three runs of the machine with an indicator that scatters by a micrometre teach it,
-/// and each of them left out in turn gives the interval.
+/// As `validate` teaches one: its model is off by a tenth in each number, three runs of the machine with an indicator
+/// that scatters by a micrometre teach it, and each of them left out in turn gives the interval.
 DeployedPredictor taught() {
   constexpr double kIndicator_um = 1.0;
   std::vector<ObservedRun> training;
@@ -100,7 +101,7 @@ Followed follow(const DeployedPredictor& d, const ObservedRun& run) {
   return f;
 }
 
-// Each power and each film wrong by a factor of 1.3 to 3, either way, twelve of each: a second machine that nobody has told the observer of.
+// Each power and each film wrong by a factor of 1.3 to 3, either way, twelve of each: a second machine unknown to the observer.
 TEST(ObserverTrust, FallsWhereTheModelIsWrongInOneNumber) {
   const DeployedPredictor d = taught();
   int n = 0, n_calm_and_wrong = 0;
@@ -116,7 +117,8 @@ TEST(ObserverTrust, FallsWhereTheModelIsWrongInOneNumber) {
     n_calm_and_wrong += f.n_calm_and_wrong;
     EXPECT_LT(f.rms_left_um, 1.05 * f.rms_before_um) << wrong << " by " << by;
   }
-  // 1.5 % when this was written; 21 % where a sensor is given up and the model never doubted. What is left are the first minutes of heat, which no reading shows yet.
+  // 1.5 % when this was written; 21 % where a sensor is given up and the model never doubted. What is left are the first
+  // minutes of heat, which no reading shows yet.
   EXPECT_LE(n_calm_and_wrong, n / 60) << n;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
-// A machine has one HAL of LinuxCNC, in shared memory: what is linked with it, rs274 as well, dies where another program takes it down meanwhile.
+// A computer has a single HAL of LinuxCNC, in shared memory: programs linked with it, rs274 too, fail when another
+// program shuts it down.
 
 namespace driftwright {
 
-/// In front of a command that uses the HAL: waits for its turn. The lock goes with the command, not with what that leaves running.
+/// Prefix of a command that uses the HAL: waits for its turn. The lock ends with the command, even if it leaves processes
+/// running.
 inline constexpr const char* kOneHal = "flock --close /tmp/driftwright_one_hal ";
 
 }  // namespace driftwright

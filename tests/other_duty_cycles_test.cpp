@@ -42,7 +42,7 @@ Diagnosis diagnosed(const std::string& plain, std::string truth, const char* fri
   return diagnose(*beside.twin, nullptr, beside.runs, how);
 }
 
-/// Heat that comes and goes in some records as nobody could tell.
+/// Heat that comes and goes in some records without any visible cause.
 std::string comes_and_goes(const std::vector<std::string>& records) {
   std::string list;
   for (const std::string& record : records) {
@@ -54,8 +54,8 @@ std::string comes_and_goes(const std::vector<std::string>& records) {
   return list;
 }
 // What could tell the friction's growth, or the windows.
-const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law", "heat_window",
-                                             "heat_source", "run_state",    "exchange_window", "speed_override"};
+const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law",    "heat_window",   "heat_source",
+                                             "run_state",   "exchange_window", "speed_override"};
 
 TEST(OtherDutyCycles, HoldBackWhatIsTrueOfOneAloneWhereMoreIsLeftThanAnythingExplains) {
   // The scenario's own power takes up what the slow days show.
@@ -85,7 +85,7 @@ TEST(OtherDutyCycles, DoNotHoldBackWhatGainsFarMoreInOneThanItLosesInAnother) {
 TEST(OtherDutyCycles, DoNotHoldBackWhatExplainsAll) {
   const std::string plain = of_two_cycles(kTwoNodes);
   const Diagnosis d = diagnosed(plain, plain, kTrue);
-  // Less heat below a speed, or another speed in these records: no reading tells them apart.
+  // Less heat below a speed, or another speed in these records: no reading can distinguish them.
   ASSERT_TRUE(d.verdict == Verdict::kNamed || d.verdict == Verdict::kAmbiguous) << d.reason;
   EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
 }

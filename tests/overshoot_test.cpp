@@ -146,8 +146,9 @@ struct Limits {
   double time;  ///< after the jump, in a run of the library
 };
 class AfterAJump : public ::testing::TestWithParam<Limits> {};
-// One cell wide, the bar is a line of hexahedra in effect, for which h^2 / (6 a) is the sharp bound of textbooks. Tetrahedra and
-// wedges have shorter and longer edges and need three times as much. Quadratic cells resolve more and need less.
+// One cell wide, the bar is a line of hexahedra in effect, for which h^2 / (6 a) is the sharp bound of textbooks.
+// Tetrahedra and wedges have shorter and longer edges and need three times as much. Quadratic cells resolve more and need
+// less.
 INSTANTIATE_TEST_SUITE_P(Shapes, AfterAJump,
                          ::testing::Values(Limits{CellShape::kTet4, 3.0, 16.0}, Limits{CellShape::kHex8, 1.01, 12.0},
                                            Limits{CellShape::kWedge6, 3.0, 16.0}, Limits{CellShape::kTet10, 0.5, 2.0},
@@ -171,7 +172,7 @@ TEST_P(AfterAJump, LongEnoughStepsOfBackwardEulerDoNotUndershoot) {
 }
 
 TEST_P(AfterAJump, UndershootOfTheRunDiesWithinTheTimeHeatNeedsForFewCells) {
-  // The integrator takes steps as short as accuracy asks for, also below h^2 / (6 a): early on, whole nodes of linear cells are
+  // The integrator takes steps as short as accuracy requires, also below h^2 / (6 a): early on, whole nodes of linear cells are
   // colder than the start. What counts is how soon that dies. Alike for all h, and for tight and shipped tolerances.
   const std::vector<double> times = {1, 2, 4, 8, 12, 16, 32};
   for (double h_m : {0.02, 0.005}) {

@@ -55,8 +55,9 @@ PlacementModel model_of(const scenarios::Scenario& scenario, const SpotRules& ru
   return placement_model(scenario, cyclograms, rules, mounted, {}, {});
 }
 
-// A body warms by T = P/G (1 - e^-x), x = t G / C. To ln P it owes T, to ln G: P/G x e^-x - T, to the logarithm of all rates P/G x e^-x. What one
-// thermometer on the head leaves is conditioned by the covariance of all its readings until then.
+// A body warms by T = P/G (1 - e^-x), x = t G / C. To ln P it owes T, to ln G: P/G x e^-x - T, to the logarithm of all
+// rates P/G x e^-x. What one thermometer on the head leaves is conditioned by the covariance of all its readings until
+// then.
 TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
   const scenarios::Scenario scenario = scenario_of(kTwoBodies);
   const PlacementModel model = model_of(scenario);
@@ -203,7 +204,7 @@ TEST(Placement, OfShardsIsThatOfOneRun) {
   EXPECT_EQ(kept.n_worked, n_worked + 1);
 }
 
-// Where one body tells all there is, a thermometer that is mounted there leaves nothing for others to tell.
+// If one body contains all information, a mounted thermometer there leaves nothing for others.
 TEST(Placement, CountsThermometersThatAreThere) {
   const scenarios::Scenario scenario = scenario_of(kTwoBodies);
   const Placement p = *place_thermometers(scenario, {.n = 1, .n_most = 1, .mounted = {"t_head"}}, {});
@@ -236,12 +237,13 @@ TEST(Placement, RefusesWhatTheMachineHasNot) {
   EXPECT_THAT(refused({.n = 1, .train = {"jbo"}}), ThrowsMessage<InputError>(HasSubstr("jbo")));
 }
 
-// The column stands on the floor and carries the head: its foot, its top and what of the head lies on it are out of reach; the rest of the head's bottom is seen from below.
+// The column stands on the floor and carries the head: its foot, its top and what of the head lies on it are out of
+// reach; the rest of the head's bottom is seen from below.
 TEST(Reach, EndsAtTheFloorAndAtJoints) {
   const mesh::Mesh mesh = fixtures::column_and_head();
   const std::vector<bool> reached = mesh::reachable_nodes(mesh, mesh::skin_of(mesh));
   const int n_column =
-      mesh.cells.nodes(mesh.cells_in(mesh.region("head")).front())[0];  // nodes of the head come behind those of the column
+      mesh.cells.nodes(mesh.cells_in(mesh.region("head")).front())[0];  // nodes of the head come after those of the column
   int n_seen = 0, n_hidden = 0;
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const Eigen::Vector3d x = mesh.coords.col(node);
@@ -263,7 +265,8 @@ TEST(Reach, EndsAtTheFloorAndAtJoints) {
   EXPECT_GT(n_hidden, 10);
 }
 
-// Points keep out of what is excluded; their temperatures are those that the written scenario simulates there; one that may sit anywhere tells at least as much.
+// Points keep out of what is excluded; their temperatures are those that the written scenario simulates there; one that
+// may sit anywhere tells at least as much.
 TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const std::filesystem::path folder = fresh_folder("placed");
   fixtures::ColumnAndHead machine;

@@ -11,7 +11,8 @@
 namespace driftwright::diagnosis::plain_regression_test {
 namespace {
 
-/// Ten hours of a cyclogram whose growth is 20 um at 2000 rpm behind a lag of 20 min, beside a thermometer of the same course, 0.1 um noise.
+/// Ten hours of a cyclogram whose growth is 20 um at 2000 rpm after a lag of 20 min, beside a thermometer of the same
+/// course, 0.1 um noise.
 MeasuredRun growing(std::uint64_t seed) {
   MeasuredRun run;
   run.name = "run";
@@ -39,7 +40,8 @@ double rms_behind(const Prediction& p, const MeasuredRun& run, std::size_t chann
   return std::sqrt(miss.tail(miss.size() - from).squaredNorm() / static_cast<double>(miss.size() - from));
 }
 
-// 0.04 um are left without noise; with 0.1 um of it three speeds tell n and n² poorly apart, and the fourth is missed by 0.45 um of some 20.
+// 0.04 um are left without noise; with 0.1 um of it three speeds tell n and n² poorly apart, and the fourth is missed by
+// 0.45 um of some 20.
 TEST(PlainRegression, PredictsWhatFollowsTheDriveOnRowsItHasNotSeen) {
   const MeasuredRun run = growing(1);
   MeasuredRun fitted = run;
@@ -59,7 +61,7 @@ TEST(PlainRegression, DoesNotLookAtReadingsThatAreKeptOut) {
 
 TEST(PlainRegression, TakesThermometersWhereTheyAreAskedFor) {
   MeasuredRun run = growing(3);
-  for (Eigen::Index i = 0; i <= 600; ++i) {  // what no drive tells
+  for (Eigen::Index i = 0; i <= 600; ++i) {  // unrelated to the drive
     const double wave = std::sin(static_cast<double>(i) / 60.0);
     run.channels[0].value[i] += 8e-6 * wave;
     run.channels[1].value[i] += 2.0 * wave;

@@ -45,7 +45,8 @@ TEST(PlannedMotion, PassesFromLineToLineOnOneStraightLine) {
   EXPECT_NEAR(seconds(pieces + "M2\n"), seconds("G1 X200 F6000\nM2\n"), 1e-9);
 }
 
-// At high speed the planner sees 50 pieces of 0.02 mm alone, 1 mm, in which it must be able to stop: v = sqrt(2 a 1 mm) = 63 mm/s, and not 1 m/s.
+// At high speed the planner sees 50 pieces of 0.02 mm alone, 1 mm, in which it must be able to stop: v = sqrt(2 a 1 mm) =
+// 63 mm/s, and not 1 m/s.
 TEST(PlannedMotion, LooksAheadByFiftyPieces) {
   std::string pieces;
   for (int i = 1; i <= 2000; ++i) pieces += "G1 X" + std::to_string(0.02 * i) + " F60000\n";
@@ -73,7 +74,7 @@ TEST(PlannedMotion, RoundsACornerWithinItsTolerance) {
 
 TEST(PlannedMotion, GoesRoundAsFastAsTheAxesCan) {
   const double v = std::sqrt(std::sqrt(0.75) * 2.0 * 0.01),
-               length = 2.0 * kPi * 0.01;  // 0.132 m/s of 1 m/s wanted, a / 2 along the path
+               length = 2.0 * kPi * 0.01;  // 0.132 m/s of the programmed 1 m/s, a / 2 along the path
   EXPECT_NEAR(seconds("G2 X0 Y0 I10 F60000\nM2\n"), length / v + v / 1.0, kRounding);
 }
 

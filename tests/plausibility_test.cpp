@@ -1,4 +1,5 @@
-// What no machine has or does is said, with the number and the usual range, and refused with --strict; shipped scenarios hold nothing of the kind.
+// What no machine has or does is said, with the number and the usual range, and refused with --strict; shipped scenarios
+// hold nothing of the kind.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -103,7 +104,8 @@ TEST(Plausibility, RunsWarnOfWhatCameOutAndStrictLeavesNoFolder) {
 TEST(Plausibility, HeatBySourceAndPathStandsOnTheTerminal) {
   const std::string file = scenario("heat");
   const CommandOutcome outcome = run_program("simulate " + file + " -o " + (fs::path(file).parent_path() / "out").string());
-  // 150 W go in; at the end of 120 min, some six time constants of the slower body (24.6 kJ/K over 5 W/K), all but a few W leave by the link.
+  // 150 W go in; at the end of 120 min, some six time constants of the slower body (24.6 kJ/K over 5 W/K), all but a few
+  // W leave by the link.
   EXPECT_THAT(outcome.output, ContainsRegex("heat_source spindle +source +150.0"));
   EXPECT_THAT(outcome.output, ContainsRegex("link housing - ambient +ambient +- +[0-9]"));
 }

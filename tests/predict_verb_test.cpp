@@ -1,5 +1,5 @@
-// `driftwright predict` and `simulate` as a user runs them: the same model, named cyclograms and CSV files, warm starts, and the
-// figures of ISO 230-3 in what they write.
+// `driftwright predict` and `simulate` as a user runs them: the same model, named cyclograms and CSV files, warm starts,
+// and the figures of ISO 230-3 in what they write.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -184,8 +184,8 @@ TEST(WarmStart, APauseIsTimeAtRest) {
   expect_continues(day, warm, 105 * 60.0, 2e-4);
 }
 
-// Friction that follows the oil, a chiller that switches and an ambient that warms by 1.5 K: the shipped motor spindle, within what the
-// integrator is asked for (1e-3 K, 2.9 um/K; switches may come a step apart).
+// Friction that follows the oil, a chiller that switches and an ambient that warms by 1.5 K: the shipped motor spindle,
+// within what the integrator's tolerance (1e-3 K, 2.9 um/K; switches may come a step apart).
 TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
   const std::string scenario = write_file(
       "spindle.yaml", with(read_text("scenarios/lumped_spindle.yaml"), "  warm_up:",
@@ -198,7 +198,8 @@ TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
   expect_continues(both, second, 3600.0, 0.05);
 }
 
-// The same morning in an ambient that is 5 K warmer: a linear machine that starts as warm as its ambient is 20 um further all along.
+// The same morning in an ambient that is 5 K warmer: a linear machine that starts as warm as its ambient is 20 um further
+// all along.
 TEST(WarmStart, FollowsTheAmbientOfTheRecord) {
   const std::string scenario = write_file("exact.yaml", exact_head());
   const auto morning = run_verb("ambient_cold", "simulate " + scenario + " --cyclogram morning");

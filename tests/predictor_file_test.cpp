@@ -109,7 +109,7 @@ TEST(PredictorFile, WhatWasMeasuredBeforeComesBack) {
   EXPECT_NEAR(before[0], 1.0 - 0.9 * 100.0 / 7000.0, 1e-12);  // at 100 s, where the first run has no value
   for (std::size_t i = 0; i < before.size(); ++i)
     EXPECT_TRUE(before[i] == after[i] || (std::isnan(before[i]) && std::isnan(after[i])));
-  EXPECT_TRUE(std::isnan(before.back()));  // behind both
+  EXPECT_TRUE(std::isnan(before.back()));  // after both
 }
 
 TEST(PredictorFile, EarlierRunsThatAreNoneAreRefused) {
@@ -196,7 +196,7 @@ TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
 TEST(PredictorFile, WhatIsNotWhatWasJudgedIsRefused) {
   Json j = predictor_json(formula(false), {}, {"1", "a test"});
   const auto read = [](const Json& file) { return read_predictor(driftwright::write_file("changed.json", file.dump(1))); };
-  EXPECT_NO_THROW((void)read(j));  // the layout is nobody's business
+  EXPECT_NO_THROW((void)read(j));  // the layout does not matter
   const auto refused = [&](const std::function<void(Json&)>& change, const char* word) {
     Json other = j;
     change(other);

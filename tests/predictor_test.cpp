@@ -1,4 +1,4 @@
-// Every predictor says of a row what it says of the whole run, and looks at nothing that lies behind it.
+// Every predictor gives for a row the same as for the whole run, and uses no row after it.
 
 #include "compensation/predictors/predictor.hpp"
 
@@ -68,7 +68,7 @@ TEST(Predictor, AFormulaRowByRowIsTheFormulaOfTheWholeRecord) {
   }
 }
 
-// A lag of 10 min behind a speed of 0.1 rad/s: c (1 - exp(-t / lag)) from standstill.
+// A lag of 10 min after a speed of 0.1 rad/s: c (1 - exp(-t / lag)) from standstill.
 TEST(Predictor, ALagOfSpeedIsItsClosedForm) {
   const FormulaPredictor p({.kind = "lag",
                             .target = "z",

@@ -64,7 +64,7 @@ TEST(HeldOutRmse, CountsCompleteRowsAlone) {
               1e-10);
 }
 
-// An ambient thermometer moves in one run only: without that run it tells nothing, and the others must not be spoilt by a slope
+// An ambient thermometer moves in one run only: without that run it shows nothing, and the others must not be spoilt by a slope
 // made of rounding.
 TEST(HeldOutRmse, OfASensorThatStandsStillInTheOtherRunsIsThatOfTheOthers) {
   for (const double stands_at : {20.0, 21.7, 19.999}) {

@@ -79,7 +79,7 @@ TEST_F(ProfileInterval, OfAStepInAReadingReachesFromRowToRow) {
   const Knob& time = h[0].knobs[1];
   const Interval x = profile_interval(*fitter_, h, fit, 0, 1);
   const double low_s = time.value(x.low), high_s = time.value(x.high);
-  EXPECT_LE(low_s, kShiftAt_s - 60.0);  // between the row before it and its own, no reading tells
+  EXPECT_LE(low_s, kShiftAt_s - 60.0);  // between the row before it and its own, no reading can say
   EXPECT_GE(high_s, kShiftAt_s);
   EXPECT_LE(high_s - low_s, 4.0 * 60.0);  // a step of eight times the noise is not missed by a row
 }

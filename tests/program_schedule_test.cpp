@@ -59,9 +59,10 @@ std::map<char, double> words_of(const std::string& line) {
   return words;
 }
 
-/// Follows a corrected program as a control does: an offset moves nothing, an axis takes it when it is commanded next. Blocks take the
-/// time that they take in `program`, lines of our own none; divided blocks advance to the share of their way. Returns the largest
-/// |drift - correction| of each axis over samples of each block; written with nothing of the planner.
+/// Follows a corrected program as a control does: an offset moves nothing, an axis takes it when it is commanded next.
+/// Blocks take the time that they take in `program`, lines of our own none; divided blocks advance to the share of their
+/// way. Returns the largest |drift - correction| of each axis over samples of each block; written with nothing of the
+/// planner.
 std::array<double, 3> follow(const std::vector<std::string>& original, const std::vector<std::string>& corrected,
                              const NcProgram& program, const std::vector<double>& time_s,
                              const std::vector<ProgramAxis>& axes) {
@@ -180,7 +181,8 @@ TEST(ProgramSchedule, KeepsTheToleranceInTheProgramAsAControlRunsIt) {
     const std::array<double, 3> worst = follow(lines_of(text), lines_of(c.text), program, time_s, axes);
     n_kept += static_cast<int>(c.plan.long_stretches.empty());
     for (std::size_t a = 0; a < axes.size(); ++a) {
-      // A rapid of seconds may hold a sample of the drift, whose bend the way between two corrections does not follow: nanometres.
+      // A rapid of seconds may hold a sample of the drift, whose bend the way between two corrections does not follow:
+      // nanometres.
       double told = axes[a].tolerance_um;  // or what the plan says of a canned cycle that is too long for this drift
       for (const LongStretch& s : c.plan.long_stretches) {
         if (s.axis == a) told = std::max(told, std::abs(s.residual_um));
@@ -225,7 +227,8 @@ TEST(ProgramSchedule, LeavesEveryLineAsItWas) {
   EXPECT_GT(ours, 15);
 }
 
-// Passes to and fro with rapids between. X is named by every fourth block as a rapid, and 25 um take one change with much freedom.
+// Passes to and fro with rapids between. X is named by every fourth block as a rapid, and 25 um take one change with much
+// freedom.
 TEST(ProgramSchedule, PrefersARapidThatNamesTheAxis) {
   std::string text = "G21\nG0 X0 Y0 Z5\n";
   for (int i = 0; i < 10; ++i) text += "G1 X60 F60\nG0 Y" + std::to_string(i) + "\nG1 X0\nG0 X1 Z5\n";
@@ -295,7 +298,8 @@ TEST(ProgramSchedule, BeginsAnOperationAtAToolChange) {
   EXPECT_TRUE(plan.changes.empty());
 }
 
-// Z takes its 8 um at the end of the pass that names it first, and loses them at the machine's zero: the pass behind that has none.
+// Z takes its 8 um at the end of the pass that names it first, and loses them at the machine's zero: the pass after that
+// has none.
 TEST(ProgramSchedule, CountsACorrectionFromTheBlockThatCommandsTheAxis) {
   const std::string text = "G21\nG0 X0\nG1 X200 F20\nG1 X0 Z1\nG1 X200\nG28\nG1 X50 F20\nG0 Z5\nG1 X9\nM2\n";
   const NcProgram program = read(text);
@@ -347,7 +351,7 @@ TEST(ProgramSchedule, RefusesAnAxisThatNoBlockCommandsInG90) {
   }
 }
 
-// A drift of 30 um from the start: the axis stands 30 um too far, so its offset goes back; against the axis, forward.
+// A drift of 30 um from the start: the axis is 30 um too far, so its offset goes back; against the axis, forward.
 TEST(ProgramSchedule, MovesTheAxisAgainstTheError) {
   const NcProgram program = read("G0 X1 Y1 Z1\nM2\n");
   const std::vector<double> time_s = {0, program.duration_s()};

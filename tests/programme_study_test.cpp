@@ -1,4 +1,4 @@
-// The paper's programme on the shipped scenario: what each predictor must reach, and what a user is told.
+// The paper's programme on the shipped scenario: what each predictor must reach, and what the user sees.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -175,7 +175,7 @@ TEST(ProgrammeMistakes, EndWithTwoAndWriteNothing) {
     EXPECT_NE(text.find(what), std::string::npos) << what;
     return text.replace(text.find(what), what.size(), with);
   };
-  expect("scenarios/c_frame.yaml", {"the key `validation` or `programme` in the scenario", "docs/how-to/prediction.md"});
+  expect("scenarios/c_frame.yaml", {"must know the target", "--target CHANNEL", "nose_y, nose_z_x-200"});
   expect(write_file("p1.yaml", lumped + replaced(kProgramme, "heating", "heat")), {"p1.yaml:", "heating", "missing"});
   expect(write_file("p2.yaml", lumped + replaced(kProgramme, "[4000 rpm, 8000 rpm, 12000 rpm]", "[0 rpm]")),
          {"p2.yaml:", "this must be a list of quantities in rpm, at least 3"});

@@ -72,7 +72,8 @@ TEST(PulseInjector, OneCycleIsFourCountsAtX4AndOneAtX1) {
   }
 }
 
-// 40 quarters pass 00 ten times, and the row before them is the eleventh: of 25 periods wanted only eleven find a low row.
+// 40 quarters pass 00 ten times, and the row before them is the eleventh: of the 25 required periods only eleven find a
+// low row.
 TEST(PulseInjector, InsertsNoMoreThanOnePeriodPerLowRow) {
   PulseInjector injector;
   injector.set_target(100);
@@ -106,7 +107,7 @@ TEST(PulseInjector, TakesPeriodsBackWhenTheTargetFalls) {
   EXPECT_EQ(injector.inserted(), 8);
 }
 
-// A quarter: behind the row at 00 the output makes one legal step, and stays that far ahead.
+// A quarter: after the row at 00 the output makes one legal step, and stays that far ahead.
 TEST(PulseInjector, AQuarterShiftsThePhaseForGood) {
   PulseInjector injector({.quarters = 1});
   injector.set_target(1);

@@ -57,7 +57,7 @@ TEST(SensorBias, FadesFromTheStartOfEachCyclogram) {
              1e-12);
 }
 
-// The drive of 150 s at 2000, 450 s at 1000, then rest, behind lags of 1 and 10 min; the ambient grows by 0.01 K/s.
+// The drive of 150 s at 2000, 450 s at 1000, then rest, after lags of 1 and 10 min; the ambient grows by 0.01 K/s.
 TEST(Learned, FollowsTheSpeedBehindItsTimeConstants) {
   const Eigen::MatrixXd t =
       told(std::vector<std::string>{"{type: learned, displacement: z, follows: speed, at_speed: 2000 rpm, exponent: 2, "
@@ -119,7 +119,7 @@ TEST(Learned, RefusesWhatDoesNotGoTogether) {
 TEST(SensorPlace, ReadsAShareOfTheAirWhileTheSpindleTurns) {
   const Eigen::MatrixXd t = told(
       std::vector<std::string>{"{type: sensor_place, sensor: a, body: ambient, share: 0.2, acts: while_spindle_turns}"});
-  // the ambient grows from 0 to 9 K in 900 s; the spindle stands from 600 s on
+  // the ambient grows from 0 to 9 K in 900 s; the spindle is at rest from 600 s on
   expect_row(t, 0, {5 - 1.0, 5 + 0.2 * (0.6 - 5), 8 + 0.2 * (1.5 - 8), 2 + 0.2 * (3 - 2), 3, 7}, 1e-12);
 }
 
@@ -178,7 +178,7 @@ TEST(Centrifugal, FollowsTheSquareOfSpeedAtOnce) {
 TEST(SensorBias, MayComeAndGoWithTheSpindle) {
   const Eigen::MatrixXd m =
       told(std::vector<std::string>{"{type: sensor_bias, sensor: a, bias: 0.5 K, errs: while_spindle_turns}"});
-  expect_row(m, kA, {5.5, 5.5, 8.5, 2.5, 3, 7}, 1e-12);  // it stands from 600 s on
+  expect_row(m, kA, {5.5, 5.5, 8.5, 2.5, 3, 7}, 1e-12);  // it is at rest from 600 s on
   EXPECT_EQ(m.row(kB), truth().row(kB));
 }
 
@@ -206,9 +206,9 @@ TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
   expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18},
              1e-12);  // held from row to row
   expect_row(z_um("column: bed, gain: 0.5"), 0, {12.5, 12.5, 12.5, 20, 20, 20},
-             1e-12);  // what the column says, as it stands
+             1e-12);  // the column's value, unchanged
   expect_row(z_um("column: feed_x, gain: 0.002"), 0, {0, 0, 0, 2.4, 2.4, 2.4}, 1e-12);
-  // The ambient rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
+  // The ambient rises by 0.01 K/s from its start on: after a lag of 100 s it is 0.01 (t - 100 (1 - exp(-t/100)))
   const auto behind = [](double t_s) { return 0.01 * (t_s - 100.0 * (1.0 - std::exp(-t_s / 100.0))); };
   expect_row(z_um("body: ambient, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
              {0, behind(60), behind(150), behind(300), behind(600), behind(900)}, 1e-9);
@@ -245,7 +245,7 @@ TEST(ScaleExpansion, ScalesGrowthButNoShiftOfTheMount) {
 }
 
 TEST(ScaleExpansion, LagsBehindALinearSignal) {
-  // 1 urad a sample: 1 to 2 urad in 60 s behind 60 s: y = x - slope lag (1 - exp(-t / lag)).
+  // 1 urad a sample: 1 to 2 urad in 60 s after a lag of 60 s: y = x - slope lag (1 - exp(-t / lag)).
   const Eigen::MatrixXd m = told(std::vector<std::string>{"{type: scale_expansion, displacement: tilt, lag: 1 min}"});
   EXPECT_NEAR(1e6 * m(kTilt, 0), 1.0, 1e-12);
   EXPECT_NEAR(1e6 * m(kTilt, 1), 2.0 - (1.0 - std::exp(-1.0)), 1e-12);

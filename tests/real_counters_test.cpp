@@ -40,7 +40,8 @@ std::string last_match(const std::string& text, const std::string& pattern) {
   return last;
 }
 
-/// What a HAL says that runs play.hal in a folder. A machine has one HAL at a time: where another program has it, waits two minutes.
+/// What a HAL says that runs play.hal in a folder. A machine has one HAL at a time: where another program has it, waits
+/// two minutes.
 std::string said_by_hal(const std::filesystem::path& folder) {
   std::filesystem::permissions(folder, std::filesystem::perms::all);
   // As root, LinuxCNC runs under a user of its own, which must be able to write its pipe.
@@ -56,7 +57,7 @@ std::string said_by_hal(const std::filesystem::path& folder) {
   return text;
 }
 
-/// Runs a HAL file of the filter; rawcounts behind the last row.
+/// Runs a HAL file of the filter; rawcounts after the last row.
 std::string hal_count(const std::filesystem::path& folder, int n_rows) {
   const std::string text = said_by_hal(folder);
   char last_row[16];
@@ -101,8 +102,9 @@ TEST(RealCounters, LinuxCncsEncoderAgreesFromAnyStateOnAndClocked) {
   EXPECT_EQ(hal_count(folder, static_cast<int>(f.rows.size() / 4) + 1), std::to_string(2 + 59 + 20));
 }
 
-// As a filter inside a running control simulation: an encoder turns there and back, the sampled lines go through the filter and on to a
-// second counter, which must see 2 cycles less. Rows of 1 ms; edges come every 12 ms and more, so there is room.
+// As a filter inside a running control simulation: an encoder turns there and back, the sampled lines go through the
+// filter and on to a second counter, which must see 2 cycles less. Rows of 1 ms; edges come every 12 ms and more, so
+// there is room.
 TEST(RealCounters, SitsInARunningHal) {
   if (!has("halrun")) GTEST_SKIP() << "no halrun here; Debian's linuxcnc-uspace has it";
   const auto folder = fresh_folder("live");
@@ -130,7 +132,7 @@ TEST(RealCounters, SitsInARunningHal) {
   EXPECT_EQ(last_match(text, R"((-?\d+)\s+encoder\.1\.rawcounts)"), std::to_string(encoder - 8)) << text;
 }
 
-/// sigrok tells of a count when the next edge comes, so the last step is missing from what it says.
+/// sigrok reports a count when the next edge comes, so the last step is missing from its output.
 std::string sigrok_count(const std::filesystem::path& vcd, const std::string& side) {
   const std::string text = said_by("sigrok-cli -I vcd -i " + vcd.string() + " -P graycode:d0=a_" + side + ":d1=b_" + side +
                                    " -A graycode=count --protocol-decoder-samplenum");

@@ -30,7 +30,8 @@ struct Stretch {
   double hours, speed_rpm;
 };
 
-/// One row a minute from 100 s on. A body of one hour's time constant goes to 10 K at 1000 rpm, and with it a drift of 2 um/K: exact exponentials.
+/// One row a minute from 100 s on. A body of one hour's time constant goes to 10 K at 1000 rpm, and with it a drift of 2
+/// um/K: exact exponentials.
 Record record_of(const std::vector<Stretch>& stretches) {
   Record r{.source = "week.csv",
            .time_s = {},

@@ -90,7 +90,8 @@ TEST(TooFewSamples, AreNamedByEveryModel) {
               ThrowsMessage<InputError>(HasSubstr("complete rows")));
 }
 
-// Six sensors that rise by 1 to 8 K at a speed, by half as much at another; in one record two of them hold each other's readings.
+// Six sensors that rise by 1 to 8 K at a speed, by half as much at another; in one record two of them hold each other's
+// readings.
 TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
   const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
   const std::vector<double> rise_K = {1.0, 1.6, 2.5, 4.0, 6.0, 8.0};
@@ -113,7 +114,7 @@ TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
   EXPECT_THAT(named({record("one", 1.0, false), record("two", 0.5, false), record("three", 0.7, false)}), IsEmpty());
   EXPECT_THAT(named({record("one", 1.0, false), record("two", 0.5, true), record("three", 0.7, false)}),
               ElementsAre(HasSubstr("b and e look exchanged in two")));
-  EXPECT_EQ(named({record("one", 1.0, false), record("two", 0.5, true)}).size(), 1u);  // which of two cannot be told
+  EXPECT_EQ(named({record("one", 1.0, false), record("two", 0.5, true)}).size(), 1u);  // which of the two is unknown
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Recorded columns that drive the machine, and displacements that follow one body more: simulated, written into records, found in them.
+// Recorded columns that drive the machine, and displacements that follow one body more: simulated, written into records,
+// found in them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -173,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
                "displacement_path", "nose", "sensitivity", 0.5, "column: stove_degC"}),
     [](const auto& one) { return std::string(one.param.name); });
 
-// Two wings alike in everything, thermometers beside them: that the sun heats a wing the readings say, and nobody can say of which.
+// Two wings alike in everything, thermometers beside them: the readings show that the sun heats a wing, but not which one.
 TEST(RecordedColumns, ThatHeatOneOfTwoLikeBodiesAreNamedAndTheirPlaceIsLeftOpen) {
   const std::string wings =
       "{type: node, node: left, capacity: 9 kJ/K}\n  - {type: node, node: right, capacity: 9 kJ/K}\n"
@@ -204,8 +205,8 @@ TEST(RecordedColumns, AreNoCauseWhereNothingIsWrong) {
 }
 
 TEST(RecordedColumns, OfASimulatedRecordDriveItAgain) {
-  // heater behind a lag, stove and lid: the record carries the columns, and as a cyclogram gives the same temperatures, but for what pieces of
-  // the lag average: 75 s there, rows of 60 s here.
+  // heater after a lag, stove and lid: the record carries the columns, and as a cyclogram gives the same temperatures,
+  // but for what pieces of the lag average: 75 s there, rows of 60 s here.
   const std::string entries =
       "{type: recorded_drive, node: column, column: heater, gain: 1, lag: 5 min}\n  - {type: recorded_drive, node: bed, "
       "column: stove_degC, conductance: 2 W/K}\n  - {type: recorded_drive, node: head, column: lid_1, opening: 3}";

@@ -73,7 +73,7 @@ TEST(RecordedRun, KnowsTheAmbientFromAmbientFromASensorOnItOrFromTheMachine) {
   const RecordedRun without = run_of(record(), &machine, {}, Reading::kStrict);
   EXPECT_FALSE(without.has_ambient());
   EXPECT_EQ(without.ambient.value, machine.ambient.value);
-  // nobody knows it: no knot, and nobody may ask
+  // it is unknown: it has no knot and must not be read
   const RecordedRun unknown = run_of(record(), nullptr, {}, Reading::kStrict);
   EXPECT_THAT(unknown.ambient.time_s, IsEmpty());
   EXPECT_THROW((void)unknown.ambient.at(0.0), std::logic_error);

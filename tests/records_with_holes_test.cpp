@@ -1,4 +1,5 @@
-// Records with holes, rows without a speed and a logger's rarer rows: what they hide is no cause, and what lasts is found on both sides.
+// Records with holes, rows without a speed and a logger's rarer rows: what they hide is no cause, and what lasts is found
+// on both sides.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +26,8 @@ std::string with_hole(const std::string& record, int first, int last, const std:
   return write_file(name, kept);
 }
 
-// The rows on both sides of a hole count, and what the machine did meanwhile is no cause: a change of speed, or a stop of which nothing is recorded.
+// The rows on both sides of a hole count, and what the machine did meanwhile is no cause: a change of speed, or a stop of
+// which nothing is recorded.
 TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
   std::string truth = kTwoNodes;
   const std::string monday = "monday: [[60 min, 600 rpm], [60 min, 1900 rpm], ";
@@ -33,7 +35,7 @@ TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
                 "monday: [[60 min, 600 rpm], [15 min, 1900 rpm], [20 min, 0 rpm], [25 min, 1900 rpm], ");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
   for (const auto& [first, last] :
-       {std::pair{51, 69}, {73, 97}}) {  // speed changes in the first one; 1900 rpm before and behind the second one
+       {std::pair{51, 69}, {73, 97}}) {  // speed changes in the first one; 1900 rpm before and after the second one
     const Beside beside(write_file("plain.yaml", kTwoNodes),
                         {with_hole(records[0], first, last, "gap_monday.csv"), records[1]});
     ASSERT_THAT(beside.runs[0].holes, SizeIs(1));
@@ -61,7 +63,8 @@ TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
   EXPECT_TRUE(d.causes[0].is_written) << d.causes[0].why_not_written;  // what the holes leave open does not speak against it
 }
 
-// What is read for an hour and a half behind a hole tells of what drove the machine in it: such rows judge nothing, and where there are no others nothing is said of a gain.
+// What is read for an hour and a half behind a hole tells of what drove the machine in it: such rows judge nothing, and
+// where there are no others nothing is said of a gain.
 TEST(ARecordWithAHole, LeavesNothingToJudgeByWhereItIsJustBeforeAllThatIsKeptOut) {
   const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
   for (const auto& [first, last, is_open] : {std::tuple{150, 195, true}, {5, 12, false}}) {
@@ -91,7 +94,7 @@ std::string without_speed(const std::string& record, int first, int last, const 
   return write_file(name, kept);
 }
 
-// What is read while nobody knows the speed says nothing: within a record, at its beginning and at its end.
+// Readings with an unknown speed say nothing: within a record, at its beginning and at its end.
 TEST(ARecordWithAHole, IsNotReadWhereTheSpeedIsMissing) {
   const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
   for (const auto& [first, last] : {std::pair{61, 130}, {0, 79}, {226, 300}}) {

@@ -77,7 +77,7 @@ double missed_K(const Both& of) {
                       of.machine.system.outputs);
 }
 
-// Two like bodies, of which a law joins one alone: nothing that they were asked for together tells them apart.
+// Two like bodies, of which a law joins one alone: no common output distinguishes them.
 TEST(ANetworkOfAFewNodes, IsNotMadeSmaller) {
   const auto path = fresh_folder("reduced_network") / "network.yaml";
   std::ofstream(path) << R"(name: network
@@ -172,8 +172,9 @@ TEST(Reducible, MakesOfRadiationTheFilmThatIsExactAtOneTemperature) {
 }
 
 TEST(ReducedMachine, RadiatesByTheMeanTemperatureOfItsSurface) {
-  // The film is exact at the mean T. Where a place is d warmer than that, σ ε (T² + T_s²) (T + T_s) is off by 3 d / (2 T) of itself:
-  // head and column are 10 K apart here, at 305 K, so by up to 2.5 % of a rise of some 15 K that radiation decides a third of.
+  // The film is exact at the mean T. Where a place is d warmer than that, σ ε (T² + T_s²) (T + T_s) is off by 3 d / (2 T)
+  // of itself: head and column are 10 K apart here, at 305 K, so by up to 2.5 % of a rise of some 15 K that radiation
+  // decides a third of.
   const ColumnAndHead dark{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, ColumnAndHead::kContact, kDark},
                            .cyclograms = "{cycle: [[20 h, 1000 rpm]]}",
                            .solver = "{output_interval: 1 h, fields_format: none, model: reduced}"};
@@ -192,8 +193,8 @@ TEST(ReducedMachine, RadiatesByTheMeanTemperatureOfItsSurface) {
 }
 
 TEST(ReducedMachine, TakesMaterialsAsTheyAreAtWork) {
-  // Conductivity and capacity of the head change by a fifth in 50 K. Frozen where half the power leads to they are a few per cent off
-  // on the way to its full power; frozen at the reference temperature they miss by more.
+  // Conductivity and capacity of the head change by a fifth in 50 K. Frozen where half the power leads to they are a few
+  // per cent off on the way to its full power; frozen at the reference temperature they miss by more.
   const std::string curves =
       "{column: cast_iron_gjl250, head: {density: 7200 kg/m^3, conductivity: [[20 degC, 50 W/(m K)], [70 degC, 40 W/(m "
       "K)]], "

@@ -1,4 +1,5 @@
-// The program on reduced models as a user runs it: the second run, against the full model, in sweeps, with no place to keep them.
+// The program on reduced models as a user runs it: the second run, against the full model, in sweeps, with no place to
+// keep them.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

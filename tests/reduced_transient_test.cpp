@@ -61,7 +61,7 @@ constexpr const char* kLayers = "{type: stratification, gradient: 2 K/m, level: 
 struct Case {
   const char* name;
   std::vector<std::string> effects;
-  bool is_live;  ///< some law looks at temperatures or a thermostat switches
+  bool is_live;  ///< some law depends on temperatures, or a thermostat switches
 };
 
 class InACompleteBasis : public ::testing::TestWithParam<Case> {};

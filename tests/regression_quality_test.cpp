@@ -1,4 +1,5 @@
-// Standard errors, VIF, Durbin-Watson and R^2: certified values, hand arithmetic, and extended precision where sensors are alike.
+// Standard errors, VIF, Durbin-Watson and R^2: certified values, hand arithmetic, and extended precision where sensors
+// are alike.
 
 #include "compensation/predictors/regression_quality.hpp"
 
@@ -112,8 +113,8 @@ std::vector<Record> alike(double apart_K, std::uint64_t seed) {
 
 class Alike : public ::testing::TestWithParam<double> {};
 
-// Rounding of readings of 20 degC to rises of 5 K, times the condition number (root of the VIF), is 1e-15 * 4 * 300 at the worst
-// here: coefficients are 1e-10 within a hundredfold reserve, predictions far better.
+// Rounding of readings of 20 degC to rises of 5 K, times the condition number (root of the VIF), is 1e-15 * 4 * 300 at
+// the worst here: coefficients are 1e-10 within a hundredfold reserve, predictions far better.
 TEST_P(Alike, RegressionByQRAgreesWithExtendedPrecision) {
   const std::vector<Record> records = alike(GetParam(), 11);
   const std::vector<std::string> inputs = fixtures::sensor_names(5);
@@ -209,7 +210,8 @@ TEST(RegressionQuality, ReproducesLongleysCertifiedDeviations) {
     EXPECT_NEAR(q.standard_error[j] / certified[j], 1.0, 1e-10) << kLongleyInputs[j];
   EXPECT_NEAR(q.r_squared, 0.995479004577296, 1e-12);
   EXPECT_GT(q.variance_inflation[1], 1000.0);
-  // As every statistics package has them to their five digits: Durbin-Watson 2.559488, VIF 135.53, 1788.51, 33.62, 3.59, 399.15, 758.98.
+  // As every statistics package has them to their five digits: Durbin-Watson 2.559488, VIF 135.53, 1788.51, 33.62, 3.59,
+  // 399.15, 758.98.
   EXPECT_NEAR(q.durbin_watson, 2.559488, 1e-6);
   const std::vector<double> inflation = {135.53, 1788.51, 33.62, 3.59, 399.15, 758.98};
   for (std::size_t j = 0; j < inflation.size(); ++j)

@@ -1,4 +1,5 @@
-// What is named where several claims would do: the kind whose odds are sure, though its place be open; and nothing where kinds share the odds.
+// What is named where several claims would do: the kind whose odds are sure, though its place be open; and nothing where
+// kinds share the odds.
 
 #include "diagnosis/rivals.hpp"
 

@@ -1,4 +1,4 @@
-// Which rows of a stream are taken, and what time they stand at: rows that are late, doubled, swapped, missing, and clocks that are set.
+// Which rows of a stream are taken, and their times: rows that are late, doubled, swapped, missing, and clocks that are set.
 
 #include "follow/row_guard.hpp"
 

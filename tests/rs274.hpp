@@ -1,5 +1,5 @@
 #pragma once
-// LinuxCNC's own interpreter, stand-alone (Debian package linuxcnc-uspace), as the judge of what programs do.
+// LinuxCNC's own interpreter, stand-alone (Debian package linuxcnc-uspace), to check what programs do.
 
 #include <array>
 #include <cstdio>
@@ -23,19 +23,20 @@ inline constexpr const char* kNoRs274 = "no rs274 here; Debian's linuxcnc-uspace
 
 struct Rs274Motion {
   char kind = 'L';                               ///< R rapid, L line, A arc, P probe
-  std::array<double, 3> program_mm = {0, 0, 0};  ///< where it ends, in the coordinates of the program
+  std::array<double, 3> program_mm = {0, 0, 0};  ///< end point, in the coordinates of the program
   std::array<double, 3> machine_mm = {0, 0, 0};  ///< the same with the work offset and the shift of G52 and G92
-  double printed_mm = 6e-5;                      ///< to which it is known: four decimals of the unit in force
+  double printed_mm = 6e-5;                      ///< its accuracy: four decimals of the unit in force
 };
 
 struct Rs274Run {
-  bool accepted = false;  ///< exit code 0, and it came to the end
+  bool accepted = false;  ///< exit code 0, and it reached the end
   std::string said;
   std::vector<Rs274Motion> motions;
-  std::map<int, double> parameters;  ///< of the parameter file behind the run
+  std::map<int, double> parameters;  ///< of the parameter file after the run
 };
 
-/// @param parameters  of the parameter file in front, such as 5223 of G54's z; in inches, as this interpreter has them without a machine
+/// @param parameters  for the parameter file before the run, such as 5223 for G54's z; in inches, as this interpreter
+/// uses without a machine
 inline Rs274Run run_rs274(const std::filesystem::path& program, const std::map<int, double>& parameters = {}) {
   const std::filesystem::path var = program.parent_path() / (program.stem().string() + "_rs274.var");
   std::map<int, double> all;
@@ -52,8 +53,8 @@ inline Rs274Run run_rs274(const std::filesystem::path& program, const std::map<i
     for (const auto& [number, value] : all) file << number << "\t" << value << "\n";
   }
   Rs274Run run;
-  const std::string command =
-      "cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g -v " + var.string() + " " + program.string() + " 2>&1";
+  const std::string command = "cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g -v " + var.string() +
+                              " " + program.string() + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   char buffer[4096];
   while (std::fgets(buffer, sizeof buffer, pipe)) run.said += buffer;

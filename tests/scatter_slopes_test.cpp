@@ -1,5 +1,5 @@
-// Slopes of readings by the scenario's uncertain numbers against differences of runs: each number, in two records, near the scenario and
-// far from it.
+// Slopes of readings by the scenario's uncertain numbers against differences of runs: each number, in two records, near
+// the scenario and far from it.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -76,7 +76,8 @@ TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
         return fitter.comparison().whitened(fitter.predict({}, turned, workspace));
       };
       const Eigen::VectorXd expected = (readings(kSmall) - readings(-kSmall)) / (2.0 * kSmall);
-      // from both sides: a sixth of the square of the step is what sinh(step) is beside it, and as much again for the bend of the answer
+      // from both sides: a sixth of the square of the step is what sinh(step) is beside it, and as much again for the
+      // bend of the answer
       EXPECT_LT((fitter.nuisance_slopes().col(i) - expected).norm(), (knob.step * knob.step + 1e-4) * expected.norm())
           << knob.name << " of " << knob.where << " at " << sigmas << " sigmas";
       EXPECT_GT(expected.norm(), 0.1) << knob.name << " of " << knob.where;
@@ -106,8 +107,8 @@ TEST(ScatterSlopes, ANumberAtTheEndOfItsRangeStopsNoFit) {
   }
 }
 
-// Twice every capacity, conductance and heat is the same machine: no temperature tells of it, so that slopes add up to nothing along that direction. What is known of it
-// is what was known before.
+// Twice every capacity, conductance and heat is the same machine: no temperature tells of it, so that slopes add up to
+// nothing along that direction. What is known of it is what was known before.
 TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
   std::string text = kScenario;
   const std::string heat = "type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3";

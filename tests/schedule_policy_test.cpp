@@ -44,8 +44,8 @@ int count_changes(const std::vector<double>& correction_um) {
   return n;
 }
 
-// Polyakov et al.: tolerance 10 um, five operations of 60 min. The drift is made to pass 10, 20, 30, 40 um at 18, 45, 75, 115 min and
-// 50 um never; the text is the paper's, and what is left stays in [0, 10] um.
+// Polyakov et al.: tolerance 10 um, five operations of 60 min. The drift is made to pass 10, 20, 30, 40 um at 18, 45, 75,
+// 115 min and 50 um never; the text is the paper's, and what is left stays in [0, 10] um.
 TEST(PaperPolicy, YieldsThePapersExample) {
   const std::vector<double> t_s = minutes({0, 18, 45, 75, 115, 300}), d_um = {0, 10, 20, 30, 40, 49};
   const std::vector<DriftCell> cells = drift_cells(t_s, d_um, grid(60.0, 300 * 60.0));
@@ -59,8 +59,8 @@ TEST(PaperPolicy, YieldsThePapersExample) {
   }
 }
 
-// From 2 to 26 um in one cell, with a step of 3: no multiple serves, 15 misses by the least (14 is the middle). The rule serves cells
-// of 2 and 4.5 um.
+// From 2 to 26 um in one cell, with a step of 3: no multiple serves, 15 misses by the least (14 is the middle). The rule
+// serves cells of 2 and 4.5 um.
 TEST(PaperPolicy, TakesTheMiddleOfACellTooLongForOneMultiple) {
   const std::vector<DriftCell> cells = {{0, 1, 0, 2}, {1, 2, 2, 26}, {2, 3, 26, 28}, {3, 4, 28, 32.5}, {4, 5, -26, -2}};
   EXPECT_EQ(steps_of_tolerance(cells, 3.0), (std::vector<double>{0, 15, 27, 30, -15}));
@@ -91,8 +91,8 @@ TEST(PaperPolicy, StepsBackAtTheSameMultiplesAndMirrorsNegativeDrift) {
   for (std::size_t k = 0; k < cells.size(); ++k) EXPECT_EQ(other[k], -c_um[k]) << k;
 }
 
-// Property: for a smooth drift of either sign and cells in which it moves by 0.4 um at most, what is left is on the drift's own side
-// of zero but for that much, and never above the step.
+// Property: for a smooth drift of either sign and cells in which it moves by 0.4 um at most, what is left is on the
+// drift's own side of zero but for that much, and never above the step.
 TEST(PaperPolicy, LeavesBetweenZeroAndOneStepOfASmoothDrift) {
   std::vector<double> t_s, d_um;
   for (int i = 0; i <= 1000; ++i) {
@@ -111,8 +111,9 @@ TEST(PaperPolicy, LeavesBetweenZeroAndOneStepOfASmoothDrift) {
   EXPECT_GT(count_changes(c_um), 10);
 }
 
-// 1 um per cell passes 10 um at the start of cell 10: a cheaper place one cell earlier costs 1 um of 10 and is taken, one two cells
-// earlier would cost 2 and is not. On the way back from 19, 10 is passed at the start of cell 28: a place one later is taken.
+// 1 um per cell passes 10 um at the start of cell 10: a cheaper place one cell earlier costs 1 um of 10 and is taken, one
+// two cells earlier would cost 2 and is not. On the way back from 19, 10 is passed at the start of cell 28: a place one
+// later is taken.
 TEST(PaperPolicy, PrefersACheaperPlaceWithinATenthOfTheStep) {
   const std::vector<double> t_s = {0, 19, 38}, d_um = {0, 19, 0};
   const std::vector<DriftCell> cells = drift_cells(t_s, d_um, grid(1.0, 38.0));
@@ -133,8 +134,8 @@ struct Bruteforce {
   long cost = 0;
 };
 
-/// All plans there are: each subset of the cells begins a new correction. A piece exists where one value serves all its cells; the
-/// cells before the first change have none.
+/// All plans there are: each subset of the cells begins a new correction. A piece exists where one value serves all its
+/// cells; the cells before the first change have none.
 Bruteforce all_plans(const std::vector<DriftCell>& cells, double tolerance_um, double resolution_um,
                      const std::vector<int>& cost) {
   const auto serves = [&](std::size_t from, std::size_t to) {

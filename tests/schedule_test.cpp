@@ -29,8 +29,8 @@ Schedule plan_min(const std::vector<double>& time_min, const std::vector<double>
 
 constexpr ScheduleOptions kPaper{.policy = SchedulePolicy::kPaper};
 
-// 0.5 um/min passes 10, 20, 30 um at 20, 40, 60 min: the paper corrects at each, though there are two samples only. The fewest: 20 um
-// serve from 10 to 30 um, and from there the middle of 35 - 10 and 30 + 10.
+// 0.5 um/min passes 10, 20, 30 um at 20, 40, 60 min: the paper corrects at each, though there are two samples only. The
+// fewest: 20 um serve from 10 to 30 um, and from there the middle of 35 - 10 and 30 + 10.
 TEST(Schedule, OfALinearRampIsPlannedByEitherPolicy) {
   const Schedule paper = plan_min({0, 70}, {0, 35}, {0, 70}, kPaper);
   EXPECT_EQ(to_text(paper), "4-{20,20,20,10}-{0,10,10,10}\n");
@@ -81,8 +81,8 @@ TEST(Schedule, RoundsTowardsTheSideThatStaysInsideTheBand) {
   EXPECT_NEAR(tenths.operations[0].corrections[0].interval_s, 100.4, 1e-9);
 }
 
-// The drift jumps from 8 to 20 um within the second after 100 s. c must lie in [20 - 10, 8 + 10] during it, and may be that until the end.
-// The same downwards.
+// The drift jumps from 8 to 20 um within the second after 100 s. c must lie in [20 - 10, 8 + 10] during it, and may be
+// that until the end. The same downwards.
 TEST(Schedule, CorrectsAJumpInTheSecondInWhichItHappens) {
   const std::vector<double> t_s = {0, 100, 101, 200};
   for (double sign : {1.0, -1.0}) {
@@ -106,8 +106,8 @@ TEST(Schedule, SeesAPeakBetweenTwoWrittenTimes) {
   }
 }
 
-// 25 um within a second cannot be followed inside +-10 um: c would have to lie in [15, 10]. The middle, 12.5, misses by the least; a
-// second later 25 serves.
+// 25 um within a second cannot be followed inside +-10 um: c would have to lie in [15, 10]. The middle, 12.5, misses by
+// the least; a second later 25 serves.
 TEST(Schedule, SaysSoWhereTheDriftIsTooFast) {
   const std::vector<double> t_s = {0, 100, 101, 200};
   const Schedule s = plan_cyclogram(t_s, std::vector<double>{0, 0, 25, 25}, std::vector<double>{0, 200});
@@ -123,7 +123,8 @@ TEST(Schedule, CorrectsAtTheStartWhereTheDriftIsThereAlready) {
 }
 
 // Property: whatever the drift, |d - c| stays within tolerance - margin at every time, between samples, too. d is
-// a wild curve of at most 0.3 um/s, so that a cell of 1 s always has a correction that serves; operations end between whole seconds.
+// a wild curve of at most 0.3 um/s, so that a cell of 1 s always has a correction that serves; operations end between
+// whole seconds.
 TEST(Schedule, KeepsAWildDriftInsideTheTolerance) {
   std::vector<double> t_s, d_um;
   for (int i = 0; i <= 700; ++i) {

@@ -117,7 +117,7 @@ Path rs274(const std::filesystem::path& program) {
       behind_an_offset = true;
     } else if (find("STRAIGHT_") || find("ARC_FEED(")) {
       path.motions.push_back(line.substr(line.find(find("STRAIGHT_") ? "STRAIGHT_" : "ARC_FEED(")));
-      // Behind an offset the axes may be commanded once more to where they stand: no motion of the program.
+      // After an offset the axes may be commanded again to where they are: no motion of the program.
       const std::vector<double> here = end_of(path.motions.back());
       if (behind_an_offset && path.motions.size() > 1 && !find("ARC_FEED(") &&
           here == end_of(path.motions[path.motions.size() - 2]))
@@ -136,7 +136,7 @@ TEST(ScheduleVerb, WritesTheProgramAndItsSchedule) {
   EXPECT_THAT(read_text(s.folder / "schedule.txt"), AllOf(HasSubstr("# axis z, nose_z"), HasSubstr("}-{0,10,10")));
   EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("what is left"));
   EXPECT_GT(read_record_csv((s.folder / "record.csv").string()).at("nose_z").values.back(), 30.0);
-  // Lines of the table are those where the offsets stand in the corrected program.
+  // Lines of the table are those of the offsets in the corrected program.
   const std::vector<std::string> corrected = lines_of(read_text(s.folder / "part.ngc"));
   const std::vector<std::string> table = lines_of(read_text(s.folder / "schedule.csv"));
   ASSERT_GT(table.size(), 5u);
@@ -162,7 +162,8 @@ TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
   EXPECT_THAT(text, HasSubstr("X99.996"));
 }
 
-// What the operator has set is lost: said on the terminal, on the page and in the program itself. By default nothing is overwritten.
+// What the operator has set is lost: said on the terminal, on the page and in the program itself. By default nothing is
+// overwritten.
 TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
   const Scheduled absolute = run_schedule("absolute", passes(), "", std::string(kHead) + kAbsolute),
                   added = run_schedule("added", passes());
@@ -175,7 +176,7 @@ TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
               AllOf(HasSubstr("added to the work offsets"), HasSubstr("\nG52 X0 Z0\n"), Not(HasSubstr("G10"))));
 }
 
-// The machine stands 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
+// The machine is 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
 TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
   std::string scenario = kHead;
   scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: ambient");
@@ -266,7 +267,7 @@ TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
   }
 }
 
-// rs274 refuses G10 with cutter compensation on: the offset stands in front of G41.
+// rs274 refuses G10 with cutter compensation on: the offset comes before G41.
 TEST(ScheduleVerb, LinuxCncAcceptsAProgramThatBeginsWithAContour) {
   const Scheduled s = run_schedule("contour",
                                    "G21 G90 G17 G54 G94\nS2000 M3\nG41 D0\nG0 X10 Y10 Z5\nG1 X200 F20\nG1 Y100\n"
@@ -376,8 +377,8 @@ TEST(ScheduleSeries, WritesOneProgramForEachPartThatDiffers) {
   EXPECT_THAT(read_text(s.folder / "summary.json"), HasSubstr("\"n_parts\": 4"));
 }
 
-// Behind ten hours at the program's speed the machine is as warm as it gets: parts agree, one program makes them all, and it begins
-// with the whole drift.
+// Behind ten hours at the program's speed the machine is as warm as it gets: parts agree, one program makes them all, and
+// it begins with the whole drift.
 TEST(ScheduleSeries, OfAWarmMachineIsOneProgram) {
   const std::string start = write_file("ten_hours.csv", "time_s,speed_rpm\n0,2000\n36000,0\n");
   const Scheduled s = run_schedule("series_warm", kShortPart, "--parts 5 --start " + start);
@@ -388,7 +389,7 @@ TEST(ScheduleSeries, OfAWarmMachineIsOneProgram) {
   EXPECT_NEAR(drift_of(s.folder).front(), 60.0, 0.05);  // 300 W on 20 W/K, 4 um/K
 }
 
-// Parts 2 and 3 of a series are a series of two behind the record of the first and the pause.
+// Parts 2 and 3 of a series are a series of two after the record of the first and the pause.
 TEST(ScheduleSeries, StartsWarmBehindARecordOfTheFirstPart) {
   const Scheduled three = run_schedule("series_three", kShortPart, "--parts 3 --between '2 min'");
   const Scheduled first = run_schedule("series_first", kShortPart);
@@ -403,7 +404,8 @@ TEST(ScheduleSeries, StartsWarmBehindARecordOfTheFirstPart) {
         << i;  // rows of the record blur when the speed changed
 }
 
-// Where the work offset is probed before each part, each counts its drift from its own start; else all count from the reference.
+// Where the work offset is probed before each part, each counts its drift from its own start; else all count from the
+// reference.
 TEST(ScheduleSeries, CountsFromTheStartOfEachPartWhereTheOffsetIsProbed) {
   for (const bool is_probed : {true, false}) {
     const Scheduled s = run_schedule(is_probed ? "series_probed" : "series_unprobed", kShortPart, "--parts 3",

@@ -79,14 +79,14 @@ TEST(SemiClosedAxis, PointsAndSensitivitiesAddUpInTheFullModelAndInTheReducedOne
 }
 
 TEST(SemiClosedAxis, AHeatedScrewMovesTheToolByItsFreeGrowth) {
-  // The spindle stands in an ambient at the reference temperature: only the screw warms, by P / G = 20 W / (2 W/K) = 10 K. Its growth
-  // alpha L P / G = 11.5e-6 1/K x 0.5 m x 10 K = 57.5 um lowers the tool.
+  // The spindle is at rest in an ambient at the reference temperature: only the screw warms, by P / G = 20 W / (2 W/K) =
+  // 10 K. Its growth alpha L P / G = 11.5e-6 1/K x 0.5 m x 10 K = 57.5 um lowers the tool.
   const Scenario s = read(with_screw("[[0 min, 20 degC]]"), kAllThree);
   const Machine machine = build(*s.machine, place(*s.machine));
   const Eigen::VectorXd steady =
       solver::steady_state(machine.system, {.drive = {}, .ambient_K = 0.0}, Eigen::VectorXd::Zero(machine.system.size()));
   const Eigen::VectorXd read_m = machine.system.outputs.state.transpose() * steady;
-  EXPECT_NEAR(1e6 * read_m[3], -57.5, 1e-6);  // behind three thermometers; rounding of a linear solve
+  EXPECT_NEAR(1e6 * read_m[3], -57.5, 1e-6);  // after three thermometers; rounding of a linear solve
   EXPECT_NEAR(1e6 * read_m[4], 0.0, 1e-6);
   EXPECT_NEAR(1e6 * read_m[5], -57.5, 1e-6);
 }

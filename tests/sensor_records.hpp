@@ -1,5 +1,5 @@
 #pragma once
-// Records of thermometers and a drift, from a written seed, that several tests rank, fit and judge on.
+// Records of thermometers and a drift, from a fixed seed, on which several tests rank, fit and judge.
 
 #include <fmt/format.h>
 
@@ -18,8 +18,8 @@ inline std::vector<std::string> sensor_names(int n) {
   return names;
 }
 
-/// Sensors X1, X2, ... [degC] that warm behind lags of 5 to 100 min of a random load, a row a minute, and drift_y [um] = 1 + sum_j c_j (X_j - 20),
-/// c_j = 1, -2, 3, 1, -2, ...; each with white noise.
+/// Sensors X1, X2, ... [degC] that follow a random load with lags of 5 to 100 min, one row per minute, and drift_y [um] =
+/// 1 + sum_j c_j (X_j - 20), c_j = 1, -2, 3, 1, -2, ...; each with white noise.
 inline Record sensor_record(std::uint64_t seed, int n_rows, int n_sensors, double noise_K = 0.05, double noise_um = 0.2) {
   Random random(seed, 5);
   Record record{.source = fmt::format("record {}", seed), .time_s = {}, .channels = {}};

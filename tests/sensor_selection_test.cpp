@@ -114,7 +114,8 @@ TEST(Lasso, TakesOrthogonalSensorsByTheirCorrelation) {
   EXPECT_THAT(select_by_lasso(records, {"e", "a", "b", "c"}, "d", 3).sensors, ElementsAre("b", "c", "a"));
 }
 
-// u and u + 0.3 v together say -3 v by coefficients of 10; the drift is -3 v + 5 w, and w alone correlates with it by 5/sqrt(34).
+// u and u + 0.3 v together say -3 v by coefficients of 10; the drift is -3 v + 5 w, and w alone correlates with it by
+// 5/sqrt(34).
 TEST(Lasso, IsNotLedByLargeCoefficientsThatCancel) {
   Record record{
       .source = "cancel", .time_s = {}, .channels = {{"a", "K", {}}, {"b", "K", {}}, {"c", "K", {}}, {"d", "um", {}}}};

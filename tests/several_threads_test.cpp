@@ -1,6 +1,7 @@
-// Gmsh, METIS and CHOLMOD, called by several threads at once, give the bytes that they give one after the other: Gmsh and METIS draw
-// from the one rand() of the C library, OpenBLAS below CHOLMOD has one work space. Without the lock in gmsh_parts.cpp the first and
-// the last test crash; without that around METIS 8 to 16 of 18 results differ; without that of one_thread.hpp every third run fails.
+// Gmsh, METIS and CHOLMOD, called by several threads at once, give the bytes that they give one after the other: Gmsh and
+// METIS draw from the one rand() of the C library, OpenBLAS below CHOLMOD has one work space. Without the lock in
+// gmsh_parts.cpp the first and the last test crash; without that around METIS 8 to 16 of 18 results differ; without that
+// of one_thread.hpp every third run fails.
 
 #include <gtest/gtest.h>
 #include <omp.h>

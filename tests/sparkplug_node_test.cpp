@@ -1,4 +1,4 @@
-// Births and deaths of a Sparkplug B node: whose values are in force, and when a birth is asked for.
+// Births and deaths of a Sparkplug B node: whose values are in force, and when a birth is requested.
 
 #include "follow/sparkplug_node.hpp"
 
@@ -18,7 +18,7 @@ using ::testing::Pair;
 
 constexpr std::uint64_t kAlias = 5;
 
-/// A message of one metric; named, told by its alias, or both.
+/// A message of one metric; with its name, its alias, or both.
 std::string message(std::optional<std::uint64_t> seq, const std::string& name, double value, bool has_alias = true) {
   sparkplug::Payload payload;
   if (seq) payload.set_seq(*seq);
@@ -44,7 +44,7 @@ std::string topic(const std::string& type) {
   return "spBv1.0/shop/" + type + "/mill" + (type.starts_with('D') ? "/spindle" : "");
 }
 
-/// A node whose device told a speed of 1000 with its birth, number 7; the next message is number 2.
+/// A node whose device gave a speed of 1000 with its birth, number 7; the next message is number 2.
 SparkplugNode born() {
   SparkplugNode node({"shop", "mill", "spindle"});
   EXPECT_EQ(node.take(topic("NBIRTH"), node_message(0, 7)), "");

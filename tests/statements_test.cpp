@@ -1,4 +1,5 @@
-// What is missing in words of the grammar: columns are what the machine does, evidence is what its formula says, and what is hidden is stated.
+// What is missing in words of the grammar: columns are what the machine does, evidence is what its formula says, and what
+// is hidden is stated.
 
 #include <gtest/gtest.h>
 

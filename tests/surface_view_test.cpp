@@ -63,7 +63,8 @@ Pixels decoded(const std::string& png) {
 }
 
 TEST(SurfaceView, ACubeFromItsCornerIsAHexagonOfThreeColours) {
-  // Along the diagonal a unit cube is a regular hexagon of side sqrt(2/3), area sqrt(3); it fills 96 % of the height 2 sqrt(2/3).
+  // Along the diagonal a unit cube is a regular hexagon of side sqrt(2/3), area sqrt(3); it fills 96 % of the height 2
+  // sqrt(2/3).
   const DrawnView drawn = draw_surface(cube(), {.towards = {1.0, 1.0, 1.0}}, 400, 400);
   const Pixels p = decoded(drawn.png);
   ASSERT_EQ(p.width, 400);

@@ -1,4 +1,5 @@
-// `driftwright sweep` as a user runs it: members are what `simulate` gives, failures stay alone, kill and shards change no byte.
+// `driftwright sweep` as a user runs it: members are what `simulate` gives, failures stay alone, kill and shards change
+// no byte.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -149,7 +150,7 @@ TEST(Sweep, AValueThatFitsNoMemberIsRefusedBeforeAnythingRuns) {
 }
 
 TEST(Sweep, ValuesOfAListMayGoTogetherAndFitNoneAlone) {
-  // A window's new begin lies behind its old end.
+  // A window's new begin lies after its old end.
   const fs::path folder = fresh_folder("together");
   std::ofstream(folder / "two.yaml") << R"(name: two
 reference_temperature: 20 degC

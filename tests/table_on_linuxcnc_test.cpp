@@ -1,5 +1,6 @@
-// The probing program on a whole LinuxCNC, headless: its joints are simulated, its probe of 100 mm meets two rings that have moved, and
-// the offsets that it then has are the user's with ours; where it refuses, they stay. Skipped where LinuxCNC is not installed. One HAL a machine: registered with a lock.
+// The probing program on a whole LinuxCNC, headless: its joints are simulated, its probe of 100 mm meets two rings that
+// have moved, and the offsets that it then has are the user's with ours; where it refuses, they stay. Skipped where
+// LinuxCNC is not installed. One HAL a machine: registered with a lock.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace driftwright::compensation::table_on_linuxcnc_test {
 namespace {
 
 constexpr double kRadius_mm = 3.0, kFeed_mm_min = 120.0;  // 2 um a servo cycle
-constexpr double kProbe_mm = 100.0;                       // joint 2 stands so much above the tip
+constexpr double kProbe_mm = 100.0;                       // height of joint 2 above the tip
 const Eigen::Vector3d kUser_mm(4000.0, 50.0, -10.0);      // G54
 constexpr double kUser_deg = 30.0;
 
@@ -241,8 +242,8 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
     EXPECT_EQ(std::abs(found[of + "G59.3R"] - 10.0) < 1e-9, of != "after") << of;
   }
   EXPECT_NEAR(found["missingLeftZ"], kProbe_mm + 50.0, 1e-3) << "the stylus is taken out of the ring";
-  // Each touch stops on a servo cycle: 2 um, half of it in the middle of two touches along X and Y; the second one along Z is ten times as slow.
-  // The turn is known to 2 um on 9.6 m; it carries the user's 4 m along by 8 um, to 1 um.
+  // Each touch stops on a servo cycle: 2 um, half of it in the middle of two touches along X and Y; the second one along
+  // Z is ten times as slow. The turn is known to 2 um on 9.6 m; it carries the user's 4 m along by 8 um, to 1 um.
   const double turn_rad = program.frame.turn_rad;
   const Eigen::Vector2d user_mm = Eigen::Rotation2Dd(turn_rad) * kUser_mm.head<2>();
   EXPECT_NEAR(found["afterG59.3X"], 1e3 * program.frame.x.shift_m + user_mm[0], 0.002);

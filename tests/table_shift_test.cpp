@@ -87,7 +87,8 @@ TEST(CarriedRings, FollowAModelThatIsWrongInItsLevel) {
   EXPECT_NEAR(peaks(through_frame(table, kRings, believed).left_m).x_m, 1.5 * 2e-6, 1e-9);
 }
 
-// Eight points with a bend along x: the best frame is not that of the rings, and a model that is right but for a frame finds it.
+// Eight points with a bend along x: the best frame is not that of the rings, and a model that is right but for a frame
+// finds it.
 TEST(CarriedTable, FindsTheBestFrameThroughAModelThatIsOffByAFrame) {
   const TableErrors table = growing_table(1e-6);
   const auto rings = ring_errors(table, 1e-6);
@@ -103,8 +104,8 @@ TEST(CarriedTable, FindsTheBestFrameThroughAModelThatIsOffByAFrame) {
   EXPECT_NEAR(best_m / peaks(through_frame(table, kRings, rings).left_m).z_m, 0.5425, 0.002);
 }
 
-// Least squares of x^2 / 25 on 21 points has its largest error at the ends, 0.62; half the sag at ends and middle is the least: 0.5. 1 %
-// is what the fit promises.
+// Least squares of x^2 / 25 on 21 points has its largest error at the ends, 0.62; half the sag at ends and middle is the
+// least: 0.5. 1 % is what the fit promises.
 TEST(MinimaxFrame, HalvesTheSagOfAParabola) {
   std::vector<RingPair> points;
   for (int i = -10; i <= 10; ++i) {
@@ -120,8 +121,8 @@ TEST(MinimaxFrame, HalvesTheSagOfAParabola) {
   EXPECT_LE(best.least_misfit_m, 10.001e-6);
 }
 
-// Errors that are a frame, but for one point that is off along all axes: the weights carry the frame towards it until several points are
-// missed alike, and the bound proves it. All seven numbers take part.
+// Errors that are a frame, but for one point that is off along all axes: the weights carry the frame towards it until
+// several points are missed alike, and the bound proves it. All seven numbers take part.
 TEST(MinimaxFrame, ProvesThatNoFrameLeavesLess) {
   const TableFrame truth{.x = {.scale = 1.00002, .shift_m = 30e-6},
                          .scale_y = 0.99999,
@@ -166,7 +167,8 @@ TEST(EvenGrowth, IsTableLessScaleFromWhereEachIsHeld) {
   EXPECT_EQ(even_growth(points, x, std::nullopt, T)[0](1, 0), 0.0);
 }
 
-// Two rings at y = 0 see no scale of Y; thermometers tell it, and between measurements they carry X. An evenly warm table leaves nothing.
+// Two rings at y = 0 see no scale of Y; thermometers tell it, and between measurements they carry X. An evenly warm table
+// leaves nothing.
 TEST(ThroughBestFrame, ThermometersTellTheScaleOfYThatRingsDoNot) {
   TableErrors table = growing_table(0.0);
   const EvenAxis axis{.table_1_K = 12e-6, .scale_1_K = 11e-6};
@@ -256,8 +258,9 @@ TEST(AmbientModels, EightReadingsDoNotCarryTwoLags) {
   EXPECT_NEAR(models[0].r_squared, 0.44, 0.005);
   EXPECT_GT(models[0].rms_left_out, models[0].rms);
   EXPECT_GT(models[2].rms_left_out, models[2].rms);
-  // Two lags with the table's and the scale's own growth fit no better than one lag with a free slope, nor than the line: 24.3, 22.9 and
-  // 24.2 um, and 41.4, 35.8 and 31.6 um for readings left out. (They did while both slopes were free: two parameters more.)
+  // Two lags with the table's and the scale's own growth fit no better than one lag with a free slope, nor than the line:
+  // 24.3, 22.9 and 24.2 um, and 41.4, 35.8 and 31.6 um for readings left out. (They did while both slopes were free: two
+  // parameters more.)
   EXPECT_NEAR(models[2].rms / models[1].rms, 1.063, 0.005);
   EXPECT_NEAR(models[2].rms / models[0].rms, 1.005, 0.005);
   EXPECT_NEAR(models[2].rms_left_out / models[0].rms_left_out, 1.310, 0.005);
@@ -274,8 +277,9 @@ AmbientModel found(double table_lag_s, double scale_lag_s) {
   return compare_ambient_models(kAmbient, t, y, 100.0, 60.0)[2];
 }
 
-// Lags are searched from 0.1 h in 66 steps of 12.2 % to 200 h: those on a step are found exactly. 6 h lie between 5.6 and 6.3 h, 1 h
-// beside 1.0 h; what that costs is measured: 2.66 um for readings left out, R^2 0.9966. With slopes given nothing can make up for it.
+// Lags are searched from 0.1 h in 66 steps of 12.2 % to 200 h: those on a step are found exactly. 6 h lie between 5.6 and
+// 6.3 h, 1 h beside 1.0 h; what that costs is measured: 2.66 um for readings left out, R^2 0.9966. With slopes given
+// nothing can make up for it.
 TEST(AmbientModels, FindLagsThatAreThere) {
   const auto step_s = [](int i) { return 360.0 * std::pow(2000.0, i / 66.0); };
   const AmbientModel exact = found(step_s(36), step_s(20));

@@ -36,7 +36,8 @@ double rms_off(const std::vector<double>& values, double from) {
   return std::sqrt(square);
 }
 
-// 0.1 K of noise and rounding to 0.1 K: 0.104 K; 200 readings know that to 5 %, 3 sigma are allowed. The ambient is read by the same instrument.
+// 0.1 K of noise and rounding to 0.1 K: 0.104 K; 200 readings know that to 5 %, 3 sigma are allowed. The ambient is read
+// by the same instrument.
 TEST(TableReadings, HaveTheInstrumentsNoiseAndStepsByDefault) {
   const Case c = steady();
   const Record read = studies::table_readings(c.scenario, c.felt, c.record, 0);
@@ -48,7 +49,8 @@ TEST(TableReadings, HaveTheInstrumentsNoiseAndStepsByDefault) {
   EXPECT_EQ(studies::table_readings(c.scenario, c.felt, c.record, 0).at("a").values, read.at("a").values);
 }
 
-// A mean over 30 min of readings every 5 min has 7 of them: noise less by sqrt(7), and a ramp of 0.3 K/h late by a quarter of an hour.
+// A mean over 30 min of readings every 5 min has 7 of them: noise less by sqrt(7), and a ramp of 0.3 K/h late by a
+// quarter of an hour.
 TEST(TableReadings, AreAveragedBackwardsAtTheControlsUpdates) {
   Case c = steady();
   c.scenario.table->sensor_mean_s = 1800.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Files that tests write. Each process has a folder of its own, since CTest runs many at once, and takes it away at its end.
+// Files that tests write. Each process has its own folder, since CTest runs many at once, and removes it at its end.
 
 #include <unistd.h>
 

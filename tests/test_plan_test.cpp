@@ -95,7 +95,7 @@ TEST(Prospect, OfTwoFaultsInThreeReadingsIsTheClosedForm) {
   EXPECT_NEAR(p.seen[0], share(seen), 1e-12);
   EXPECT_NEAR(p.named[0], share(std::max(seen, told)), 1e-12);
   EXPECT_NEAR(p.share_named, share_named(q, columns.transpose() * columns), 1e-15);
-  q.laws[1].effect = "a";  // of one kind: its place need not be told
+  q.laws[1].effect = "a";  // of one kind: its place need not be distinguished
   EXPECT_NEAR(prospect(q, columns.transpose() * columns).named[0], share(seen), 1e-12);
 }
 
@@ -112,8 +112,8 @@ TEST(Prospect, HasTheDistanceOfTheDiscriminatingExperiment) {
   EXPECT_NEAR(prospect(q, columns.transpose() * columns).d(0, 1), discrimination(a, b), 1e-10);
 }
 
-// Heat and loss to the ambient of one body: T = P/G (1 - e^-t/tau), so dT/dlog P = T and dT/dlog G = -P/G (1 - e^-t/tau (1 + t/tau)), in readings every minute of
-// 0.05 K. The information of both is their sum over the rows.
+// Heat and loss to the ambient of one body: T = P/G (1 - e^-t/tau), so dT/dlog P = T and dT/dlog G = -P/G (1 - e^-t/tau
+// (1 + t/tau)), in readings every minute of 0.05 K. The information of both is their sum over the rows.
 TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   Planned planned(kOneBody);
   planned.p.noise.at("t_body") = {0.05, 0.0, 0.0};
@@ -134,11 +134,13 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
     return std::find_if(n.begin(), n.end(), [&](const auto& k) { return k.name == name; }) - n.begin();
   };
   const auto p = index_of("power"), g = index_of("conductance");
-  // Differences over half of 10 %, taken on one side, in pairs of rows summed: 6 % of the slope by G at the most, of the sum less.
+  // Differences over half of 10 %, taken on one side, in pairs of rows summed: 6 % of the slope by G at the most, of the
+  // sum less.
   EXPECT_NEAR(information(p, p) / pp, 1.0, 0.06);
   EXPECT_NEAR(information(g, g) / gg, 1.0, 0.06);
   EXPECT_NEAR(information(p, g) / pg, 1.0, 0.06);
-  // Another power and another conductance to the ambient, each off by 0.7 of its logarithm, are told apart by the hand's formula as by the program's.
+  // Another power and another conductance to the ambient, each off by 0.7 of its logarithm, are told apart by the hand's
+  // formula as by the program's.
   Question q = planned.doubts.question;
   q.number_sd = Eigen::VectorXd(0);
   q.laws = {{.effect = "heat_source", .size_sd = 0.7}, {.effect = "link", .size_sd = 0.7}};
@@ -148,7 +150,8 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   EXPECT_NEAR(prospect(q, both).d(0, 1) / std::sqrt(a - ab * ab / (1.0 + b)), 1.0, 0.06);
 }
 
-// C T' = P - G (T - h), h rising evenly over the step: T is the sum of e^-x T0, (P/G + h0) (1 - e^-x) and rise (1 - (1 - e^-x) / x).
+// C T' = P - G (T - h), h rising evenly over the step: T is the sum of e^-x T0, (P/G + h0) (1 - e^-x) and rise (1 - (1 -
+// e^-x) / x).
 TEST(LinearStep, OfOneBodyInAnAmbientThatRisesIsTheClosedForm) {
   const diagnosis::LinearSystem body{Eigen::MatrixXd::Constant(1, 1, 5.0), Eigen::VectorXd::Constant(1, 100.0),
                                      Eigen::VectorXd::Constant(1, 5.0)};
@@ -160,7 +163,8 @@ TEST(LinearStep, OfOneBodyInAnAmbientThatRisesIsTheClosedForm) {
   EXPECT_NEAR(step.of_rise[0], 1.0 - gone / x, 1e-12);
 }
 
-// A power that falls with the body's temperature, P (1 - b T) with b = 0.02 / K, is linear: its loss is G + P b. At 1000 rpm on 5 W/K it comes to 100 / (5 + 2) K.
+// A power that falls with the body's temperature, P (1 - b T) with b = 0.02 / K, is linear: its loss is G + P b. At 1000
+// rpm on 5 W/K it reaches 100 / (5 + 2) K.
 TEST(LinearStep, TakesALawOfTemperatureToFirstOrder) {
   solver::ReducedSystem system;
   system.reference_K = 293.15;
@@ -182,7 +186,8 @@ TEST(LinearStep, TakesALawOfTemperatureToFirstOrder) {
   EXPECT_NEAR(linear.constant[0], 100.0, 1e-8);
 }
 
-// What the search runs on says of a programme what the fitter says: slots of a quarter of an hour, axes and an ambient that warms.
+// What the search runs on says of a programme what the fitter says: slots of a quarter of an hour, axes and an ambient
+// that warms.
 TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
   Planned planned(kTwoBodies);
   const double row_s = 300.0;
@@ -208,7 +213,8 @@ TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
     const std::string words = law < 0 ? "" : planned.doubts.question.laws[static_cast<std::size_t>(law)].law;
     if (effect == "clock_offset" || effect.find("lag") != std::string::npos || words.find("lag") != std::string::npos)
       continue;
-    // A power of a temperature difference is a line about the state halfway to balance there: a third of its information is left.
+    // A power of a temperature difference is a line about the state halfway to balance there: a third of its information
+    // is left.
     if (effect == "natural_convection") continue;
     if (words.find("after each stop") != std::string::npos) continue;      // minutes that no level has
     if (words.find("a conductance that falls as") != std::string::npos) {  // a line about that state, too: half is left

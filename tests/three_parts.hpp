@@ -1,5 +1,5 @@
 #pragma once
-// A machine of three lumped parts, whose every run has a closed form or an exact propagation.
+// A machine of three lumped parts; each of its runs has a closed form or an exact propagation.
 
 #include <cmath>
 
@@ -11,9 +11,9 @@ namespace driftwright::fixtures {
 
 using compensation::ObservedRun;
 
-/// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to the ambient; motor heat into
-/// the first, screw heat into the second. State: temperatures times sqrt(C), so that M = 1. Outputs: T1, T2, T3 and the drift
-/// 2, 3 and 1.5 um/K of each.
+/// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to
+/// the ambient; motor heat into the first, screw heat into the second. State: temperatures times sqrt(C), so that M = 1.
+/// Outputs: T1, T2, T3 and the drift 2, 3 and 1.5 um/K of each.
 inline solver::ReducedSystem three_parts() {
   const Eigen::Vector3d root(std::sqrt(4e3), std::sqrt(10e3), std::sqrt(30e3)), inverse = root.cwiseInverse();
   const auto scaled = [&](const Eigen::Matrix3d& k) -> Eigen::MatrixXd {
@@ -56,7 +56,8 @@ inline const Cyclogram kWork{
     .name = "work",
     .sections = {{3600, {.speed_rpm = 2000}}, {1800, {}}, {5400, {.speed_rpm = 3000}}, {3600, {.speed_rpm = 500}}}};
 
-/// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of ambient and machine at the start
+/// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of ambient and machine at
+/// the start
 inline ObservedRun run_of(const solver::ReducedSystem& machine, double period_s = 60.0, double warmer_K = 0.0,
                           double noise_K = 0.0, std::uint64_t seed = 1, const Cyclogram& cyclogram = kWork) {
   ObservedRun run{

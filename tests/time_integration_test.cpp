@@ -43,8 +43,9 @@ TransientOptions options_of(double tolerance, double max_step_s) {
 
 // --- linear -----------------------------------------------------------------------------------------------------
 
-/// A bar with one end on a ramp of temperature, heat in pulses, a film to an ambient that bends: M θ' = -K θ + f0 + f1 t in each
-/// piece of time for the free unknowns. Its exact solution by the eigenmodes of (K, M), independent of the integrator.
+/// A bar with one end on a ramp of temperature, heat in pulses, a film to an ambient that bends: M θ' = -K θ + f0 + f1 t
+/// in each piece of time for the free unknowns. Its exact solution by the eigenmodes of (K, M), independent of the
+/// integrator.
 class PiecewiseLinearBar {
  public:
   PiecewiseLinearBar() {

@@ -1,5 +1,5 @@
-// Time stamps of loggers. Clock changes are those of the IANA data base: Berlin 2024-03-31 2:00 -> 3:00 and 2024-10-27 3:00 -> 2:00,
-// Adelaide (half hours from UTC) 2024-04-07 3:00 -> 2:00.
+// Time stamps of loggers. Clock changes are those of the IANA data base: Berlin 2024-03-31 2:00 -> 3:00 and 2024-10-27
+// 3:00 -> 2:00, Adelaide (half hours from UTC) 2024-04-07 3:00 -> 2:00.
 
 #include "base/time_stamps.hpp"
 

@@ -107,7 +107,8 @@ TEST(TimedInjector, QuartersFindRoomAtHigherSpeed) {
   EXPECT_EQ(injector.n_insertions(), 5);
 }
 
-// The rate at which a correction comes in, against the injector itself: 4000 quarters at steady speed, more wanted than fits.
+// The rate at which a correction comes in, against the injector itself: 4000 quarters at steady speed, more requested
+// than fits.
 TEST(TimedInjector, InsertionRateIsThatOfTheFormula) {
   for (int quarters : {4, 2, 1}) {
     for (std::int64_t interval : {19, 20, 35, 50, 51, 90, 130, 400}) {

@@ -75,7 +75,7 @@ TEST_P(RollOver, OfTheCounterChangesNothing) {
   system.encoder_step_m = 1e-6;
   system.encoder_bits = GetParam();
   Approach approach{.feed_m_s = 2000 * kPerMin, .surface_m = 0.5};
-  approach.counter_zero = (std::int64_t{1} << (GetParam() - 1)) - 500'000 - 60;  // 60 um behind the surface, within the lag
+  approach.counter_zero = (std::int64_t{1} << (GetParam() - 1)) - 500'000 - 60;  // 60 um beyond the surface, within the lag
   for (double direction : {1.0, -1.0}) {
     approach.direction = direction;
     Random random(5), again(5);
@@ -90,7 +90,8 @@ TEST_P(RollOver, OfTheCounterChangesNothing) {
 }
 INSTANTIATE_TEST_SUITE_P(Bits, RollOver, ::testing::Values(16, 32));
 
-// Lags are found from touches alone; 20 us of jitter over 40 touches and feeds up to 2000 mm/min: 20 us / 1 ms / sqrt(40) / 0.6.
+// Lags are found from touches alone; 20 us of jitter over 40 touches and feeds up to 2000 mm/min: 20 us / 1 ms / sqrt(40)
+// / 0.6.
 TEST(Calibration, FindsTheLagOfEachAxis) {
   ProbeStudySettings settings{.system = {}, .feeds_m_s = {}};
   for (double f : {300, 600, 1000, 1500, 2000}) settings.feeds_m_s.push_back(f * kPerMin);

@@ -57,7 +57,7 @@ double worst_miss(const Law& law, const TwinLaw& table, int n_probes, double lar
 }
 
 TEST(TwinLaw, FollowsOilThatThinsAndPreloadThatGrows) {
-  // Front bearing of scenarios/lumped_spindle.yaml: oil by itself, both rings by their difference alone.
+  // Front bearing of scenarios/lumped_spindle.yaml: oil alone, both rings only by their difference.
   const Law friction = [](const Drive& d, const std::vector<double>& t_K) {
     if (d.speed_rpm <= 0.0) return 0.0;
     const double torque_Nmm =
@@ -70,8 +70,8 @@ TEST(TwinLaw, FollowsOilThatThinsAndPreloadThatGrows) {
   ASSERT_EQ(table->tables.size(), 2U);
   EXPECT_EQ(table->tables[1].axes.size(), 1U);
   EXPECT_EQ(table->tables[1].axes[0].minus, 2);
-  // Of the largest power: linear over 1 K of oil that gets 4 % thinner a kelvin misses by 0.04^2 / 8 of it; the kink where the preload vanishes lies
-  // within one node of the difference.
+  // Of the largest power: linear over 1 K of oil that gets 4 % thinner a kelvin misses by 0.04^2 / 8 of it; the kink
+  // where the preload vanishes lies within one node of the difference.
   EXPECT_LT(worst_miss(friction, *table, 3, friction({.speed_rpm = 12000.0}, {273.15, 293.15, 293.15})), 2e-3);
 }
 

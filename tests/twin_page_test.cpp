@@ -48,7 +48,8 @@ scenarios::ReducedMachine boxes() {
 TEST(TwinSurface, IsTheOutsideWithTheFieldsOfItsNodes) {
   const scenarios::ReducedMachine machine = boxes();
   const TwinSurface s = twin_surface(machine);
-  // Closed: each edge has two triangles, run through in either direction. The outside of both boxes: 2 x 0.14 m^2 and 2 x 0.05 m^2.
+  // Closed: each edge has two triangles, run through in either direction. The outside of both boxes: 2 x 0.14 m^2 and 2 x
+  // 0.05 m^2.
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> runs;
   double area_m2 = 0.0;
   for (std::size_t t = 0; t < s.triangle.size(); t += 3) {

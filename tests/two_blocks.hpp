@@ -1,5 +1,5 @@
 #pragma once
-// A small machine of two parts that several tests reduce: heated, with films and a joint.
+// A small machine of two parts that several tests reduce: it has a heat source, films and a joint.
 
 #include "solver/heat_assembly.hpp"
 #include "tests/fixtures.hpp"

@@ -267,7 +267,8 @@ TEST_F(ValidateRecords, AnAmbientThermometerThatNeverReadIsSaid) {
   }
 }
 
-// The same training, judged by a run and by one whose drift goes the other way, three times as far: what is left differs, what is chosen does not.
+// The same training, judged by a run and by one whose drift goes the other way, three times as far: what is left differs,
+// what is chosen does not.
 TEST_F(ValidateRecords, ChoosesWithoutALookAtWhatItIsJudgedBy) {
   const std::string other =
       edited("to_and_fro", "reversed", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
@@ -289,8 +290,9 @@ TEST_F(ValidateRecords, ChoosesWithoutALookAtWhatItIsJudgedBy) {
   EXPECT_NE(judged[0]["strategies"].back()["overall_rms_um"], judged[1]["strategies"].back()["overall_rms_um"]);
 }
 
-// A machine that is its own model, run for ten hours without ever coming back to balance. What follows 6 h goes on from what came before, so
-// that the model is exact there, too; had the part begun at 0, or cold, it would be off by the 30 um that the machine has gone by then.
+// A machine that is its own model, run for ten hours without ever coming back to balance. What follows 6 h goes on from
+// what came before, so that the model is exact there, too; had the part begun at 0, or cold, it would be off by the 30 um
+// that the machine has gone by then.
 TEST_F(ValidateRecords, APartOfALongRecordGoesOnFromWhatCameBefore) {
   const std::string week = scenario("long_record", [](std::string& t) {
     replace(
@@ -314,7 +316,7 @@ TEST_F(ValidateRecords, APartOfALongRecordGoesOnFromWhatCameBefore) {
   ASSERT_TRUE(nothing);
   EXPECT_GT((*nothing)["worst_peak_um"].get<double>(), 20.0);
 
-  // rows behind those that were fitted may be corrected, as `validate` judged them; a part that holds one of the others may not
+  // rows after the fitted ones may be corrected, as `validate` judged them; a part that holds one of the others may not
   const std::string file = (out / "models/ridge_all_sensors.json").string();
   const auto compensate = [&](const std::string& part) {
     return run_program("compensate " + week + " --model " + file + " --through none --measured " + record("week") + part +

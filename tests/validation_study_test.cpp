@@ -73,9 +73,10 @@ bool is_intact(const CsvRow& r) {
   return r.failed.empty();
 }
 
-// What is wanted of the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst run. An exchange of
-// two of its thermometers (0.57, docs/how-to/validation.md) and an ambient thermometer that drifts (0.51) are beyond it: both look like a model that is wrong, and a wrong
-// model's correction fades. So it is safe within limits.
+// The goal for the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst
+// run. An exchange of two of its thermometers (0.57, docs/how-to/validation.md) and an ambient thermometer that drifts
+// (0.51) are beyond it: both look like a model that is wrong, and a wrong model's correction fades. So it is safe within
+// limits.
 TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) {
   double intact = 0.0, failed = 0.0, exchanged = 0.0, drifting_ambient = 0.0;
   for (const CsvRow& r : rows_) {
@@ -98,7 +99,8 @@ TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) 
   EXPECT_EQ(strategy("observer")["worse_than_nothing"], false);
 }
 
-// Polyakov, Marusich & Nikitina: temperatures alone, learned while running continuously, do not tell the drift of another cyclogram.
+// Polyakov, Marusich & Nikitina: temperatures alone, learned while running continuously, do not tell the drift of another
+// cyclogram.
 TEST_F(ValidationStudy, TemperaturesAloneFailWhereTheyWereNotTrained) {
   const auto chaotic_as_trained = [](const CsvRow& r) {
     return is_intact(r) && r.family == "chaotic" && r.season == "as trained";

@@ -34,6 +34,41 @@ Validation read(const std::string& text) {
                          pointers, 12.0);
 }
 
+// "again" is "warm_up" under another name: fitted on twice it would never be left out, and judged on it would judge itself.
+TEST(DefaultValidation, FitsOnAllCyclogramsButTheLastAndJudgesOnItAndOnRandomOnes) {
+  const Validation v = default_validation(known(), 12.0);
+  ASSERT_THAT(v.train, SizeIs(2));
+  EXPECT_EQ(v.train[0].name, "warm_up");
+  EXPECT_EQ(v.train[1].name, "steps");
+  ASSERT_THAT(v.families, SizeIs(2));
+  ASSERT_THAT(v.families[0].cyclograms, SizeIs(1));
+  EXPECT_EQ(v.families[0].cyclograms[0].name, "chaotic");
+  EXPECT_EQ(v.families[1].name, "random");
+  ASSERT_THAT(v.families[1].cyclograms, SizeIs(2));
+  for (const Cyclogram& c : v.families[1].cyclograms) {
+    EXPECT_NEAR(c.duration_s(), 3600.0, 1e-6);
+    for (const Cyclogram::Section& s : c.sections)
+      EXPECT_THAT(s.drive.speed_rpm, ::testing::AnyOf(0.0, 500.0, 900.0, 1500.0, 2000.0));
+  }
+  ASSERT_THAT(v.seasons, SizeIs(3));
+  EXPECT_EQ(v.seasons[0].offset_K, 0.0);
+  EXPECT_EQ(v.seasons[1].offset_K, -5.0);
+  EXPECT_EQ(v.tolerance_um, 12.0);
+}
+
+TEST(DefaultValidation, OfTwoCyclogramsJudgesOnRandomOnesAloneAndRefusesOne) {
+  const Validation v = default_validation({known()[0], known()[1]}, 12.0);
+  EXPECT_THAT(v.train, SizeIs(2));
+  ASSERT_THAT(v.families, SizeIs(1));
+  EXPECT_EQ(v.families[0].name, "random");
+  const Cyclogram rest{.name = "rest", .sections = {{600, {}}}};
+  EXPECT_THAT(
+      [&] {
+        (void)default_validation({known()[0], known()[3], rest}, 12.0);
+      },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("two different"), HasSubstr("`validation`"))));
+}
+
 TEST(Validation, ReadsWhatItIsGivenAndDefaultsTheRest) {
   const Validation v = read(R"(train: [warm_up, steps]
 families:

@@ -41,7 +41,8 @@ WarmUpPlan planned(const std::string& text, const WarmUpOptions& options) {
   return plan_warm_up(scenario, scenario.cyclogram("job"), options, {});
 }
 
-// The job ends at 12 K and goes 1 - e^-1.8 of the way there: it drifts by 3 um from 8.406 K on, which 1000 rpm reach after 2181 s.
+// The job ends at 12 K and goes 1 - e^-1.8 of the way there: it drifts by 3 um from 8.406 K on, which 1000 rpm reach
+// after 2181 s.
 TEST(WarmUp, OfOneBodyIsTheFastestSpeedUntilTheJobsOwnWarmthIsNear) {
   const WarmUpPlan plan = planned(kOneBody, {.tolerance_um = 3.0});
   const double needed_K = 12.0 - 3.0 / (1.0 - std::exp(-7200.0 / 4000.0));
@@ -109,7 +110,8 @@ TEST(WarmUp, IsRestWhereNoSpeedIsEnough) {
   EXPECT_LE(plan.staged.duration_s(), plan.at_rest.duration_s());
 }
 
-// An ambient that turns warm after an hour and a half: what is enough earlier is not later, and minutes against micrometres say the same as the plan.
+// An ambient that turns warm after an hour and a half: what is enough earlier is not later, and minutes against
+// micrometres say the same as the plan.
 TEST(WarmUp, IsNoLongerThanAnyThatIsShownToBeEnough) {
   std::string text = kOneBody;
   text.replace(text.find("ambient: 20 degC"), 16, "ambient: [[0 min, 20 degC], [90 min, 20 degC], [100 min, 24 degC]]");
@@ -137,7 +139,8 @@ TEST(WarmUp, KeepsAMarginFreeAndAsksForNothingWhereTheJobIsWithinItAtOnce) {
   EXPECT_TRUE(none.staged.sections.empty());
 }
 
-// A spindle that warms in 8 min on a column that takes hours: full speed makes the column warm and the spindle too warm, which a second speed mends.
+// A spindle that warms in 8 min on a column that takes hours: full speed makes the column warm and the spindle too warm,
+// which a second speed mends.
 constexpr const char* kTwoBodies = R"(name: two_bodies
 reference_temperature: 20 degC
 ambient: 20 degC
@@ -216,7 +219,8 @@ TEST(WarmUpAtLength, OfTwoBodiesIsTheShortestOfAllTriedOneByOne) {
   EXPECT_LE(plan.constant.duration_s(), 1.02 * one_s);
 }
 
-// A light spindle, a head that pulls the other way, and a heavy column: three bodies take up to three sections (Pontryagin: a section a body).
+// A light spindle, a head that pulls the other way, and a heavy column: three bodies take up to three sections
+// (Pontryagin: a section a body).
 constexpr const char* kThreeBodies = R"(name: three_bodies
 reference_temperature: 20 degC
 ambient: 20 degC
@@ -277,7 +281,8 @@ TEST(WarmUp, OnDrawnMachinesHasThePeaksOfTheClosedForm) {
   }
 }
 
-// The margin is chosen on 200 machines; on 200 others at least as many keep the tolerance as 95 of 100 let expect (187 in 99 of 100 cases).
+// The margin is chosen on 200 machines; on 200 others at least as many keep the tolerance as 95 of 100 let expect (187 in
+// 99 of 100 cases).
 TEST(WarmUp, KeepsAsMuchFreeAsMachinesThatAreOffNeed) {
   const WarmUpPlan plan = planned(kOneBody, {.from = {.model = "reduced"}, .tolerance_um = 4.0, .model_error = 0.1});
   ASSERT_TRUE(plan.held.has_value());

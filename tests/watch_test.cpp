@@ -1,4 +1,5 @@
-// The watch of a running observer, on a machine of three lumped parts: alarms where nothing is wrong are as seldom as is stated, faults raise one.
+// The watch of a running observer, on a machine of three lumped parts: alarms where nothing is wrong are as seldom as is
+// stated, faults raise one.
 
 #include "follow/watch.hpp"
 
@@ -55,8 +56,8 @@ Raised alarms(const TrialMachine& machine, const compensation::ObservedRun& run)
   return raised;
 }
 
-// Stated: one of 300 days for each of three scales, 7 alarms of 700 days. Those of one machine come together, so twice as many are let pass. There are 9;
-// with thresholds of ten machines, as they were, 22.
+// Stated: one of 300 days for each of three scales, 7 alarms of 700 days. Those of one machine come together, so twice as
+// many are let pass. There are 9; with thresholds of ten machines, as they were, 22.
 TEST(Watch, RaisesNoMoreAlarmsOnOtherMachinesThanItStates) {
   EXPECT_EQ(limits().machine_days, 700.0);
   std::size_t n = 0;
@@ -115,7 +116,7 @@ TEST(Watch, LimitsAreReadAsTheyWereWrittenAndNotForAnotherModel) {
 TEST(Watch, LimitsThatAreNotAsTheyWereWrittenAreRefused) {
   output::Json json = watch_json(limits(), "one");
   const auto read = [](const output::Json& j) { (void)read_watch(write_file("changed.watch", j.dump(1)), "one"); };
-  EXPECT_NO_THROW(read(json));  // the layout is nobody's business
+  EXPECT_NO_THROW(read(json));  // the layout does not matter
   json["scales"][0]["threshold"] = 2.0 * json["scales"][0]["threshold"].get<double>();
   EXPECT_THAT([&] { read(json); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("changed.watch"), HasSubstr("damaged or changed"))));

@@ -1,4 +1,5 @@
-// Numbers of a scenario that are far from what it says: one or two are causes by their own key; many of them say that the model is of another make than the machine.
+// Numbers of a scenario that are far from what it says: one or two are causes by their own key; many of them say that the
+// model is of another make than the machine.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -202,7 +202,7 @@ TEST_F(XdmfFieldsTest, BothTimesNameTheSameMeshWhichKeeps64Bits) {
   EXPECT_EQ(grid(0)->FindNestedElementWithNameAndAttribute("Attribute", "Name", "stress_MPa"), nullptr);
 }
 
-/// Numbers of the shapes from the table in "XDMF Model and Format"; no reader of ours stands between.
+/// Numbers of the shapes from the table in "XDMF Model and Format"; read without any reader of ours.
 TEST_F(XdmfFieldsTest, MixedCellsAreTheNumberOfTheirShapeAndTheirNodes) {
   write_two_times(out_, mixed_, false);
   vtkXMLDataElement* topology = grid(0)->FindNestedElementWithName("Topology");

@@ -42,7 +42,8 @@ void expect_same(const Effect& a, const Effect& b, const std::string& text) {
   EXPECT_EQ(a.in, b.in) << text;
 }
 
-/// An effect whose every number is drawn from its range; keys that go together or exclude each other are the kind's own business.
+/// An effect whose every number is drawn from its range; keys that go together or exclude each other are the kind's own
+/// business.
 Effect drawn(const EffectKind& kind, Place place, Random& random) {
   Effect e = make_effect(
       kind.key, place,

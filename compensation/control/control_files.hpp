@@ -1,5 +1,5 @@
 #pragma once
-// The C files of this folder as text: what is exported beside a model is, to the byte, what was compiled in.
+// The C files of this folder as text. The exported files are byte by byte those that the program itself is compiled from.
 
 #include <string>
 #include <vector>

@@ -12,7 +12,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr int kLags = 67;  // 0.1 h to 200 h, 12 % from one to the next
+constexpr int kLags = 67;  // 0.1 h to 200 h, ratio 1.12
 
 double lag_s(int i) {
   return 360.0 * std::pow(2000.0, static_cast<double>(i) / (kLags - 1));
@@ -30,7 +30,7 @@ struct Fit {
   int lag_1 = 0, lag_2 = 0;
 };
 
-using Columns = std::vector<Eigen::VectorXd>;  // of temperatures, one a lag, at all readings
+using Columns = std::vector<Eigen::VectorXd>;  // of temperatures, one per lag, at all readings
 
 Fit fit_linear(const std::vector<const Eigen::VectorXd*>& columns, const Eigen::VectorXd& y, int left_out) {
   const Eigen::Index n = y.size() - (left_out >= 0 ? 1 : 0);
@@ -48,7 +48,7 @@ Fit fit_linear(const std::vector<const Eigen::VectorXd*>& columns, const Eigen::
   return fit;
 }
 
-/// A way to fit: all lags it may take, in turn.
+/// A fit procedure: tries all lags in turn.
 using Search = std::function<void(int left_out, const std::function<void(const Fit&, double predicted)>&)>;
 
 Fit best_of(const Search& search, int left_out, double* predicted = nullptr) {
@@ -88,7 +88,7 @@ AmbientModel judged(const std::string& name, int n_parameters, const Search& sea
   return model;
 }
 
-/// Range of a lag, or of a coefficient, over all fits whose sum of squares stays below the limit.
+/// Range of a lag, or of a coefficient, over all fits whose sum of squares is below the limit.
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void take(double x) {

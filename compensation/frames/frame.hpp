@@ -1,12 +1,12 @@
 #pragma once
-// The frames of a control as it chains them: translation, rotation, scale and mirror, composed and inverted.
+// The frames of a control: translation, rotation, scale and mirror, with composition and inverse.
 
 #include <Eigen/Core>
 #include <array>
 
 namespace driftwright::compensation {
 
-/// What a frame is written as on the control: CTRANS : CROT : CSCALE : CMIRROR.
+/// The parts of a frame as written on the control: CTRANS : CROT : CSCALE : CMIRROR.
 struct FrameParts {
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();  ///< about X, then Y, then Z, all fixed
@@ -14,7 +14,7 @@ struct FrameParts {
   std::array<bool, 3> mirror = {false, false, false};
 };
 
-/// An affine map p -> linear p + shift from the coordinates of a program to those nearer the machine.
+/// An affine map p -> linear p + shift, from program coordinates towards machine coordinates.
 struct Frame {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
@@ -22,20 +22,20 @@ struct Frame {
   [[nodiscard]] Eigen::Vector3d map(const Eigen::Vector3d& point_m) const { return linear * point_m + shift_m; }
 };
 
-/// linear = Rz Ry Rx diag(scale) diag(mirror ? -1 : 1), shift as it is.
+/// linear = Rz Ry Rx diag(scale) diag(mirror ? -1 : 1), shift unchanged.
 /// @throws RangeError  for a scale that is not above 0, and for values that are not finite
 [[nodiscard]] Frame frame_of(const FrameParts& parts);
 
 /// The control's `outer : inner` (the source paper writes +): p -> outer(inner(p)). Associative, not commutative.
 [[nodiscard]] Frame compose(const Frame& outer, const Frame& inner);
 
-/// inverse(f) after f and f after inverse(f) leave every point where it is.
-/// @throws RangeError  for a frame that flattens space
+/// The inverse: inverse(f) after f and f after inverse(f) map every point to itself.
+/// @throws RangeError  for a singular frame
 [[nodiscard]] Frame inverse(const Frame& frame);
 
 /// The control's frames: BKS <-$P_BFRAME- BNS <-$P_IFRAME- ENS <-$P_PFRAME- WKS.
 struct FrameChain {
-  Frame base;          ///< $P_BFRAME, where the thermal correction goes: every work offset follows
+  Frame base;          ///< $P_BFRAME, which contains the thermal correction: every work offset follows it
   Frame settable;      ///< $P_IFRAME: G54 ...
   Frame programmable;  ///< $P_PFRAME: TRANS, ROT, SCALE of the program
 };

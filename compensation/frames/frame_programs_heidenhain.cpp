@@ -8,7 +8,7 @@ namespace driftwright::compensation {
 
 std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
-  const double bore_mm = 1e3 * (p.free_diameter_m + p.ball_diameter_m);  // the cycle takes the ball off itself
+  const double bore_mm = 1e3 * (p.free_diameter_m + p.ball_diameter_m);  // the cycle itself subtracts the ball
   std::vector<std::string> blocks = {"BEGIN PGM THERMFRAME MM", "; " + p.made_by, "; " + last_numbers(p),
                                      "; " + origin_words(p), "; " + arc_words(p)};
   const auto add = [&](std::string block) { blocks.push_back(std::move(block)); };

@@ -7,14 +7,15 @@
 namespace driftwright::compensation {
 namespace {
 
-// A preview touches nothing and must not refuse: #<_task> is 0 there. M66 waits for what is queued, which ABORT would drop.
+// A preview does not probe and must not stop with an error: #<_task> is 0 there. M66 waits for queued moves, which ABORT
+// would drop.
 std::string refusal(std::size_t label, const std::string& condition, const std::string& way_out, const std::string& words) {
   return fmt::format(
       "o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
       condition, way_out, words, label);
 }
 
-// Touches into #base .. #base + 4, the middle into #base + 5 and #base + 6.
+// Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6.
 std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::size_t base) {
   const auto& at = ring.at_m;
   const std::string up = fmt::format("G0 Z{}\n", mm(at[2] + p.clearance_m));
@@ -43,7 +44,7 @@ std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::si
                             base + 2, base + 3);
 }
 
-// The scale acts on the joint, after all offsets: what stands in G59.3 is the shift before it, turned and moved as G54 is.
+// The scale acts on the joint, after all offsets. G59.3 contains the shift before it, turned and moved as G54.
 std::string linuxcnc_therm_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   std::string text = fmt::format("(Driftwright: rings by G38.3, the thermal frame into G59.3)\n({})\n({})\n",

@@ -6,8 +6,8 @@
 namespace driftwright::compensation {
 namespace {
 
-// Names start with TF_: X1, Y1, Z1, I and TURN are taken by axes, interpolation and helices. No SAVE, which would take the new frame
-// away at the return; RINGMEAS has it, so that no G function of the caller changes.
+// Names start with TF_, because X1, Y1, Z1, I and TURN are names of axes, interpolation and helices. No SAVE here, because
+// it would remove the new frame at the return; RINGMEAS has it, so that no G function of the caller changes.
 std::string siemens_therm_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   std::string text = fmt::format("PROC THERMFRAME(VAR INT TF_STATUS) DISPLOF\n; {}\n; {}\n; {}\n", p.made_by,

@@ -9,15 +9,15 @@ namespace {
 
 constexpr int kMostRounds = 300;
 constexpr double kCloseEnough = 0.99;
-/// Below a nanometre a frame fits; there is nothing left to weigh.
+/// Residual below which a frame fits exactly: a nanometre.
 constexpr double kFits_m = 1e-9;
-/// Of a point's weight against the mean: those that are met well come back when others have been mended.
+/// Smallest weight of a point relative to the mean, so that a point with a small error can regain weight later.
 constexpr double kLeastWeight = 1e-6;
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 7>;
 using Step = Eigen::Matrix<double, 7, 1>;  // scale, shift, shift y, turn, shift z, tilt, scale y
 
-/// How far a step moves each point; of second order is a thousandth of a micrometre.
+/// Motion of each point per unit of a step; the second order is a thousandth of a micrometre.
 Rows slopes(std::span<const RingPair> points) {
   Rows rows = Rows::Zero(3 * static_cast<Eigen::Index>(points.size()), 7);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -71,7 +71,7 @@ MinimaxFrame fit_minimax_frame(std::span<const RingPair> points) {
     step.head(n_unknowns) = dense::least_squares(normal.topLeftCorner(n_unknowns, n_unknowns), right.head(n_unknowns));
     const Eigen::VectorXd moved_m = rows * step;
     const Eigen::VectorXd left_m = (missed_m - moved_m.reshaped(3, n)).colwise().norm().transpose();
-    // a weighted mean that no frame makes smaller is not above the largest of any
+    // a weighted mean that no frame can reduce is a lower bound of the largest error of any frame
     least_m = std::max(least_m, std::sqrt(weights.dot(left_m.cwiseAbs2())));
     if (left_m.maxCoeff() < most_m) {
       most_m = left_m.maxCoeff();

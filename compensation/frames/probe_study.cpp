@@ -8,7 +8,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kSurface_m = 1.234;  // no multiple of any encoder step
+constexpr double kSurface_m = 1.234;  // not a multiple of any encoder step
 constexpr int kPerFeed = 8;           // calibration touches
 
 ProbeCalibration calibrate(const ProbeStudySettings& s, int axis) {
@@ -32,7 +32,7 @@ ProbeErrors worst_of(const ProbeStudySettings& s, const ProbeSystem& system, con
     so_far = std::max(so_far, std::abs(at_m - calibration.reference_m));
   };
   for (int i = 0; i < s.touches; ++i) {
-    Approach approach = first;  // met anywhere in the ramp, as long as the probe still triggers
+    Approach approach = first;  // the surface is anywhere in the ramp, as long as the probe still triggers
     if (approach.deceleration_m_s2 > 0.0)
       approach.braking_s = random.uniform(-5e-3, 0.6) * approach.feed_m_s / approach.deceleration_m_s2;
     const Touch t = touch(system, approach, random);
@@ -46,7 +46,7 @@ ProbeErrors worst_of(const ProbeStudySettings& s, const ProbeSystem& system, con
   return worst;
 }
 
-/// Counter zero that makes the counter roll over 4 counts before the surface, in the middle of the lag.
+/// The counter zero for which the counter rolls over 4 counts before the surface, in the middle of the lag.
 std::int64_t rolling_at(const ProbeSystem& system, double surface_m, int bits) {
   const auto at = static_cast<std::int64_t>(std::floor(surface_m / system.encoder_step_m));
   return (std::int64_t{1} << (bits - 1)) - at + 4;

@@ -1,5 +1,6 @@
 #pragma once
-// What the lag of a probe leaves: touches at several feeds, and the thermal frame made of rings so measured.
+// Studies the errors from a probe's lag: touches at several feeds, and the thermal frame computed from rings measured this
+// way.
 
 #include <string>
 #include <vector>
@@ -8,24 +9,25 @@
 
 namespace driftwright::compensation {
 
+/// Settings of the study.
 struct ProbeStudySettings {
   ProbeSystem system = {};
   std::vector<double> feeds_m_s = {};  ///< ascending
   double reference_feed_m_s = 10e-3 / 60.0;
   double deceleration_m_s2 = 0.3;
-  int touches = 100;  ///< of each kind at each feed
+  int touches = 100;  ///< number of touches of each kind at each feed
   double ring_distance_m = 9.6;
   double free_diameter_m = 0.05;
   std::uint64_t seed = 1;
 };
 
-/// Largest distances from where the slow touches of the calibration put the surface [m].
+/// Largest distances from the surface position that the slow touches of the calibration give [m].
 struct ProbeErrors {
-  double plain_m = 0.0;      ///< as the control sees it
-  double latched_m = 0.0;    ///< latch alone: the lag stays
-  double by_speed_m = 0.0;   ///< less N v T at the commanded feed
+  double plain_m = 0.0;      ///< as the control computes it
+  double latched_m = 0.0;    ///< with the latch only: the lag remains
+  double by_speed_m = 0.0;   ///< less N v T with the commanded feed
   double whole_m = 0.0;      ///< less the increments of N cycles
-  double corrected_m = 0.0;  ///< latch and increments
+  double corrected_m = 0.0;  ///< with latch and increments
 };
 
 struct ProbeRow {
@@ -35,7 +37,7 @@ struct ProbeRow {
   ProbeErrors worst = {};
 };
 
-/// Error of TEMP_SHIFT and TEMP_SCALE where nothing has moved between two measurements of the rings.
+/// Error of TEMP_SHIFT and TEMP_SCALE if nothing has moved between two measurements of the rings.
 struct ShiftRow {
   std::string touches = {};  ///< "four" or "one" per ring and axis
   double feed_before_m_s = 0.0, feed_now_m_s = 0.0;
@@ -50,7 +52,7 @@ struct ProbeStudy {
   std::vector<ShiftRow> shifts;
 };
 
-/// Calibrates each axis by touches at constant speed, then judges on others, whose seeds differ.
+/// Calibrates each axis by touches at constant speed, then evaluates other touches, with other seeds.
 /// @throws InputError, RangeError  as calibrate_probe() and touch()
 [[nodiscard]] ProbeStudy study_probe(const ProbeStudySettings& settings);
 

@@ -85,7 +85,7 @@ TableFrame fit_table_frame(std::span<const RingPair> rings) {
   const double before_m = (*last->before_m)[0] - (*first->before_m)[0], now_m = (*last->now_m)[0] - (*first->now_m)[0];
   check_order(before_m, now_m);
   check_scale(now_m / before_m);
-  // Gauss and Newton; the angles are microradians, so that each step leaves a millionth of the misfit.
+  // Gauss-Newton; the angles are microradians, so each step reduces the misfit to a millionth.
   const int n_unknowns = tells_scale_y(rings) ? 7 : 6;
   Unknowns u = Unknowns::Zero();
   for (int step = 0; step < 4; ++step) {

@@ -141,7 +141,8 @@ AxisTemperature fit_axis_temperature(std::span<const double> train_K, std::span<
     absolutes_m.push_back(x.scale * x.shift_m);
   }
   const Line slope = fit_line(train_K, slopes), absolute = fit_line(train_K, absolutes_m);
-  // tan_beta vanishes at T0; where the errors do not follow the temperature at all there is none, and training's mean has to do
+  // tan_beta is zero at T0. If the errors do not depend on the temperature there is no such T0, and the mean of the training
+  // data is used
   const double zero_K = slope.slope != 0.0 ? slope.mean_x - slope.mean / slope.slope : slope.mean_x;
   return {.reference_K = zero_K, .k0_m = absolute.at(zero_K), .k0_m_K = absolute.slope, .slope_1_K = slope.slope};
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A table's error over a shift, with the frame as its correction: rings every k minutes, a thermometer, a model, and mixtures.
+// A table's error over a work shift, corrected by the frame: from rings every k minutes, a thermometer, a model, and
+// combinations.
 
 #include <Eigen/Core>
 #include <span>
@@ -10,30 +11,31 @@
 
 namespace driftwright::compensation {
 
-/// Position errors (actual - commanded) at points of a table over time, and the points where rings sit among them.
+/// Position errors (actual - commanded) at points of a table over time.
 struct TableErrors {
   std::vector<double> time_s;
   std::vector<Eigen::Vector3d> points_m;
-  std::vector<Eigen::Matrix3Xd> error_m;  ///< one a time, a column a point
+  std::vector<Eigen::Matrix3Xd> error_m;  ///< one per time; one column per point
 };
 
-/// What is left of the errors with one frame a time.
+/// The frame at each time, and the errors that remain with it.
 struct FrameCourse {
   std::vector<TableFrame> frames;
   std::vector<Eigen::Matrix3Xd> left_m;
 };
 
-/// @param frames  at the table's times
+/// Applies given frames. @param frames  at the table's times
 [[nodiscard]] FrameCourse through_frame(const TableErrors& table, std::vector<TableFrame> frames);
 
-/// The way of every predictor through the frame: errors at ring places, measured or predicted, make the frame of that time.
-/// @param rings_m      nominal places, two or more
-/// @param ring_error_m one matrix a time of the table, a column a ring: what is believed of the errors there
+/// Applies the frames that follow from errors at ring positions, measured or predicted.
+/// @param rings_m      nominal positions, two or more
+/// @param ring_error_m one matrix per time of the table, one column per ring: the assumed errors there
 /// @throws InputError  as fit_table_frame()
 [[nodiscard]] FrameCourse through_frame(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
                                         const std::vector<Eigen::Matrix3Xd>& ring_error_m);
 
-/// What is believed of the errors at the table's points makes the frame of that time: the one that leaves the least of the largest error.
+/// Applies the frames that follow from assumed errors at the table's points: at each time the one with the smallest largest
+/// error.
 /// @throws InputError  as fit_minimax_frame()
 [[nodiscard]] FrameCourse through_best_frame(const TableErrors& table, const std::vector<Eigen::Matrix3Xd>& believed_m);
 
@@ -44,39 +46,40 @@ struct RingPlan {
   std::uint64_t seed = 1;
 };
 
-/// Ring errors as the last measurement found them, at each of the table's times; the first one is made at the first time.
+/// Ring errors of the last measurement, at each of the table's times; the first measurement is at the first time.
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> held_rings(const std::vector<double>& time_s,
                                                        const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,
                                                        const RingPlan& plan);
 
-/// The same carried on by what a model says has changed since.
+/// The same plus the change that a model predicts since the last measurement.
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> carried_rings(const std::vector<double>& time_s,
                                                           const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,
                                                           const std::vector<Eigen::Matrix3Xd>& model_ring_error_m,
                                                           const RingPlan& plan);
 
-/// Errors all over the table as a model has them, mended by what the last measurement of the rings found wrong with it (a frame).
-/// through_best_frame() then makes the frame of it.
-/// @param model_error_m, model_ring_error_m  at the table's points and at the rings, one matrix a time each
+/// A model's errors over the whole table, corrected by a frame fitted to its errors at the last measurement of the rings.
+/// Use the result with through_best_frame().
+/// @param model_error_m, model_ring_error_m  at the table's points and at the rings, one matrix per time each
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> carried_table(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
                                                           const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,
                                                           const std::vector<Eigen::Matrix3Xd>& model_error_m,
                                                           const std::vector<Eigen::Matrix3Xd>& model_ring_error_m,
                                                           const RingPlan& plan);
 
-/// Ring errors as straight lines of one temperature, fitted to what measurements of another time found.
-/// @param train_K, train_error_m  at the measurements; at least three that differ
+/// Ring errors as linear functions of one temperature, fitted to measurements from another time.
+/// @param train_K, train_error_m  at the measurements; at least three different temperatures
 /// @throws InputError  for fewer, or for temperatures that do not differ
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> rings_by_temperature(std::span<const double> train_K,
                                                                  std::span<const Eigen::Matrix3Xd> train_error_m,
                                                                  std::span<const double> temperature_K);
 
-/// The control's own compensation from the same measurements: K0 and tan_beta as straight lines of the temperature, P0 = 0.
+/// The control's built-in compensation from the same measurements: K0 and tan_beta as linear functions of the temperature,
+/// P0 = 0.
 [[nodiscard]] AxisTemperature fit_axis_temperature(std::span<const double> train_K,
                                                    std::span<const Eigen::Matrix3Xd> train_error_m,
                                                    std::span<const Eigen::Vector3d> rings_m);
 
-/// Largest errors of a course over time and table [m].
+/// Largest errors over time and table [m].
 struct PeakErrors {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, position_m = 0.0;  ///< position: the length of the vector
 };

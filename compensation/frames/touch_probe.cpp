@@ -9,7 +9,7 @@
 namespace driftwright::compensation {
 namespace {
 
-/// Way and time of the axis, counted from where and when it begins to brake.
+/// Distance and time of the axis, counted from where and when it begins to brake.
 struct Motion {
   double feed_m_s, deceleration_m_s2;  // 0: never brakes
 
@@ -18,7 +18,7 @@ struct Motion {
     const double braked_s = std::min(t_s, feed_m_s / deceleration_m_s2);
     return feed_m_s * braked_s - 0.5 * deceleration_m_s2 * braked_s * braked_s;
   }
-  /// When it is `way_m` beyond that place; NaN where it never gets.
+  /// Time at which it is `way_m` beyond that place; NaN if it never gets there.
   [[nodiscard]] double time_s(double way_m) const {
     if (way_m <= 0.0 || deceleration_m_s2 == 0.0) return way_m / feed_m_s;
     return (feed_m_s - std::sqrt(feed_m_s * feed_m_s - 2.0 * deceleration_m_s2 * way_m)) / deceleration_m_s2;
@@ -53,7 +53,7 @@ Touch touch(const ProbeSystem& system, const Approach& approach, Random& random)
   require(std::isfinite(trigger_s), "a way beyond the surface that triggers the probe");
   const double lag_s = system.lag_s[static_cast<std::size_t>(approach.axis)];
   const double arrival_s = trigger_s + std::max(0.0, lag_s + system.jitter_s * random.normal());
-  const double since_cycle_s = random.uniform() * system.cycle_s;  // cycles know nothing of touches
+  const double since_cycle_s = random.uniform() * system.cycle_s;  // cycles are not synchronised with touches
   const double seen_s = arrival_s + system.cycle_s - since_cycle_s;
   const auto counter = [&](double t_s) {
     const double at_m = approach.surface_m + approach.direction * (motion.way_m(t_s) - met_m);
@@ -62,7 +62,7 @@ Touch touch(const ProbeSystem& system, const Approach& approach, Random& random)
   };
   Touch found;
   found.latched_share = std::floor(since_cycle_s / system.latch_s) * system.latch_s / system.cycle_s;
-  // The control knows its position from homing and adds increments to it, each the short way round the counter.
+  // The control knows its position from homing and adds increments to it, each taken as the short way around the counter.
   const double first_s = seen_s - static_cast<double>(kKeptIncrements) * system.cycle_s;
   const double first_m = approach.surface_m + approach.direction * (motion.way_m(first_s) - met_m);
   double position = std::floor(first_m / system.encoder_step_m);

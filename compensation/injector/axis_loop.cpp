@@ -11,7 +11,7 @@
 namespace driftwright::compensation {
 namespace {
 
-/// When the axis sets out, and whether it works at a time.
+/// The start times of passes, and whether a pass is under way at a time.
 struct Passes {
   AxisMotion motion;
 
@@ -29,7 +29,7 @@ ErrorStage stage(std::string cause, std::string words, const std::vector<double>
   ErrorStage s{.cause = std::move(cause), .words = std::move(words)};
   double sum = 0.0;
   int n = 0;
-  for (std::size_t i = 1; i < error_um.size(); ++i) {  // nothing is corrected at the first sample yet
+  for (std::size_t i = 1; i < error_um.size(); ++i) {  // no correction is in force at the first sample yet
     if (!counts[i]) continue;
     sum += error_um[i] * error_um[i];
     s.peak_um = std::max(s.peak_um, std::abs(error_um[i]));
@@ -48,7 +48,7 @@ std::vector<double> minus(const std::vector<double>& a, const std::vector<double
   return d;
 }
 
-/// Just before each sample the value of the one before is in force.
+/// Just before each sample the previous value is in force.
 std::vector<double> one_sample_late(const std::vector<double>& values) {
   std::vector<double> late(values.size(), 0.0);
   std::copy(values.begin(), values.end() - 1, late.begin() + 1);
@@ -62,7 +62,7 @@ std::vector<double> in_insertions(const AxisLoop& loop, const std::vector<double
   return given_um;
 }
 
-/// What a largest slew has let in just before each time.
+/// The values limited by the largest slew, just before each time.
 std::vector<double> slewed(const std::vector<double>& time_s, const std::vector<double>& wish_um, double slew_um_s) {
   std::vector<double> in_um(wish_um.size(), 0.0);
   for (std::size_t i = 1; i < wish_um.size(); ++i) {

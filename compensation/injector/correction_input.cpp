@@ -56,7 +56,7 @@ double quarters_per(const std::string& unit, const CorrectionScale& scale, const
 const std::string kMicrometres = "um";
 constexpr std::size_t kShown = 60;  // of a line in messages
 
-/// The correction [um] of an axis in a line of `follow`; of the only one where none is named. None where it says none.
+/// The correction [um] of an axis in a line of `follow`; of the only axis if none is named. None if the line has none.
 std::optional<double> followed_um(std::string_view line, const std::string& axis) {
   nlohmann::ordered_json j;
   try {
@@ -73,7 +73,7 @@ std::optional<double> followed_um(std::string_view line, const std::string& axis
   return value->get<double>();
 }
 
-/// Beyond this a wish in quarter steps is a slip, and 64-bit counts are far from full.
+/// Largest accepted request in quarter steps; more is an error in the input. 64-bit counts hold far more.
 constexpr double kMostQuarters = 1e15;
 
 double checked_quarters(double quarters, const std::string& path, std::int64_t line) {
@@ -159,7 +159,7 @@ void CorrectionInput::read_table() {
     if (*key < 0.0) fail(path_, n_lines, fmt::format("time {} must be 0 or later", first));
     if (!(*key > last_key)) fail(path_, n_lines, fmt::format("{} does not come after the line before", first));
     last_key = *key;
-    // row i stands for the time (i - 1) row_s
+    // row i is the time (i - 1) row_s
     const double row = by_row ? *key : std::ceil(*key * rows_per_unit - 1e-6) + 1.0;
     if (!(row < 9e18)) fail(path_, n_lines, fmt::format("{} lies beyond the last row that can be counted", first));
     steps_.push_back({static_cast<std::int64_t>(row), checked_quarters(*value * quarters_per_unit, path_, n_lines)});
@@ -181,10 +181,10 @@ std::int64_t CorrectionInput::holds_until() const {
 void CorrectionInput::poll() {
   if (pipe_ < 0) return;
   std::array<char, 4096> bytes;
-  constexpr int kMostReads = 256;  // as much as the largest pipe holds; who writes faster may not stop the rows
+  constexpr int kMostReads = 256;  // as much as the largest pipe holds; a faster writer must not stop the rows
   for (int i = 0; i < kMostReads; ++i) {
     const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
-    if (n <= 0) return;  // nothing there by now, no writer yet, or the last one has gone: the correction stays
+    if (n <= 0) return;  // no data yet, no writer yet, or the last writer has gone: the correction stays
     rest_.append(bytes.data(), static_cast<std::size_t>(n));
     std::size_t begin = 0;
     for (std::size_t end; (end = rest_.find('\n', begin)) != std::string::npos; begin = end + 1) {

@@ -1,5 +1,6 @@
 #pragma once
-// What `driftwright inject` is told to insert: a table by row or time of the stream, or numbers from a pipe as they come.
+// The corrections that `driftwright inject` inserts: a table by row or time of the stream, or numbers from a pipe as they
+// arrive.
 
 #include <cstdint>
 #include <string>
@@ -11,40 +12,40 @@
 
 namespace driftwright::compensation {
 
-/// How numbers become quarter steps. Units: "um" (the tool's error, actual - commanded) and "count" (of the control).
+/// Conversion of numbers to quarter steps. Units: "um" (the tool's error, actual - commanded) and "count" (of the control).
 struct CorrectionScale {
-  double period_um = 0.0;  ///< travel of one signal period; 0: not told, so that um are refused
+  double period_um = 0.0;  ///< travel of one signal period; 0: unknown, values in um are refused
   compensation::Counting counting = compensation::Counting::kX4;
-  double row_s = 0.0;       ///< time of one row; 0: not told, so that times are refused
+  double row_s = 0.0;       ///< time of one row; 0: unknown, times are refused
   std::string unit = "um";  ///< of numbers from a pipe
-  std::string column =
-      {};  ///< of a table of more than two, or axis of lines of `follow`; empty: `predicted_um`, or the only axis
-  bool is_strict = true;  ///< a line of a pipe that is no correction ends it; else it is a fault
+  /// Of a table with more than two columns, or axis in lines of `follow`; empty: `predicted_um`, or the only axis.
+  std::string column = {};
+  bool is_strict = true;  ///< true: a line of a pipe that is no correction is an error; false: it is reported as a fault
 };
 
-/// The wished correction in quarter steps, row after row.
+/// The requested correction in quarter steps, row by row.
 class CorrectionInput {
  public:
-  /// A regular file is a table: the header names `row` (input rows, from 1), `time_s` or `time_min` first, then one column in `_um`
-  /// or `_count`, or several of which one is meant, as in the corrected.csv of `compensate`; a value holds from its row or time on, before the
-  /// first one the wish is 0. Anything else (a FIFO, /dev/fd/3) is a pipe: one number a line, or a line of JSON as `follow` writes it, in force from
-  /// the first row that is read after it.
+  /// A regular file is a table: its header names `row` (input rows, from 1), `time_s` or `time_min` first, then one column
+  /// in `_um` or `_count`, or several of which `column` selects one, as in the corrected.csv of `compensate`. A value
+  /// applies from its row or time on; before the first one the request is 0. Anything else (a FIFO, /dev/fd/3) is a pipe:
+  /// one number per line, or a line of JSON as `follow` writes it, in force from the first row that is read after it.
   /// @throws InputError  with line and what is allowed
   CorrectionInput(const std::string& path, const CorrectionScale& scale);
   ~CorrectionInput();
   CorrectionInput(const CorrectionInput&) = delete;
   CorrectionInput& operator=(const CorrectionInput&) = delete;
 
-  /// The wish [quarter steps] for a row. Rows may not fall.
+  /// The request [quarter steps] for a row. Row numbers must not decrease.
   [[nodiscard]] double quarters_at(std::int64_t row);
-  /// The last row up to which the wish stays as it is.
+  /// The last row up to which the request stays unchanged.
   [[nodiscard]] std::int64_t holds_until() const;
-  /// Reads what the pipe holds by now, 1 MiB at most, without waiting. @throws InputError  where it is strict: when a line is no correction, or
-  /// endless
+  /// Reads what the pipe contains now, at most 1 MiB, without waiting. @throws InputError if it is strict: when a line is no
+  /// correction, or has no end
   void poll();
-  /// What was wrong in lines since it was asked last, a sentence each.
+  /// The faults in lines since the last call, one sentence each.
   [[nodiscard]] std::vector<std::string> take_faults() { return std::exchange(faults_, {}); }
-  /// How many corrections the pipe has told.
+  /// Number of corrections read from the pipe.
   [[nodiscard]] std::int64_t n_told() const { return n_told_; }
 
  private:
@@ -62,7 +63,7 @@ class CorrectionInput {
   std::size_t next_ = 0;
   double quarters_ = 0.0;
   int pipe_ = -1;
-  std::string rest_;                       // of a line of the pipe
+  std::string rest_;                       // incomplete line of the pipe
   std::int64_t n_lines_ = 0, n_told_ = 0;  // of the pipe
   bool is_endless_ = false;
   std::vector<std::string> faults_;

@@ -97,7 +97,7 @@ void InjectedAxis::tick(std::int64_t to) {
   const double step_um_s = lag_um_s * dt_s / servo_.speed_reset_s;
   const double wanted_um_s2 = servo_.speed_gain_1_s * (lag_um_s + integral_um_s_ + step_um_s);
   const double a_um_s2 = std::clamp(wanted_um_s2, -servo_.largest_acceleration_um_s2, servo_.largest_acceleration_um_s2);
-  if (a_um_s2 == wanted_um_s2) integral_um_s_ += step_um_s;  // at the limit the integral waits
+  if (a_um_s2 == wanted_um_s2) integral_um_s_ += step_um_s;  // anti-windup: no integration at the limit
   const double watch_um = std::max(20.0 * count_um_, 4.0 * stopping_way_um(servo_, v_um_s_));
   v_um_s_ += a_um_s2 * dt_s;
   x_um_ += v_um_s_ * dt_s;
@@ -117,7 +117,7 @@ void InjectedAxis::tick(std::int64_t to) {
     injector_.freeze();
     runs_backward_ = true;
   }
-  // The same on the control's next tick as on this one: nothing moves any more.
+  // Below this speed the next tick of the control is equal to this one, so the axis is at rest.
   constexpr double kRest_um_s = 1e-3;
   const bool still = std::abs(v_um_s_) < kRest_um_s && std::abs(integral_um_s_) < kRest_um_s;
   const bool agrees = static_cast<double>(counter_.count()) * count_um_ == commanded_um_ && commanded_um_ == goal_um_;
@@ -129,7 +129,7 @@ void InjectedAxis::run_until(double t_s) {
   const std::int64_t end = ticks(t_s);
   const std::int64_t period = ticks(servo_.period_s);
   while (t_ < end) {
-    if (resting_) {  // until the injector does something
+    if (resting_) {  // nothing changes until the injector acts
       const std::int64_t next = injector_.next_event();
       if (next > end) {
         injector_.advance(end, out_);

@@ -12,7 +12,7 @@
 namespace driftwright::compensation {
 namespace {
 
-/// One dither about 00: out forward, through to the other side, and home.
+/// One dither about 00: forward, back to the other side, and home.
 std::vector<Lines> dither_rows(int n_periods) {
   const Lines home = 0;
   const int quarters = n_periods * kQuartersPerPeriod;

@@ -1,9 +1,10 @@
 #pragma once
 // Incremental encoder signals: two square waves A and B a quarter period apart, and an index line.
 //
-//     forward, A leads:   A B = 00 -> 10 -> 11 -> 01 -> 00        backward, B leads: the same read from right to left
+//     forward, A leads:   A B = 00 -> 10 -> 11 -> 01 -> 00        backward, B leads: the reverse order
 //
-// One signal period (cycle) is four quarter steps. A control counts each of them (x4), the edges of A (x2), or one of them (x1).
+// One signal period (cycle) is four quarter steps. A control counts each of them (x4), the edges of A (x2), or one of them
+// (x1).
 
 #include <array>
 #include <cstdint>
@@ -11,25 +12,25 @@
 
 namespace driftwright::compensation {
 
-/// Levels of the lines in one byte, a row of the signal: A in bit 0, B in bit 1, index in bit 2.
+/// Levels of the lines in one byte, one row of the signal: A in bit 0, B in bit 1, index in bit 2.
 using Lines = std::uint8_t;
 inline constexpr Lines kLineA = 1, kLineB = 2, kLineIndex = 4, kLinesAB = 3;
 
 /// Quarter steps in one signal period.
 inline constexpr int kQuartersPerPeriod = 4;
 
-/// Place of A and B in the forward order: 00 -> 0, 10 -> 1, 11 -> 2, 01 -> 3.
+/// Position of A and B in the forward order: 00 -> 0, 10 -> 1, 11 -> 2, 01 -> 3.
 [[nodiscard]] constexpr int phase_of(Lines lines) {
   constexpr std::array<int, 4> kPhase = {0, 1, 3, 2};
   return kPhase[lines & kLinesAB];
 }
-/// A and B at that place; any integer, taken modulo 4. The index is low.
+/// A and B at that position; any integer, taken modulo 4. The index is low.
 [[nodiscard]] constexpr Lines lines_of_phase(std::int64_t phase) {
   constexpr std::array<Lines, 4> kLines = {0, 1, 3, 2};
   return kLines[static_cast<std::size_t>(phase & 3)];
 }
 
-/// Both lines changed at once: no encoder does that, and the direction is unknown.
+/// Result of quarter_step() if both lines changed at once: an encoder cannot do that, and the direction is unknown.
 inline constexpr int kJump = 2;
 /// Quarter steps between two rows: 0, +1, -1 or kJump.
 [[nodiscard]] constexpr int quarter_step(Lines before, Lines after) {
@@ -44,7 +45,7 @@ inline constexpr int kJump = 2;
   return kStep[static_cast<std::size_t>((before & kLinesAB) << 2 | (after & kLinesAB))];
 }
 
-/// The rows of a motion of n quarter steps that begins at `from`: |n| rows, `from` itself not among them.
+/// The rows of a motion of n quarter steps from the row `from`: |n| rows, without `from` itself.
 /// @param n_quarters  > 0 forward (A leads), < 0 backward
 [[nodiscard]] std::vector<Lines> motion_rows(Lines from, int n_quarters);
 
@@ -56,8 +57,9 @@ enum class Counting { kX1 = 1, kX2 = 2, kX4 = 4 };
   return kQuartersPerPeriod / static_cast<int>(counting);
 }
 
-/// A control's counter. x4 counts every quarter step, x2 every edge of A, x1 the edges of A while B is low (between 00 and 10), so
-/// that each way back takes away what the way out has counted. Jumps count nothing, as in LinuxCNC's `encoder`; n_jumps() tells.
+/// A control's counter. x4 counts every quarter step, x2 every edge of A, x1 the edges of A while B is low (between 00 and
+/// 10), so that a motion there and back counts zero. Jumps are not counted, as in LinuxCNC's `encoder`; n_jumps() gives
+/// their number.
 class QuadratureCounter {
  public:
   /// @param start  the lines before the first row
@@ -75,11 +77,12 @@ class QuadratureCounter {
   std::int64_t n_jumps_ = 0;
 };
 
-/// Reads an encoder that may lose edges. After a jump the position is in doubt by two quarter steps; the next step tells its
-/// direction, and the jump counts with it. A second jump before that takes the first one back: a disturbance there and back.
+/// Reads an encoder that may lose edges. After a jump the position is uncertain by two quarter steps; the direction of the
+/// next step resolves it, and the jump is counted in this direction. A second jump before that cancels the first one: a
+/// disturbance there and back.
 class EncoderReader {
  public:
-  /// Quarter steps that this row makes certain: 0, +-1, or +-3 where a step resolves a jump. The first row is the reference.
+  /// Quarter steps that this row makes certain: 0, +-1, or +-3 if the step resolves a jump. The first row is the reference.
   int step(Lines lines) {
     if (!started_) {
       started_ = true;
@@ -107,7 +110,7 @@ class EncoderReader {
   [[nodiscard]] std::int64_t count() const { return count_; }  ///< quarter steps that are certain
   [[nodiscard]] std::int64_t n_jumps() const { return n_jumps_; }
   [[nodiscard]] bool in_doubt() const { return in_doubt_; }
-  /// A whole period without a jump lies behind.
+  /// True if a whole period without a jump has passed.
   [[nodiscard]] bool trusted() const { return !in_doubt_ && n_clean_ >= kQuartersPerPeriod; }
 
  private:

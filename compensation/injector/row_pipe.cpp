@@ -39,7 +39,7 @@ void RowReader::take_line(const char* begin, const char* end) {
 
 void RowReader::take_good_line(const char* begin, const char* end) {
   const std::string_view line(begin, static_cast<std::size_t>(end - begin));
-  if (n_columns_ == 2 && line.size() == 3 && is_bit(begin[0]) && begin[1] == ' ' && is_bit(begin[2])) {  // nearly all
+  if (n_columns_ == 2 && line.size() == 3 && is_bit(begin[0]) && begin[1] == ' ' && is_bit(begin[2])) {  // the usual case
     rows_.push_back(static_cast<Lines>((begin[0] & 1) | (begin[2] & 1) << 1));
     return;
   }
@@ -77,7 +77,7 @@ std::span<const Lines> RowReader::next() {
       throw InputError(fmt::format("standard input: {}", std::strerror(errno)));
     }
     const std::string held = rest_;
-    const char* begin = bytes.data();  // of the first line that is not taken
+    const char* begin = bytes.data();  // of the first line not processed yet
     const auto keep_taken = [&] {
       bytes_.assign(held).append(bytes.data(), static_cast<std::size_t>(begin - bytes.data()));
     };
@@ -109,7 +109,7 @@ std::span<const Lines> RowReader::next() {
         if (is_strict_) throw InputError(why);
         if (!is_endless_) faults_.push_back(why);
         is_endless_ = true;
-        rest_.resize(kLongestLine);  // enough to be no row when it ends
+        rest_.resize(kLongestLine);  // long enough to be invalid when it ends
       }
     } catch (const InputError&) {
       if (rows_.empty()) throw;

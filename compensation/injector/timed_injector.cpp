@@ -11,7 +11,7 @@
 namespace driftwright::compensation {
 
 TimedInjector::TimedInjector(const InsertionLimits& limits) : limits_(limits) {
-  (void)PulseInjector(limits.rules);  // looks at the rules
+  (void)PulseInjector(limits.rules);  // checks the rules
   if (limits.separation < 1 || limits.insertion_interval < 1)
     throw RangeError("separation and interval of insertions must be 1 or more");
 }
@@ -25,7 +25,8 @@ std::int64_t TimedInjector::next_insertion() const {
   if (std::abs(target_ - inserted_) < rules.quarters || rules.bypass || frozen_) return kNever;
   if (!encoder_.started() || !encoder_.trusted()) return kNever;
   if (!rules.anywhere && (encoder_.lines() & kLinesAB) != 0) return kNever;
-  // Behind the last step also when one advance() makes it on its way: else the answer would depend on how often it is called.
+  // Use the time after the last step even if one advance() makes it on its way; otherwise the result would depend on how
+  // often it is called.
   const std::int64_t at = std::max({clock_, last_out_, last_insertion_ + limits_.insertion_interval});
   const std::int64_t room = limits_.room();
   if (at + room <= edge_t_ + edge_interval_) return at;
@@ -52,7 +53,7 @@ void TimedInjector::make_step(std::int64_t t, std::vector<Edge>& out) {
 
 void TimedInjector::advance(std::int64_t t, std::vector<Edge>& out) {
   while (true) {
-    if (const std::int64_t step = next_step(); step != kNever) {  // what waits goes before a new insertion
+    if (const std::int64_t step = next_step(); step != kNever) {  // waiting steps go before a new insertion
       if (step > t) break;
       make_step(step, out);
       continue;
@@ -86,7 +87,7 @@ void TimedInjector::input(const Edge& edge, std::vector<Edge>& out) {
     out.push_back(edge);
     return;
   }
-  advance(edge.t - 1, out);  // an edge of the encoder goes before an insertion of the same moment
+  advance(edge.t - 1, out);  // an edge of the encoder goes before an insertion at the same time
   clock_ = edge.t;
   const bool index_changes = ((encoder_.lines() ^ edge.lines) & kLineIndex) != 0;
   const int steps = encoder_.step(edge.lines);
@@ -99,7 +100,7 @@ void TimedInjector::input(const Edge& edge, std::vector<Edge>& out) {
     edge_direction_ = steps < 0 ? -1 : +1;
     if (held_ == 0) held_since_ = edge.t;
     held_ += steps;
-    if (held_ == 0) held_since_ = kNever;  // a reversal has taken back what waited
+    if (held_ == 0) held_since_ = kNever;  // a reversal has cancelled the waiting steps
     ready_ = edge.t;
   }
   const std::size_t n_before = out.size();

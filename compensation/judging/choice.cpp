@@ -11,10 +11,10 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kNoError_um = 1e-6;  // less is rounding
-constexpr double kTellsApart = 2.0;   // standard errors of a difference: by chance in one of twenty
+constexpr double kNoError_um = 1e-6;  // smaller errors are rounding
+constexpr double kTellsApart = 2.0;   // standard errors of a difference; chance exceeds it in one of twenty cases
 
-/// By how many of its standard errors the mean square of one is above that of another, fold by fold; both have the same folds.
+/// Difference of the mean squares of two strategies in units of its standard error, fold by fold; both have the same folds.
 double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor& b) {
   const auto n = static_cast<double>(a.fold_errors.size());
   double sum = 0.0, squares = 0.0;
@@ -27,7 +27,7 @@ double standard_errors_above(const DeployedPredictor& a, const DeployedPredictor
   return error > 0.0 ? sum / error : sum > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-/// The first of those that count whose mean square is within one standard error of one of them.
+/// The first of the strategies that count whose mean square is within one standard error of one of them.
 const DeployedPredictor& simplest_near(std::span<const DeployedPredictor> list, const DeployedPredictor& best,
                                        const std::function<bool(const DeployedPredictor&)>& counts) {
   for (const DeployedPredictor& d : list) {
@@ -41,7 +41,7 @@ const DeployedPredictor& simplest_near(std::span<const DeployedPredictor> list, 
 }  // namespace
 
 double left_out_um(const DeployedPredictor& strategy) {
-  std::map<std::string, std::pair<double, int>> squares_of;  // and how many
+  std::map<std::string, std::pair<double, int>> squares_of;  // sum, and number of terms
   for (const FoldError& e : strategy.fold_errors) {
     squares_of[e.kind].first += e.rms_um * e.rms_um;
     ++squares_of[e.kind].second;

@@ -1,5 +1,6 @@
 #pragma once
-// Which strategy to deploy, by what each leaves on parts of the training runs that it was not fitted to. Nothing here has seen a judged row.
+// Chooses the strategy to deploy by its errors on parts of the training runs that it was not fitted to. It uses no row of
+// the judged runs.
 
 #include <span>
 #include <string>
@@ -8,14 +9,14 @@
 
 namespace driftwright::compensation {
 
-/// Errors on what was left out that differ by less than this factor do not tell which strategy is better on what comes.
+/// Two strategies whose errors on left-out rows differ by less than this factor [-] count as equally good for new records.
 inline constexpr double kAlike = 1.5;
 
-/// Name of the mean of those that are alike.
+/// Name of the strategy that averages the equally good ones.
 inline constexpr const char* kBlend = "blend";
 
-/// The error of a strategy on what was left out (`fold_errors`): of the folds of each kind the root mean square, and the geometric mean of the kinds,
-/// which weighs a factor on each of them alike [um]. Infinite without folds.
+/// The error of a strategy on left-out rows (`fold_errors`) [um]: the root mean square over the folds of each kind, then the
+/// geometric mean over the kinds, so that a factor counts the same in each kind. Infinite without folds.
 [[nodiscard]] double left_out_um(const DeployedPredictor& strategy);
 
 struct Choice {
@@ -23,13 +24,16 @@ struct Choice {
   std::string why = {};   ///< one sentence
 };
 
-/// The strategy to deploy:
-/// - a model of the machine, where the best of these leaves no more than kAlike times the least of all: its laws hold beyond what was trained on;
-/// - else the blend, unless another leaves less than 1 / kAlike of what it leaves, and that beyond chance: by two standard errors of the mean square, fold by fold;
-/// - else the simplest whose mean square is within one standard error of the best one's. Among models, too, it is the simplest of these.
+/// Chooses in this order:
+/// - a model of the machine, if the best one leaves at most kAlike times the smallest error of all, because its laws apply
+///   beyond the training data;
+/// - else the blend, unless another strategy leaves less than 1 / kAlike of the blend's error and the difference is
+///   significant: two standard errors of the mean square, fold by fold;
+/// - else the simplest strategy whose mean square is within one standard error of the best one's. The choice among models
+///   also uses this rule.
 /// @param strategies  from the simplest to the most elaborate
-/// Source: the rule of one standard error: Breiman et al., Classification and Regression Trees (1984), 3.4.3; the mean of unlike predictions against the best
-/// of them: Stock & Watson, J. Forecasting 23 (2004) 405.
+/// Source: the rule of one standard error: Breiman et al., Classification and Regression Trees (1984), 3.4.3; the mean of
+/// different predictions compared with the best of them: Stock & Watson, J. Forecasting 23 (2004) 405.
 [[nodiscard]] Choice choose(std::span<const DeployedPredictor> strategies);
 
 }  // namespace driftwright::compensation

@@ -29,7 +29,7 @@ CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> p
   const std::vector<double> inserted_um = simulate_injection(run.time_s, predicted_um, period_um).inserted_um;
   std::vector<double> residual_um;
   for (std::size_t i = 0; i < run.drift_um.size();
-       ++i) {  // the correction is renewed at each sample: just before counts, too
+       ++i) {  // the correction changes at each sample, so the value just before counts, too
     const double after_um = run.drift_um[i] - inserted_um[i];
     const double before_um = run.drift_um[i] - (i == 0 ? 0.0 : inserted_um[i - 1]);
     residual_um.push_back(std::abs(before_um) > std::abs(after_um) ? before_um : after_um);

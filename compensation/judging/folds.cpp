@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kLeastRows = 10;
 constexpr double kLeastShareOfSpeed = 0.05;
-constexpr double kSpeedStep = 0.01;  // of the largest: speeds nearer than that are one
+constexpr double kSpeedStep = 0.01;  // of the largest: closer speeds count as one
 
-/// Rows of a run that have a target of its own.
+/// Rows of a run that belong to it and have a target.
 std::vector<std::size_t> own_targets(const ObservedRun& run, const std::string& target) {
   const std::vector<double>& drift = run.readings.at(target).values;
   std::vector<std::size_t> rows;
@@ -30,7 +30,8 @@ std::vector<std::size_t> own_targets(const ObservedRun& run, const std::string& 
   return rows;
 }
 
-/// The first principal component of the thermometers per run and row, with which they rise; NaN where one is missing. Empty where none moves.
+/// The first principal component of the thermometers per run and row, with the sign of a temperature; NaN if one is missing.
+/// Empty if none changes.
 std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const FoldSettings& s) {
   if (s.thermometers.empty()) return {};
   std::vector<Record> records;
@@ -40,12 +41,12 @@ std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const
     std::vector<std::vector<double>> result;
     for (const Record& record : records) result.push_back(common.values(record, 0));
     return result;
-  } catch (const InputError&) {  // no row in which all thermometers read something
+  } catch (const InputError&) {  // no row in which all thermometers have a reading
     return {};
   }
 }
 
-/// Folds of some runs, one by one.
+/// Makes the folds of some runs, one by one.
 class FoldMaker {
  public:
   FoldMaker(std::span<const ObservedRun> runs, const std::string& target) : runs_(runs) {
@@ -53,8 +54,8 @@ class FoldMaker {
   }
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& own() const { return own_; }
 
-  /// Takes the fold of the rows that `is_hidden` of, by run, place among its own targets and row; not where it would be none. The first target of a
-  /// run, which its drift counts from, is hidden with all others alone.
+  /// Adds the fold of the rows for which `is_hidden` (run, index among its own targets, row) is true, unless it would be
+  /// empty. The first target of a run, from which its drift counts, is hidden only if all others are.
   void add(const std::string& kind, const std::string& name,
            const std::function<bool(std::size_t run, std::size_t place, std::size_t row)>& is_hidden) {
     Fold fold{kind, name, {}};

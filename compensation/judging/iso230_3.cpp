@@ -9,16 +9,17 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of a time: rows are sums of intervals
+constexpr double kRounding = 1e-9;  // of a time: row times are sums of intervals
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool is_distortion(const Channel& channel) {
   return channel.unit == "um" || channel.unit == "mm" || channel.unit == "urad";
 }
 
-/// How long the spindle turns [s], from the first row to the end of the last one at which it does; 0: it does not at the start.
+/// Duration of the spindle's running [s], from the first row to the end of the last row in which it turns; 0 if it does not
+/// turn at the start.
 double running_period_s(const Record& record, const Channel& speed) {
-  constexpr double kStill = 0.01;  // of the top speed: what a drive at rest may be logged as
+  constexpr double kStill = 0.01;  // of the top speed: a drive at rest may be logged with this much
   double running_s = 0.0, rpm = 0.0, top_rpm = 0.0;
   for (double v : speed.values) top_rpm = std::max(top_rpm, std::isnan(v) ? 0.0 : v);
   const double still_rpm = kStill * top_rpm;

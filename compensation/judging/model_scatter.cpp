@@ -3,7 +3,7 @@
 namespace driftwright::compensation {
 namespace {
 
-/// Factors on the model's heat flows. The order of draws is that of solver::flow_names(): results of studies hang on it.
+/// Factors on the model's heat flows. The order of draws is that of solver::flow_names(); results of studies depend on it.
 template <class Matrix>
 solver::ModelFactors draw_factors(const solver::ThermalSystem<Matrix>& system, double sigma, Random& random) {
   std::vector<double> factor(system.sources.size() + system.exchanges.size());

@@ -1,16 +1,18 @@
 #pragma once
-// A model that is wrong in its numbers: what predictors from a model are given, so that they are not judged by themselves.
+// Models with random errors in their numbers. Predictors based on a model get such a model, so that they are not judged with
+// the exact model that made the data.
 
 #include "base/random.hpp"
 #include "solver/model_factors.hpp"
 
 namespace driftwright::compensation {
 
-/// A linear model, full or reduced, with each heat source, then each film, joint and link, times exp(sigma N(0, 1)).
+/// A linear model, full or reduced, with each heat source, film, joint and link multiplied by exp(sigma N(0, 1)).
 template <class Matrix>
 [[nodiscard]] solver::ThermalSystem<Matrix> scattered(solver::ThermalSystem<Matrix> system, double sigma, Random& random);
 
-/// The same from a seed. @param with_bodies  also all conduction within bodies, then all rates of change, by one factor each
+/// The same from a seed. @param with_bodies also multiplies all conduction within bodies, and all rates of change, by one
+/// factor each
 [[nodiscard]] solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed,
                                               bool with_bodies = false);
 

@@ -6,8 +6,8 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kMostSteps = 5.0;            // between two files of one recording
-constexpr double kLongest_s = 12.0 * 3600.0;  // four times the longest lag of a formula: 2 % of what was before are left
+constexpr double kMostSteps = 5.0;            // longest gap between two files of one recording
+constexpr double kLongest_s = 12.0 * 3600.0;  // four times the longest lag of a formula: 2 % of earlier effects remain
 
 double usual_step_s(const Record& record) {
   std::vector<double> step_s;

@@ -29,7 +29,8 @@ namespace {
 using namespace compensation;
 
 constexpr double kInterval = 0.95;
-// Of the drift that a part left out had: a prediction that leaves more of it has not reached there, and taking three quarters of it back would leave less.
+// Share of the drift of a left-out part. A prediction that leaves more is not valid there; applying only a quarter of it
+// would leave less.
 constexpr double kHolds = 0.5;
 
 /// A strategy before it is fitted.
@@ -37,17 +38,17 @@ struct Strategy {
   std::string name;
   bool is_baseline = false;
   std::function<DeployedPredictor(std::span<const ObservedRun>)> fit;
-  bool is_blended = false;  ///< its mean with others is the blend
+  bool is_blended = false;  ///< it takes part in the blend
 };
 
-/// One record a run.
+/// One record per run.
 std::vector<Record> records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
   std::vector<Record> records;
   for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, s.count_from_start));
   return records;
 }
 
-/// One record a history, however many runs were cut from it: the same rows are the same fit.
+/// One record per history, for any number of runs cut from it: equal rows give an equal fit.
 std::vector<Record> whole_records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
   return records_of(joined_histories(runs, s.target), s);
 }
@@ -56,7 +57,7 @@ void require_thermometers(const StrategySettings& s) {
   if (s.candidates.empty()) throw InputError("there is no thermometer to choose from");
 }
 
-/// The ambient is one of them.
+/// Includes the ambient.
 std::vector<std::string> thermometers_of(const StrategySettings& s) {
   std::vector<std::string> names = s.candidates;
   if (!s.ambient.empty() && std::find(names.begin(), names.end(), s.ambient) == names.end()) names.push_back(s.ambient);
@@ -125,7 +126,7 @@ Strategy remembering(const std::string& name, const StrategySettings& s, Columns
           true};
 }
 
-/// The factors that are known best, against their own prior.
+/// The best-known factors, relative to their prior.
 std::string words(std::vector<Observer::Factor> factors) {
   constexpr std::size_t kShown = 8;
   std::stable_sort(factors.begin(), factors.end(), [](const auto& a, const auto& b) { return a.deviation < b.deviation; });
@@ -135,7 +136,8 @@ std::string words(std::vector<Observer::Factor> factors) {
   return fmt::format("{}", fmt::join(text, ", "));
 }
 
-/// Runs that were cut from longer records without what was read in rows that none of them has as its own: an observer must not learn from them.
+/// Runs cut from longer records, without readings in rows that belong to none of them: an observer must not learn from
+/// these.
 std::vector<ObservedRun> without_others_readings(std::vector<ObservedRun> histories, const StrategySettings& s) {
   for (ObservedRun& run : histories) {
     if (run.history.empty()) continue;
@@ -150,7 +152,7 @@ std::vector<ObservedRun> without_others_readings(std::vector<ObservedRun> histor
   return histories;
 }
 
-/// An observer with some sensors, or none, taught by the training runs or not.
+/// An observer with or without sensors, trained on the training runs or not.
 Strategy observing(const std::string& name, const StrategySettings& s, bool with_sensors, bool learns) {
   return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
             const Physics& p = *s.physics;
@@ -246,14 +248,14 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   return list;
 }
 
-/// What a strategy says of each fold, fitted to the rest; nothing where it cannot be fitted to the rest of one.
+/// The predictions of a strategy for each fold, fitted to the rest; empty if it cannot be fitted to one of the rests.
 using LeftOutPredictions = std::vector<std::vector<double>>;
 LeftOutPredictions left_out_predictions(const Strategy& strategy, const FoldedRuns& f) {
   LeftOutPredictions predictions;
   try {
     for (std::size_t k = 0; k < f.folds.size(); ++k)
       predictions.push_back(f.predicted_um(*strategy.fit(f.rest[k]).predictor, k));
-  } catch (const InputError&) {  // too little is left to decide by
+  } catch (const InputError&) {  // too little data remains
     return {};
   } catch (const SolveError&) {
     return {};
@@ -261,7 +263,7 @@ LeftOutPredictions left_out_predictions(const Strategy& strategy, const FoldedRu
   return predictions;
 }
 
-/// Sets errors and interval.
+/// Sets the errors and the interval.
 void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f) {
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     std::vector<double> off;
@@ -271,8 +273,8 @@ void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, c
   }
 }
 
-/// How far beyond what it was fitted on each input may go, because there the predictor has been seen to hold: of the folds that it was fitted
-/// without, and left less than kHolds of the drift, the most by which the hidden rows go beyond the others.
+/// The range beyond its training range in which each input may be used, because the predictor was accurate there: over the
+/// folds in which it left less than kHolds of the drift, the largest excess of the hidden rows over the others.
 std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& s, const FoldedRuns& folds) {
   std::vector<Record> readings;
   for (const ObservedRun& run : folds.runs) readings.push_back(scored_readings(run, s.target, s.count_from_start));
@@ -280,7 +282,7 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
   for (const Input& input : f.predictor->inputs()) {
     Reach r{.input = input.name};
     for (std::size_t k = 0; k < f.fold_errors.size(); ++k) {
-      // about its mean: an offset of the target is no drift that a prediction would have to reach
+      // about its mean, because an offset of the target is not a drift
       std::vector<double> drift_um = folds.measured_um[k];
       const double mean_um = score(drift_um).mean;
       for (double& um : drift_um) um -= mean_um;
@@ -306,16 +308,16 @@ std::vector<Reach> reach_of(const DeployedPredictor& f, const StrategySettings& 
   return reach;
 }
 
-/// Learns its fail-safe.
+/// Learns the fail-safe of a predictor.
 void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const ObservedRun> training, const FoldedRuns& folds) {
   std::vector<std::vector<double>> predicted;
-  // an observer looks after its sensors itself
+  // an observer checks its sensors itself
   std::vector<std::string> guarded;
   if (!f.predictor->looks_after_inputs()) {
     for (const Input& input : f.predictor->inputs()) guarded.push_back(input.name);
   }
   std::vector<Record> readings;
-  // a run's lead-in is followed, and bounds nothing: its rows may be those that are judged
+  // the lead-in of a run is followed, but sets no limits: its rows may belong to judged runs
   for (const ObservedRun& run : training) {
     const std::vector<double> drift_um = live(*f.predictor, run);
     predicted.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
@@ -324,7 +326,7 @@ void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const Obse
   f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true, reach_of(f, s, folds));
 }
 
-/// A strategy fitted, without errors on what is left out and fail-safe.
+/// Fits a strategy, without its errors on left-out rows and without fail-safe.
 DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
   DeployedPredictor f = strategy.fit(training);
   f.name = strategy.name;
@@ -333,13 +335,13 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   return f;
 }
 
-/// What a blend is made of.
+/// A member of a blend.
 struct Member {
   DeployedPredictor deployed;
   LeftOutPredictions predictions;
 };
 
-/// The mean of those members whose error on what was left out is alike the best one's; none where that is one alone.
+/// The mean of the members whose error on left-out rows is about equal to the smallest; none if only one qualifies.
 std::optional<DeployedPredictor> blend(std::vector<Member> members, const FoldedRuns& folds, const StrategySettings& s,
                                        std::span<const ObservedRun> training) {
   double least = std::numeric_limits<double>::infinity();
@@ -385,7 +387,7 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
       if (!fitted[i]->is_baseline) guard(*fitted[i], settings, training, folds);
     } catch (const InputError& e) {
       why[i] = e.what();
-    } catch (const SolveError& e) {  // a model that has no solution there
+    } catch (const SolveError& e) {  // the model has no solution there
       why[i] = e.what();
     }
   });

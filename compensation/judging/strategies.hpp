@@ -1,5 +1,5 @@
 #pragma once
-// The strategies that are judged side by side: what each is fitted on, what it predicts from, and what keeps it safe.
+// The strategies that are judged side by side: the data of their fit, their inputs, and their fail-safe.
 
 #include <optional>
 #include <span>
@@ -11,24 +11,25 @@
 
 namespace driftwright::compensation {
 
-/// A linear model of the machine that strategies may use. It need not be right.
+/// A linear model of the machine that strategies may use. It need not be exact.
 struct Physics {
   solver::ReducedSystem system;
-  Eigen::VectorXd start;         ///< state at the start of runs in an ambient at `start_ambient_K`
+  Eigen::VectorXd start;         ///< state at the start of runs with the ambient at `start_ambient_K`
   double start_ambient_K = 0.0;  ///< minus the reference temperature
 };
 
+/// Settings of all strategies.
 struct StrategySettings {
   std::string target;                   ///< channel in um
   std::vector<std::string> candidates;  ///< thermometers to choose from
   int n_sensors = 4;
   bool count_from_start = false;
   Image image = Image::kAutomatic;  ///< of grey grades
-  std::string speed, ambient;       ///< channels; empty: there is none
+  std::string speed, ambient;       ///< channels; empty: none
   double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
-  double drift_um = 1.0;            ///< 1 sigma of the indicator in the training runs
+  double drift_um = 1.0;            ///< 1 sigma of the indicator that measured the drift in the training runs
   std::optional<Physics> physics;
-  std::string without_physics = {};  ///< why there is none; empty: nobody asked for it
+  std::string without_physics = {};  ///< why there is none; empty: it was not requested
 };
 
 /// A strategy that could not be fitted, and why.
@@ -45,7 +46,7 @@ struct FittedStrategies {
 /// Fits all of them. @param training  with the target among the readings
 [[nodiscard]] FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training);
 
-/// Name of the strategy that does nothing.
+/// Name of the strategy without any correction.
 inline constexpr const char* kNoCorrection = "no correction";
 
 }  // namespace driftwright::compensation

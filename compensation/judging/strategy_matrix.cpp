@@ -17,7 +17,7 @@ namespace {
 
 using namespace compensation;
 
-/// From row `first` on.
+/// Range from row `first` on until a time.
 double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t i = first; i < x.size() && time_s[i] - time_s[first] <= until_s; ++i) {
@@ -38,8 +38,8 @@ constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
                                  {SensorFailure::kRising, "drifting up"},
                                  {SensorFailure::kFalling, "drifting down"}};
 
-/// The ambient as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
-/// and from there on as much more as its channel does. One that nobody knows stays unknown.
+/// The ambient according to a thermometer that fails at a time. If it gives no new readings, the last one stays; otherwise
+/// its reading at the failure is used, plus the later change of its channel. If its value is unknown, it stays unknown.
 /// @param readings  after the failure; @param channel  of the ambient thermometer in them
 TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, double from_s, const Record& readings,
                           const std::string& channel) {
@@ -60,7 +60,7 @@ TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, doub
     }
     return told;
   }
-  const std::vector<double>& read = readings.at(channel).values;  // of another place
+  const std::vector<double>& read = readings.at(channel).values;  // from another place
   double first = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < read.size(); ++i) {
     const double t_s = readings.time_s[i];
@@ -73,7 +73,7 @@ TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, doub
   return told;
 }
 
-/// The thermometer whose readings differ most from a sensor's over the run; "" where there is no other.
+/// The thermometer whose readings differ most from a sensor's over the run; "" if there is no other.
 std::string least_alike(const ObservedRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
   const Channel& mine = run.readings.at(sensor);
   std::string worst;
@@ -91,7 +91,7 @@ std::string least_alike(const ObservedRun& run, const std::string& sensor, const
   return worst;
 }
 
-/// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
+/// The conditions of one strategy: the run unchanged, and with each of its sensors failed in each way.
 std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings,
                                                             const DeployedPredictor& strategy,
                                                             const JudgedRunOfMachine& judged) {
@@ -123,12 +123,12 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
   return list;
 }
 
-/// More than without correction, by RMS or by peak.
+/// True if more remains than without correction, by RMS or by peak.
 bool is_worse_than_nothing(const Case& c) {
   return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
 }
 
-/// Of the cases that count and leave more than no correction would, the one with the most above it; null: none does.
+/// Of the cases that count and leave more than no correction, the one with the largest excess; null if there is none.
 const Case* worst_beside_nothing(const JudgedStrategy& s, const std::function<bool(const Case&)>& counts) {
   const auto excess_um = [](const Case& c) {
     return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);
@@ -166,7 +166,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const Worst all = worst_of(s, [](const Case&) { return true; });
   if (!all.peak) return;
   const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
-  // a little more than before while the drift passes through 0 is no harm
+  // a small increase while the drift passes through 0 does not count as harm
   const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
   const Case* worse = worst_beside_nothing(s, [](const Case&) { return true; });
   s.is_worse_than_nothing = worse != nullptr;
@@ -291,7 +291,7 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
     const double off = drift_um[i] - predicted[i];
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
-    // without trust nothing is promised, and nothing kept
+    // without trust there is no interval, so the row does not count
     if (const std::optional<double> interval_um = interval_in_force_um(strategy, correction.trust[i])) {
       ++n;
       if (std::abs(off) <= *interval_um) ++n_inside;

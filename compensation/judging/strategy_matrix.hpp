@@ -1,5 +1,6 @@
 #pragma once
-// Strategies x conditions: what each leaves of the drift on runs that it was not fitted on, and whether it may go on a machine.
+// Strategies x conditions: the drift that each leaves on runs that it was not fitted on, and whether it may be deployed on a
+// machine.
 
 #include "compensation/judging/strategies.hpp"
 #include "compensation/predictors/score.hpp"
@@ -10,30 +11,30 @@ namespace driftwright::compensation {
 /// A run to judge on.
 struct JudgedRunOfMachine {
   std::string family, season, name;
-  ObservedRun run;  ///< readings as instruments give them, the target true
+  ObservedRun run;  ///< readings as the instruments give them, with the true target
 };
 
 struct MatrixSettings {
   StrategySettings strategies;
   double tolerance_um = 10.0;
-  std::optional<double>
-      fails_at;           ///< share of a run after which one sensor fails, each in turn and in each way; none: none fails
-  std::string fails_in;   ///< season in which
-  std::string elsewhere;  ///< channel that a sensor reads which fell off; empty: none falls off
+  /// Share of a run after which one sensor fails, each in turn and in each way; none: no failures.
+  std::optional<double> fails_at;
+  std::string fails_in;   ///< season of these failures
+  std::string elsewhere;  ///< channel that a sensor reads after it has fallen off; empty: this failure is left out
 };
 
-/// One strategy on one run, all sensors intact or one failed.
+/// One strategy on one run, with all sensors intact or one failed.
 struct Case {
   std::size_t run = 0;             ///< index of the judged run
   std::string failed;              ///< "t05 stuck"; empty: none
-  Score before, after;             ///< of the drift; of what the correction in force leaves
-  double peak_unguarded_um = 0.0;  ///< of what the bare prediction leaves; infinite where it is missing
-  double rms_unguarded_um = 0.0;   ///< the same, of the rows that it predicts
-  double harm_um = 0.0;            ///< the most by which it leaves more than there would be without it, at one moment
+  Score before, after;             ///< of the drift; of what remains with the correction in force
+  double peak_unguarded_um = 0.0;  ///< what remains with the prediction without fail-safe; infinite where it is missing
+  double rms_unguarded_um = 0.0;   ///< the same, over the rows with a prediction
+  double harm_um = 0.0;  ///< largest excess of the remaining error over the error without correction, at one moment
   double first_hour_um = 0.0,
-         whole_um = 0.0;  ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
-  double covered =
-      0.0;  ///< of the rows with a prediction interval in force, the share whose drift is inside; NaN without any
+         whole_um = 0.0;  ///< ranges of the remaining error within 60 min and in total, as ISO 230-3 defines them for drift
+  /// Share of the rows with a prediction interval in force whose drift is inside it; NaN without such rows.
+  double covered = 0.0;
   std::vector<std::string> events;  ///< of the fail-safe
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
@@ -48,13 +49,14 @@ struct JudgedStrategy {
   DeployedPredictor fitted;
   std::vector<Case> cases;
   Safety safety = Safety::kUnsafe;
-  bool is_worse_than_nothing = false;  ///< in some case more is left than without correction, by RMS or peak
+  bool is_worse_than_nothing = false;  ///< in some case the RMS or peak is larger than without correction
   std::string why;                     ///< one sentence
-  std::string beaten_by;  ///< baseline whose RMS over all intact rows is smaller; empty: none, and for baselines
-  std::vector<std::string>
-      limits;  ///< families (seasons) in which it keeps the tolerance with sensors intact, where not everywhere
+  std::string beaten_by;               ///< baseline with a smaller RMS over all intact rows; empty: none, and for baselines
+  /// Families (seasons) in which it keeps the tolerance with intact sensors, if not in all.
+  std::vector<std::string> limits;
 };
 
+/// The results of all strategies.
 struct StrategyMatrix {
   std::vector<ObservedRun> training;
   std::vector<JudgedRunOfMachine> runs;
@@ -62,48 +64,50 @@ struct StrategyMatrix {
   std::vector<LeftOut> left_out;
   MatrixSettings settings;
   std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
-  Choice choice = {};                      ///< of the strategy to deploy, by training runs alone
+  Choice choice = {};                      ///< of the strategy to deploy, from training runs alone
 };
 
-/// A case with its course, per row of the run's readings.
+/// A case with its values over time, per row of the run's readings.
 struct Judgement {
-  Case scores;                        ///< without `run` and `failed`, which are the matrix's
-  std::vector<double> correction_um;  ///< as it goes to the axis
-  std::vector<double> left_um;        ///< drift - correction; NaN where no drift is known
+  Case scores;                        ///< without `run` and `failed`, which the matrix sets
+  std::vector<double> correction_um;  ///< as sent to the axis
+  std::vector<double> left_um;        ///< drift - correction; NaN where the drift is unknown
 };
-/// What one predictor leaves of the drift of one run. @param drift_um  per row of the run's readings, true; from the start, where it counts so
+/// Judges one predictor on one run. @param drift_um true, per row of the run's readings; from the start if the predictor
+/// counts so
 [[nodiscard]] Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run,
                               const std::vector<double>& drift_um);
 
-/// Fits on `training`, judges on `runs`. Cases go side by side on all cores; the result is the same on any number of them.
+/// Fits on `training`, judges on `runs`. Cases run in parallel on all cores; the result does not depend on their number.
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
 
-/// Sets `safety`, `is_worse_than_nothing`, `why` and `limits` by the cases of a strategy; nothing where it has none.
+/// Sets `safety`, `is_worse_than_nothing`, `why` and `limits` from the cases of a strategy; does nothing without cases.
 void give_verdict(const StrategyMatrix& matrix, JudgedStrategy& strategy);
 
-/// Over some cases of a strategy: the worst.
+/// The worst values over some cases of a strategy.
 struct Worst {
   const Case* peak = nullptr;  ///< largest peak left; null: no case
-  double left = 0.0;           ///< largest peak left over peak drift [-]
+  double left = 0.0;           ///< largest ratio of remaining peak to peak drift [-]
   double rms_um = 0.0;         ///< largest
   double covered = 1.0;        ///< smallest
   double mean_covered = 0.0;
 };
 [[nodiscard]] Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Case&)>& counts);
 
-/// RMS of what is left over the rows of all runs, all sensors intact [um].
+/// RMS of the remaining error over the rows of all runs with all sensors intact [um].
 [[nodiscard]] double overall_rms(const JudgedStrategy& strategy);
 
-/// Families, or seasons, of the runs in their order.
+/// Families, or seasons, in the order of the runs.
 [[nodiscard]] std::vector<std::string> families_of(const StrategyMatrix& matrix);
 [[nodiscard]] std::vector<std::string> seasons_of(const StrategyMatrix& matrix);
 
-/// The simplest strategy, no baseline and not unsafe, that keeps the tolerance in a family with intact sensors in all seasons; null: none.
+/// The simplest strategy (no baseline, not unsafe) that keeps the tolerance in a family with intact sensors in all seasons;
+/// null: none.
 [[nodiscard]] const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family);
-/// The one that was chosen by the training runs; null: none was.
+/// The strategy chosen from the training runs; null: none.
 [[nodiscard]] const JudgedStrategy* chosen_strategy(const StrategyMatrix& matrix);
-/// The one with the least RMS over the judged rows, known once they are; it says how good the choice was.
+/// The strategy with the smallest RMS over the judged rows, which shows afterwards how good the choice was.
 [[nodiscard]] const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix);
 
 }  // namespace driftwright::compensation

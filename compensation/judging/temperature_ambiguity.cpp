@@ -30,12 +30,12 @@ Point between(const Point& a, const Point& b, double fraction) {
           std::lerp(a.time_s, b.time_s, fraction)};
 }
 
-/// Appends the parts of the segment from a to b that lie at or beyond the floor, at most one per sign.
+/// Appends the parts of the segment from a to b at or beyond the floor, at most one per sign.
 void clip(const Point& a, const Point& b, double floor_um, std::size_t record, std::vector<Piece>& pieces) {
   for (double sign : {1.0, -1.0}) {
     const double above_a = sign * a.displacement_um - floor_um;
     const double above_b = sign * b.displacement_um - floor_um;
-    if (!(above_a >= 0.0 || above_b >= 0.0)) continue;  // NaN ends here, too
+    if (!(above_a >= 0.0 || above_b >= 0.0)) continue;  // also skips NaN
     const double crossing = above_a / (above_a - above_b);
     const Point p = above_a >= 0.0 ? a : between(a, b, crossing);
     const Point q = above_b >= 0.0 ? b : between(a, b, crossing);
@@ -68,8 +68,8 @@ std::vector<Piece> pieces_of(std::span<const Record> records, const std::string&
   return pieces;
 }
 
-/// What one record offers at one temperature. Only the smallest and the largest |d| of either sign can belong
-/// to the pair with the greatest spread.
+/// The displacements of one record at one temperature. Only the smallest and the largest |d| of either sign can belong
+/// to the pair with the largest spread.
 class Extremes {
  public:
   void add(const Point& p) {

@@ -1,6 +1,6 @@
 #pragma once
-// Is the drift a function of this temperature? Where two records have the same reading and different
-// displacements, no temperature-only compensation can serve both.
+// Tests whether the drift is a function of one temperature. If two records have the same reading and different
+// displacements, a compensation by this temperature alone cannot serve both.
 
 #include <optional>
 #include <span>
@@ -29,13 +29,13 @@ struct TemperatureAmbiguity {
 ///     spread = |d1 - d2| / min(|d1|, |d2|)     over all T and all pairs of crossings with |d1|, |d2| >=
 ///     floor.
 ///
-/// Records are linear between samples, and every crossing of T counts, on the way up and on the way down. The
-/// search is exact, no grid: between two breakpoints of the curves d(T) the ratio of two linear functions is
-/// monotone, so only the T of samples and of points where |d| passes the floor have to be tried. A segment
-/// beside a missing value is left out. Of equal spreads the lowest temperature is reported.
+/// Records are linear between samples, and every crossing of T counts, with rising and with falling temperature. The
+/// search is exact: between two breakpoints of the curves d(T) the ratio of two linear functions is
+/// monotone, so only the T of samples and of points where |d| passes the floor must be tried. A segment
+/// next to a missing value is left out. Of equal spreads the lowest temperature is reported.
 ///
-/// @param floor_um  displacements smaller than this prove nothing, however large their ratio; > 0
-/// @return none where no two records share a temperature with both displacements at or above the floor
+/// @param floor_um  smaller displacements are ignored, because their ratio means nothing; > 0
+/// @return none if no two records share a temperature with both displacements at or above the floor
 /// @throws RangeError  when the floor is not positive
 /// @throws InputError  when a record lacks a channel, the displacement is not in um, or the temperature's
 /// unit differs

@@ -12,7 +12,7 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kStep_s = 30.0;           // of the tabulated curves
-constexpr double kLength_s = 12 * 3600.0;  // beyond it a curve stands still
+constexpr double kLength_s = 12 * 3600.0;  // after this a curve is constant
 constexpr double kSame_rpm = 1e-9;
 
 /// A row of a table at a time since the change, linear between its columns.
@@ -23,7 +23,7 @@ double value(const Eigen::MatrixXd& table, Eigen::Index channel, double t_s) {
   return (1.0 - share) * table(channel, i) + share * table(channel, i + 1);
 }
 
-/// First time at which a row has a level; nothing where it never has.
+/// First time at which a row has a level; none if it never has.
 std::optional<double> time_at(const Eigen::MatrixXd& table, Eigen::Index channel, double level) {
   for (Eigen::Index i = 0; i + 1 < table.cols(); ++i) {
     const double a = table(channel, i) - level, b = table(channel, i + 1) - level;
@@ -33,7 +33,7 @@ std::optional<double> time_at(const Eigen::MatrixXd& table, Eigen::Index channel
   return std::nullopt;
 }
 
-/// What cooling leaves of a level: no more than it was, whatever a small start is divided by.
+/// The rest of a level after cooling: never more than the level, even after division by a small start.
 double shrunk(double share) {
   return std::clamp(share, -1.0, 1.0);
 }
@@ -92,7 +92,7 @@ AssembledCurves::AssembledCurves(const std::vector<ThermalTest>& tests, const Te
       throw InputError(fmt::format(
           "test '{}' is not heating at one speed and standstill after it, which curves are cut from", test.cyclogram.name));
     }
-    // Its own exponentials, so that noise is not assembled and a steady level is known.
+    // Fitted exponentials instead of raw readings, so that noise is not assembled and the steady level is known.
     const IdentifiedModes fit = identify_modes({test}, channels, {.most_modes = 3, .powers = 2, .mean_over_s = 300.0});
     Curves c{sections[0].drive.speed_rpm, {}, {}};
     std::vector<double> time_s;
@@ -146,7 +146,7 @@ Eigen::MatrixXd AssembledCurves::predict(const Cyclogram& cyclogram, const std::
           if (is_beyond && cold != 0.0) return steady + (from - steady) * shrunk(value(now.cooling, c, dt_s) / cold);
           return value(now.heating, c, time_nearest(now.heating, c, from) + dt_s);
         }
-        if (before_rpm == 0.0) return from;  // it has not run yet
+        if (before_rpm == 0.0) return from;  // the spindle has not turned yet
         if (const auto t_s = time_at(now.cooling, c, from)) return value(now.cooling, c, *t_s + dt_s);
         if (cold != 0.0 && from * cold > 0.0) return from * shrunk(value(now.cooling, c, dt_s) / cold);
         return value(now.cooling, c, time_nearest(now.cooling, c, from) + dt_s);

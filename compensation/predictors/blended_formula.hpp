@@ -1,5 +1,5 @@
 #pragma once
-// Formulas put together: a term more, the mean of several, which is a formula again.
+// Combines formulas: adds a term, or averages several formulas into one.
 
 #include <span>
 
@@ -7,10 +7,10 @@
 
 namespace driftwright::compensation {
 
-/// Adds a term, or its coefficient to the one that is the same but for it.
+/// Adds a term; if a term differs only in its coefficient, adds the coefficients.
 void add_term(DriftModel& model, DriftModel::Term term);
 
-/// @param models  at least one, of the same target; terms that are alike become one
+/// The mean of several formulas. @param models  at least one, with the same target; equal terms are merged
 [[nodiscard]] DriftModel mean_of(std::span<const DriftModel> models, std::string kind);
 
 }  // namespace driftwright::compensation

@@ -1,5 +1,6 @@
 #pragma once
-// A model and its fail-safe as the tables that control/drift_correction.c reads: for the program's own use of it, and for export.
+// Converts a model and its fail-safe into the tables that control/drift_correction.c reads, for the program's own use and
+// for export.
 
 #include <string>
 #include <vector>
@@ -10,7 +11,7 @@
 
 namespace driftwright::compensation {
 
-/// `safe` points into `guards`, and its guards into the FailSafe that they are of, which must live as long.
+/// `safe` points into `guards`, and its guards point into the FailSafe that they come from, which must live as long.
 struct FailSafeTable {
   std::vector<drift_guard> guards;
   drift_fail_safe safe{};

@@ -1,5 +1,5 @@
 #pragma once
-// What correct() does to a whole run, row by row while it goes on.
+// Applies correct() row by row while a run goes on.
 
 #include "compensation/predictors/control_tables.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
@@ -8,33 +8,34 @@ namespace driftwright::compensation {
 
 /// The correction of one row.
 struct FollowedCorrection {
-  double prediction_um = 0.0;  ///< NaN where nothing can be said
+  double prediction_um = 0.0;  ///< NaN without a prediction
   double correction_um = 0.0;  ///< in force, guarded
-  double trust = 1.0;          ///< 0 to 1, that the prediction was multiplied by
-  /// Half width of the 95 % interval of the drift about the correction [um]. It is the predictor's own half width divided by the least trust of the last
-  /// hours (kRemembersDoubt_s), plus the distance from the prediction to the correction, which may be faded, clamped or slewed. None without trust, and where none
-  /// was learned.
+  double trust = 1.0;          ///< factor on the prediction, 0 to 1
+  /// Half width of the 95 % interval of the drift about the correction [um]: the predictor's half width divided by the
+  /// smallest trust of the last hours (kRemembersDoubt_s), plus the distance from the prediction to the correction, which
+  /// may be faded, clamped or slewed. None without trust, and if the predictor has no interval.
   std::optional<double> interval_um = {};
 };
 
-/// Time constant with which a doubt is forgotten: a shift. What was wrong with a model is still wrong with it when its filter has adapted.
+/// Time constant with which a low trust is forgotten: one work shift [s]. A model that was wrong is still wrong after its
+/// filter has adapted.
 inline constexpr double kRemembersDoubt_s = 8.0 * 3600.0;
 
-/// A deployed predictor on its way through one run. The predictor outlives it.
+/// A deployed predictor during one run. The predictor must outlive it.
 class DeployedFollower {
  public:
   explicit DeployedFollower(const DeployedPredictor& deployed);
 
-  /// Takes the next row, the last one that the run has; its doubted readings are replaced there by what the others lead to. Row by row what
-  /// correct() gives of the whole run.
+  /// Takes the next row, the last row that the run has, and replaces its doubted readings in `run` by values computed from
+  /// the others. Gives row by row the same as correct() for the whole run.
   /// @throws InputError  for readings that lack an input or have it in another unit
   FollowedCorrection next(ObservedRun& run);
 
-  /// Inputs that are doubted in the row, in words: by the fail-safe, or given up by the predictor.
+  /// The inputs that are doubted in this row, in words: by the fail-safe, or rejected by the predictor.
   [[nodiscard]] std::vector<std::string> doubted() const;
   [[nodiscard]] const Follower& follower() const { return *follower_; }
 
-  /// As Follower has it. @throws std::logic_error  the same
+  /// As Follower::memory(). @throws std::logic_error  the same
   [[nodiscard]] std::vector<double> memory() const;
   void recall(std::span<const double> memory);
 

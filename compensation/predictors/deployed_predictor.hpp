@@ -1,5 +1,6 @@
 #pragma once
-// A predictor with all that it takes to put it on a machine. This is what is judged, what is kept in a file, and what corrects.
+// A predictor with everything that is needed to use it on a machine. This is what is judged, stored in a file, and used to
+// correct.
 
 #include <optional>
 
@@ -8,34 +9,36 @@
 
 namespace driftwright::compensation {
 
-/// What a predictor of the same kind misses where it was not fitted: on one part of the training runs, fitted to the rest.
+/// The error of a predictor of the same kind on one part of the training runs after a fit to the rest.
 struct FoldError {
   std::string kind, name;  ///< "run", "run 2.csv" (judging/folds.hpp)
-  double rms_um = 0.0;     ///< a row that it says nothing of counts as uncorrected
-  double within_um = 0.0;  ///< the error that 95 % of the rows keep
+  double rms_um = 0.0;     ///< a row without a prediction counts as uncorrected
+  double within_um = 0.0;  ///< the error that 95 % of the rows do not exceed
 };
 
+/// The predictor and its data.
 struct DeployedPredictor {
   std::string name;          ///< "ridge, all sensors"
-  std::string target;        ///< displacement that it tells, in um
+  std::string target;        ///< displacement that it predicts, in um
   bool from_start = false;   ///< drift and temperatures count from the first row of the run
-  bool is_baseline = false;  ///< what others have to beat; it has no fail-safe
+  bool is_baseline = false;  ///< a reference that others must beat; it has no fail-safe
   std::shared_ptr<const Predictor> predictor;
-  std::vector<std::string> sensors = {};  ///< what it reads and may fail: thermometers, among them the ambient's
-  std::string ambient = {};               ///< channel of the ambient in its training runs; "" where there was none
+  std::vector<std::string> sensors = {};  ///< inputs that may fail: thermometers, including the ambient's
+  std::string ambient = {};               ///< channel of the ambient in its training runs; "" without one
   std::string reason = {};                ///< what the fit decided, one sentence; may be empty
   std::optional<FailSafe> fail_safe = {};
-  /// Half width of the 95 % prediction interval [um]: of each part of the training runs that was left out in turn the error that 95 % of its rows
-  /// keep, the largest of those. None where no part could be left out.
+  /// Half width of the 95 % prediction interval [um]: for each part of the training runs that was left out in turn, the
+  /// error that 95 % of its rows do not exceed; the largest of these. None if no part could be left out.
   std::optional<double> interval_um = {};
-  std::vector<FoldError> fold_errors = {};  ///< what the interval is made of, as fitted; in no file
+  std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
 };
 
-/// @return the half width of the prediction interval in force [um]: interval_um over trust, for what is trusted by half says half as much;
-///         none without trust, and where there is no interval
+/// @return the half width of the prediction interval in force [um]: interval_um / trust; none without trust, and if there is
+///         no interval
 [[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);
 
-/// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.
+/// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
+/// prediction, or 0 without one.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);
 
 }  // namespace driftwright::compensation

@@ -16,16 +16,18 @@
 namespace driftwright::compensation {
 namespace {
 
-// Room beside what the training records kept.
+// Margins added to the extreme values of the training records.
 constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
 constexpr double kClampRoom = 0.5;  // of the drift's
 constexpr double kJumpRoom = 2.0;   // times the largest
 constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
-constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
-constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
-constexpr double kLeastRoomOfDrive = 0.02;  // of the largest speed or power: one that never changed is told to no more
-constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;  // less than that is no movement to learn a relation from
-constexpr double kRidge = 0.03;                        // penalty of a relation, columns of unit deviation
+constexpr double kApartRoom = 2.0;  // times the largest distance on a left-out run
+// Lower limits of the margins, because instruments have such errors.
+constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;
+constexpr double kLeastRoomOfDrive = 0.02;  // of the largest speed or power, for a drive that never changed
+// Smaller changes are too small to learn a relation from; distance that is never exceeded.
+constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;
+constexpr double kRidge = 0.03;  // penalty of a relation, columns of unit deviation
 constexpr std::size_t kSlewRows = 10;
 
 struct Range {
@@ -38,8 +40,8 @@ struct Range {
   [[nodiscard]] double width() const { return high - low; }
 };
 
-/// What the others say of an input: ridge regression, for what thermometers that move alike have in common holds in another ambient too,
-/// and their small differences do not.
+/// The prediction of an input from the others. Ridge regression, because the common part of similar thermometers also holds
+/// in another ambient, and their small differences do not.
 struct Relation {
   double intercept = 0.0;
   std::vector<double> coefficient;  // of the others
@@ -75,7 +77,7 @@ bool moved(std::span<const Record> training, const std::string& input) {
   return range.width() > kMoved_K;
 }
 
-/// The largest distance between an input and what the others lead to, on records left out where there are two or more.
+/// The largest difference between an input and its value from the others, on left-out records if there are two or more.
 double most_apart(std::span<const Record> training, const std::string& input, const std::vector<std::string>& others) {
   double apart = 0.0;
   for (std::size_t left_out = 0; left_out < training.size(); ++left_out) {
@@ -92,7 +94,7 @@ double most_apart(std::span<const Record> training, const std::string& input, co
   return apart;
 }
 
-/// What was found wrong with an input in a row, in words.
+/// The fault of an input in a row, in words.
 std::string words(const drift_input_state& state, const std::string& unit) {
   switch (state.doubt) {
     case DRIFT_NO_READING:
@@ -141,7 +143,7 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   safe.period_s = steps_s[steps_s.size() / 2];
   safe.stale_s = 5.0 * safe.period_s;
   safe.fade_s = 10.0 * safe.period_s;
-  drift.take(0.0);  // no correction is always allowed
+  drift.take(0.0);  // zero correction is always allowed
   safe.lowest_um = drift.low - kClampRoom * drift.width();
   safe.highest_um = drift.high + kClampRoom * drift.width();
   safe.most_rate_um_s = kSlewRoom * rate;
@@ -171,7 +173,8 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
       if (other != input && !is_drive(training.front().at(other).unit) && moved(training, other)) others.push_back(other);
     }
     if (!is_speed && !others.empty()) {
-      // one that hardly moved in the training runs is told by its mean there, and in doubt only when it is missing or jumps
+      // an input that hardly changed in the training runs is estimated by its mean, and doubted only if it is missing or
+      // jumps
       const bool has_moved = moved(training, input);
       const Relation r = has_moved ? relation(training, input, others)
                                    : Relation{0.5 * (range.low + range.high), std::vector<double>(others.size(), 0.0)};

@@ -49,7 +49,7 @@ void require_two(const ProductSums& sums) {
   (void)held_out_rmse(sums, {});
 }
 
-/// Products about the means of the rows of the sums; 0 for what does not move in them.
+/// Products about the means of the rows of the sums; 0 for a column that does not change in them.
 struct Centred {
   Eigen::MatrixXd xx;
   Eigen::VectorXd xy, mean_x;
@@ -129,7 +129,7 @@ FittedFormula by_components(std::span<const Record> records, const std::vector<s
           least};
 }
 
-/// Those of the lags that are no longer. @throws InputError  when none is
+/// The lags that are not longer. @throws InputError  if there is none
 std::vector<double> lags_min(double longest_s) {
   std::vector<double> lags;
   for (double lag_min : kLags_min) {
@@ -232,7 +232,7 @@ FittedFormula fit_from_speed(std::span<const Record> records, const std::string&
   const ProductSums sums = product_sums(channels.records, channels.names, target);
   const bool has_ambient = !ambient.empty() && !sums.is_constant[static_cast<std::size_t>(2 * n_lags)];
   Choice best;
-  // one lag more as long as it helps; the ambient's lag is sought with the first and kept
+  // adds lags as long as they help; the ambient's lag is found with the first one and kept
   std::vector<int> lags, ambient_columns;
   for (int n = 1; n <= 3; ++n) {
     Choice with_more = best;

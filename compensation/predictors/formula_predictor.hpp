@@ -1,5 +1,5 @@
 #pragma once
-// A formula of readings and their lags as a predictor.
+// A formula of readings and their lags (DriftModel) as a Predictor.
 
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/predictor.hpp"
@@ -13,14 +13,14 @@ class FormulaPredictor final : public Predictor {
   [[nodiscard]] const DriftModel& model() const { return model_; }
   [[nodiscard]] std::vector<Input> inputs() const override;
   [[nodiscard]] bool is_driven() const override { return false; }
-  /// Row by row what DriftModel::predict() gives of the whole record.
+  /// Gives row by row the same as DriftModel::predict() for the whole record.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
  private:
   DriftModel model_;
 };
 
-/// The formula that a predictor is; null for one that is none.
+/// The formula of a predictor; null if the predictor is not a formula.
 [[nodiscard]] const DriftModel* as_formula(const Predictor& predictor);
 
 }  // namespace driftwright::compensation

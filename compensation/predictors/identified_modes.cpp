@@ -23,13 +23,13 @@ double rate_1_s(double time_constant_s, double growth, double x) {
   return (1.0 + growth * (x > 0.0 ? std::pow(x, kGrowthExponent) : 0.0)) / time_constant_s;
 }
 
-/// What power m has of a speed: standstill has a level of its own, for films and idle heat change there at once.
+/// Power m of a speed; standstill has a separate level, because films and idle heat change there at once.
 double steady_level(int m, double x) {
   if (m == 0) return x > 0.0 ? 0.0 : 1.0;
   return x > 0.0 ? std::pow(x, m - 1) : 0.0;
 }
 
-/// First-order states with one rate a section: of the level of each power, then of the ambient. n_powers + 1 columns.
+/// First-order states with one rate per section: for the level of each power, then for the ambient. n_powers + 1 columns.
 Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                             double time_constant_s, double growth, double top_rpm, int powers) {
   Eigen::MatrixXd states(static_cast<Eigen::Index>(output_s.size()), powers + 1);
@@ -50,7 +50,7 @@ Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& ambien
         const double level = steady_level(m, x);
         y[m] = level + (start[m] - level) * e;
       }
-      const double behind_K = slope_K_s / lambda;  // a ramp is followed at this distance
+      const double behind_K = slope_K_s / lambda;  // distance at which a ramp is followed
       y[powers] = ambient_K + slope_K_s * dt_s - behind_K + (start[powers] - ambient_K + behind_K) * e;
       return y;
     };
@@ -68,7 +68,7 @@ struct Table {
   Eigen::VectorXd noise;          ///< of each channel's averaged readings
   Eigen::VectorXd range;          ///< of each channel, in units of its noise
   double top_rpm = 0.0, longest_s = 0.0;
-  double warmest_K = 10.0;  ///< largest range of a temperature, where one is read
+  double warmest_K = 10.0;  ///< largest range of a temperature, if one was read
 };
 
 Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channels, const IdentificationOptions& options) {
@@ -141,7 +141,7 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
 
 /// Logarithm of the slowest time constant, of the ratio of each to the next faster one, then the growth.
 using Shape = std::vector<double>;
-constexpr double kClosest = 2.2, kFurthest = 40.0;  // ratios: closer modes would only cancel each other
+constexpr double kClosest = 2.2, kFurthest = 40.0;  // limits of the ratios: closer modes would only cancel each other
 
 std::vector<double> time_constants_s(const Shape& shape) {
   std::vector<double> list;
@@ -165,11 +165,12 @@ Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_
   return columns;
 }
 
-/// Steady levels of given time constants: least squares with a prior that none is larger than the channel itself (1 sigma is its range), and that
-/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests distinguish badly would cancel each other there and not elsewhere.
+/// Steady levels for given time constants: least squares with a prior that none is larger than the channel itself (1 sigma
+/// is its range), and that a kelvin of ambient has no larger effect than a kelvin of machine. Without the prior, columns
+/// that the tests distinguish badly would cancel in the tests, but not elsewhere.
 struct Linear {
   Eigen::MatrixXd amplitude;  ///< n_columns x n_channels, in units of noise
-  Eigen::MatrixXd residual;   ///< of the rows that take part, then amplitude over its prior
+  Eigen::MatrixXd residual;   ///< of the used rows, then amplitude over its prior
 };
 Linear linear(const Table& t, const Shape& shape, int powers, std::size_t left_out) {
   std::vector<Eigen::MatrixXd> parts;
@@ -248,7 +249,7 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
   if (with_covariance) {
     ceres::CRSMatrix jacobian;
     problem.Evaluate({}, nullptr, nullptr, nullptr, &jacobian);
-    const int n_free = jacobian.num_cols;  // a growth that is held comes last and has no column
+    const int n_free = jacobian.num_cols;  // a fixed growth is the last parameter and has no column
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n_free, n_free);
     for (int row = 0; row < jacobian.num_rows; ++row) {
       for (int a = jacobian.rows[static_cast<std::size_t>(row)]; a < jacobian.rows[static_cast<std::size_t>(row) + 1]; ++a) {
@@ -260,7 +261,7 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
       }
     }
     square.diagonal().array() += 1e-12 * (1.0 + square.trace());
-    // levels are fitted, too; residuals of their prior count for nothing
+    // levels are also fitted; residuals of their prior do not count
     const auto n_levels = static_cast<int>(2 * sizes.amplitude.size());
     f.covariance.setZero(n, n);
     f.covariance.topLeftCorner(n_free, n_free) =
@@ -270,7 +271,7 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
   return f;
 }
 
-/// Time constants spread evenly in their logarithm over what tests can show.
+/// Time constants spread evenly in their logarithm over the range that tests can show.
 Shape first_guess(const Table& t, int n_modes, const IdentificationOptions& options) {
   const double slow = std::log(0.7 * t.longest_s), fast = std::log(n_modes < 3 ? 1800.0 : 400.0);
   Shape shape = {n_modes == 1 ? 0.5 * (slow + fast) : slow};

@@ -16,17 +16,18 @@
 namespace driftwright::compensation {
 namespace {
 
-// On the record fl_thermal (docs/theory/measured_strategies.md) finer and coarser lags leave the same on data left out, within its scatter.
+// On the record fl_thermal (docs/theory/measured_strategies.md) finer and coarser lags give the same error on left-out data,
+// within its scatter.
 constexpr double kTemperatureLags_min[] = {20, 60, 180};
 constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
-// The least keeps levels that were never tried from being made up out of differences of columns that are nearly alike.
+// The smallest penalty prevents levels outside the tests from being computed from differences of nearly equal columns.
 constexpr double kPenalties[] = {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 10.0, 100.0};
 
 std::string mode_name(Eigen::Index k) {
   return fmt::format("mode_{}", k + 1);
 }
 
-/// A formula of modes as one of thermometers: lags are linear, and a constant goes through them as it is.
+/// Converts a formula of modes to one of thermometers: lags are linear, and a constant is unchanged by them.
 DriftModel of_thermometers(const DriftModel& of_modes, const PrincipalComponents& modes, const std::string& unit) {
   DriftModel model = of_modes;
   model.terms.clear();
@@ -74,7 +75,7 @@ struct Penalised {
   ScaledFit fit;
   double penalty = 0.0, error = std::numeric_limits<double>::infinity();  // error in the target's unit
 };
-/// The penalty with the smallest mean RMS error of what is left out in turn.
+/// The penalty with the smallest mean RMS error on the parts left out in turn.
 Penalised penalised(const ProductSums& sums, std::span<const int> columns) {
   std::vector<Eigen::MatrixXd> folds;
   for (const Eigen::MatrixXd& part : sums.by_record) {
@@ -140,7 +141,8 @@ FittedFormula fit_with_memories(std::span<const Record> given, const std::vector
                               best.penalty, best.error, sums.target_unit, is_single ? "eighths of the record" : "runs"),
                   best.error};
   if (made_of == Columns::kModes) f.model = of_thermometers(f.model, modes, given.front().at(thermometers.front()).unit);
-  std::erase_if(f.model.terms, [](const DriftModel::Term& t) { return t.coefficient == 0.0; });  // of what never moved
+  // Columns that never changed.
+  std::erase_if(f.model.terms, [](const DriftModel::Term& t) { return t.coefficient == 0.0; });
   return f;
 }
 

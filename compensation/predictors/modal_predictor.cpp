@@ -19,7 +19,7 @@ solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const Tim
 ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,
                                       double ambient_K, const Drive& typical) {
   const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K};
-  Eigen::VectorXd start = from;  // what is held jumps at once, as in simulate()
+  Eigen::VectorXd start = from;  // prescribed temperatures jump at once, as in simulate()
   for (const solver::FixedUnknowns& f : full.fixed) {
     for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
@@ -32,7 +32,7 @@ ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_m
   const solver::FullSystem system = full.is_linear() ? full : frozen();
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);
   const auto in_basis = [&](const Eigen::MatrixXd& columns) -> ModalPredictor {
-    Eigen::MatrixXd with_start(columns.rows(), columns.cols() + 1);  // dropped again where it adds nothing
+    Eigen::MatrixXd with_start(columns.rows(), columns.cols() + 1);  // dropped again below if it adds nothing
     with_start << columns, start;
     const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, with_start);
     return {modes.time_constant_s, solver::project(system, basis), basis.transpose() * (system.mass * start)};
@@ -64,10 +64,10 @@ ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Ei
   columns.col(columns.cols() - 3) = ambient;
   columns.col(columns.cols() - 2) = stratified;
   auto loads = columns.middleCols(n, columns.cols() - n - 1);
-  loads = dense::solve_symmetric(k, loads);  // what they warm in the end
+  loads = dense::solve_symmetric(k, loads);  // their steady responses
   columns.col(columns.cols() - 1) = start;
   Eigen::MatrixXd basis(k.rows(), 0);
-  for (Eigen::Index c = 0; c < columns.cols(); ++c) {  // Gram-Schmidt, twice; what adds nothing is dropped
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {  // Gram-Schmidt with two passes; dependent columns are dropped
     Eigen::VectorXd v = columns.col(c);
     const double length = v.norm();
     for (int pass = 0; pass < 2; ++pass) v -= basis * (basis.transpose() * v);

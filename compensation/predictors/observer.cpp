@@ -16,24 +16,24 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kFlag = 5.0;        // deviations of the mean innovation
-constexpr double kOutlier = 6.0;     // deviations of one innovation: that reading is passed over
-constexpr double kMemory = 0.9;      // of the mean innovation from row to row
-constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
+constexpr double kOutlier = 6.0;     // deviations of one innovation; beyond this the reading is ignored
+constexpr double kMemory = 0.9;      // factor of the mean innovation from row to row
+constexpr std::size_t kReturn = 30;  // rows by which the filter returns when a sensor is dropped
 static_assert(kReturn < kRowsBack);
 constexpr std::size_t kWarm =
     10;  // rows that a mean remembers, 1 / (1 - kMemory): before, and until a sensor is tried again, it says nothing new
-constexpr double kFoundWrong = 2.0;         // times most_apart: no chance, and no passing disagreement
+constexpr double kFoundWrong = 2.0;         // times most_apart: more than chance or a passing disagreement
 constexpr double kChance = 3.0902;          // deviations of a normal number that one of a thousand is above
-constexpr double kRoom = 2.0;               // beside what the training runs kept
-constexpr double kZero = 2.0;               // of an indicator's deviation: what its zero may be off by
-constexpr double kAmbientJump_K = 3.0;      // that no ambient changes by from row to row
-constexpr double kAmbientJumpIn_s = 600.0;  // of rows further apart, in so long
+constexpr double kRoom = 2.0;               // factor on the distance in the training runs
+constexpr double kZero = 2.0;               // possible offset of an indicator's zero, in its deviations
+constexpr double kAmbientJump_K = 3.0;      // an ambient never changes by more from row to row
+constexpr double kAmbientJumpIn_s = 600.0;  // for more distant rows, within this time
 constexpr std::size_t kStepsKept = 512;
-constexpr double kStart_K = 0.1;  // by which all of the machine may be warmer than the start says
+constexpr double kStart_K = 0.1;  // uniform uncertainty of the start state
 
 }  // namespace
 
-/// Over a step of constant drive: z+ = decay z + gain f.
+/// A step with constant drive: z+ = decay z + gain f.
 struct Observer::Step {
   Eigen::MatrixXd decay, gain;
   std::vector<double> power_W, coefficient;
@@ -41,7 +41,7 @@ struct Observer::Step {
 
 class Observer::Run final : public ObserverFollower {
  public:
-  /// @param gives_up  sensors that keep away from what the rest expects
+  /// @param gives_up  whether sensors that differ from the expected values are dropped
   Run(const Observer& observer, bool with_drift, bool gives_up = true)
       : o_(observer), s_(observer.system_), with_drift_(with_drift), gives_up_(gives_up) {
     n_ = s_.size();
@@ -72,16 +72,17 @@ class Observer::Run final : public ObserverFollower {
     if (!gives_up_) return 1e6 * drift_m(row_++);
     if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
-    // of one sensor alone nobody knows whether it or the model is wrong
+    // with a single sensor it is unknown whether the sensor or the model is wrong
     is_model_wrong_ =
         is_model_wrong_ || (live_.size() > 1 && row_ >= kWarm && apart() > kFoundWrong * o_.settings_.most_apart);
     return 1e6 * drift_m(row_++);
   }
 
-  /// How far the sensors that count keep away from the model, over what chance has in one of a thousand rows: the sum of squares of their mean
-  /// innovations, chi-squared where the model is right, without the worst of them as long as it may be the sensor's own fault.
+  /// Distance of the active sensors from the model, relative to the distance that chance exceeds in one of a thousand rows:
+  /// the sum of squares of their mean innovations, chi-squared if the model is right, without the worst of them while it may
+  /// be the sensor's own fault.
   [[nodiscard]] double apart() const {
-    // of the mean of white innovations, which began at 0
+    // variance of the mean of white innovations that started at 0
     const double variance =
         (1.0 - kMemory) / (1.0 + kMemory) * (1.0 - std::pow(kMemory, 2.0 * static_cast<double>(n_in_means())));
     double sum = 0.0, worst = 0.0;
@@ -103,7 +104,7 @@ class Observer::Run final : public ObserverFollower {
   }
   [[nodiscard]] std::size_t n_in_means() const { return std::max<std::size_t>(row_ - means_from_, 1); }
   [[nodiscard]] double deserved_trust() const override {
-    if (live_.empty()) return 1.0;  // of a model that nothing is held against
+    if (live_.empty()) return 1.0;  // a model without any sensor to compare with
     if (std::none_of(live_.begin(), live_.end(), [](bool is) { return is; })) return 0.0;
     const double beyond = apart() / o_.settings_.most_apart;
     return beyond > 1.0 ? 1.0 / beyond : 1.0;
@@ -117,7 +118,8 @@ class Observer::Run final : public ObserverFollower {
   [[nodiscard]] const std::vector<double>& innovation_K() const override { return innovation_K_; }
   [[nodiscard]] std::vector<std::string> given_up() const override { return distrusted_; }
 
-  /// Rows that the filter could go back to are not in it: a sensor that is given up soon after a recall counts until then.
+  /// Does not contain the rows that the filter could return to: a sensor that is dropped soon after a recall counts until
+  /// then.
   [[nodiscard]] std::vector<double> memory() const override {
     const auto n = belief_.mean.size();
     std::vector<double> m = {static_cast<double>(row_), start_ambient_K_, ambient_K_.back(),
@@ -170,7 +172,7 @@ class Observer::Run final : public ObserverFollower {
     Belief belief;  // before that row's step and readings
   };
 
-  /// All that giving up a sensor changes.
+  /// Everything that changes when a sensor is dropped.
   struct Kept {
     Belief belief;
     std::vector<bool> live;
@@ -200,7 +202,8 @@ class Observer::Run final : public ObserverFollower {
     start_state_ = belief_.mean.head(n_);
   }
 
-  /// What the ambient thermometer is believed at a row. One that jumps does not tell of an ambient: its last reading holds until it is back near it.
+  /// Decides which ambient to use at a row. A thermometer that jumps does not show the ambient: its last reading is used
+  /// until it returns near it.
   void judge_ambient(const ObservedRun& run, std::size_t i) {
     const std::vector<double>& t = run.readings.time_s;
     const double t_s = t[run.at(i)], told_K = run.ambient.at(t_s);
@@ -222,21 +225,22 @@ class Observer::Run final : public ObserverFollower {
     is_ambient_doubted_.push_back(is_doubted);
   }
 
-  /// Between the row before and row i.
+  /// Ambient between the row before and row i.
   [[nodiscard]] double ambient_K(const ObservedRun& run, std::size_t i, double t_s) const {
     const std::size_t k = i - first_ambient_row_;
     return is_ambient_doubted_[k] || is_ambient_doubted_[k - 1] ? ambient_K_[k] : run.ambient.at(t_s);
   }
 
-  /// Up to a third of the sensors, one at least: more that keep away speak against the model. None of a model that was found wrong in this run: the
-  /// sensor that sees best what is wrong with it would go first.
+  /// Up to a third of the sensors, at least one: more differing sensors show that the model is wrong. None after the model
+  /// was found wrong in this run, because the sensor that shows its error best would be dropped first.
   [[nodiscard]] int may_drop() const {
     if (is_model_wrong_) return 0;
     const auto n_dropped = static_cast<int>(std::count(live_.begin(), live_.end(), false));
     return std::max(1, static_cast<int>(live_.size() / 3)) - n_dropped;
   }
 
-  /// Follows the last rows without a sensor. Where the others then agree with the model, it stays given up; else it is the model that is wrong.
+  /// Follows the last rows without a sensor. If the others then agree with the model, it stays dropped; otherwise the model
+  /// is wrong.
   void give_up(const ObservedRun& run, std::size_t sensor) {
     const Kept before{belief_,       live_,       dropped_s_, mean_innovation_, last_s_,
                       last_drift_s_, distrusted_, history_,   means_from_};
@@ -254,7 +258,7 @@ class Observer::Run final : public ObserverFollower {
     again_row_ = row_ + kWarm;
   }
 
-  /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
+  /// Returns to before its mean innovation began to grow, and follows the rows since then without it.
   void drop(const ObservedRun& run, std::size_t sensor) {
     live_[sensor] = false;
     dropped_s_[sensor] = run.readings.time_s[run.at(row_)];
@@ -292,7 +296,8 @@ class Observer::Run final : public ObserverFollower {
     }
     const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[at] : std::nan("");
     if (std::isfinite(drift_um)) {
-      // counts from the start of the run; where it is missing there, from the model's at its first value
+      // the drift counts from the start of the run; if it is missing there, from the model's drift at the first measured
+      // value
       if (first_drift_ >= i) {
         first_drift_ = i;
         drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(i) : 0.0);
@@ -304,14 +309,15 @@ class Observer::Run final : public ObserverFollower {
     }
   }
 
-  /// Of a reading's white error and the model's own, which readings near each other share. @param last_s  time of the one before; NaN: none
+  /// Variance from a reading's white error and the model's own error, which neighbouring readings share. @param last_s
+  /// previous time; NaN: none
   [[nodiscard]] double variance_of(double white, double model, double t_s, double& last_s) const {
     const double step_s = std::isnan(last_s) ? o_.settings_.period_s : t_s - last_s;
     last_s = t_s;
     return white * white + model * model * std::max(1.0, o_.settings_.model_holds_s / step_s);
   }
 
-  /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
+  /// The active sensor with the largest mean innovation, if one exceeds the flag.
   [[nodiscard]] int worst_suspect(std::size_t i) const {
     if (i < kWarm) return -1;
     const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
@@ -353,7 +359,7 @@ class Observer::Run final : public ObserverFollower {
     std::vector<double> key = now.coefficient;
     key.push_back(h_s);
     key.insert(key.end(), now.power_W.begin(), now.power_W.end());
-    if (steps_.size() >= kStepsKept) steps_.clear();  // periods that are never the same twice
+    if (steps_.size() >= kStepsKept) steps_.clear();  // intervals that never repeat
     const auto [at, is_new] = steps_.try_emplace(std::move(key), Step{});
     if (!is_new) return at->second;
     Eigen::MatrixXd k = s_.conduction;
@@ -382,7 +388,7 @@ class Observer::Run final : public ObserverFollower {
       by_factor.col(s) = now.power_W[static_cast<std::size_t>(s)] * s_.sources[static_cast<std::size_t>(s)].load;
       load += by_factor.col(s);
     }
-    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n_, n_);  // of the exchanges' factors' heat along z
+    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n_, n_);  // slope over z of the heat of the exchanges' factors
     for (Eigen::Index e = 0; e < n_exchanges_; ++e) {
       const auto& exchange = s_.exchanges[static_cast<std::size_t>(e)];
       const double c = now.coefficient[static_cast<std::size_t>(e)];
@@ -400,7 +406,7 @@ class Observer::Run final : public ObserverFollower {
     f.rightCols(n_factors) = now.gain * by_factor;
     belief_.mean.head(n_) = now.decay * z + now.gain * (load + by_factor * factor);
     Eigen::MatrixXd& p = belief_.covariance;
-    const Eigen::MatrixXd top = f * p.topRows(n_ + n_factors);  // rows of the new state against everything old
+    const Eigen::MatrixXd top = f * p.topRows(n_ + n_factors);  // rows of the new state over all old variables
     p.topRightCorner(n_, n_all - n_) = top.rightCols(n_all - n_);
     p.bottomLeftCorner(n_all - n_, n_) = top.rightCols(n_all - n_).transpose();
     p.topLeftCorner(n_, n_) = top.leftCols(n_ + n_factors) * f.transpose();
@@ -415,7 +421,7 @@ class Observer::Run final : public ObserverFollower {
     belief_.covariance -= ph * ph.transpose() / total;
   }
 
-  /// Since the start of the run: a scale of the displacement leaves alone what was there before.
+  /// Drift since the start of the run: the scale of the displacement does not apply to earlier drift.
   [[nodiscard]] double drift_m(std::size_t i) const {
     return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
            s_.outputs.ambient(o_.drift_output_) * (ambient_at(i) - start_ambient_K_);
@@ -435,7 +441,7 @@ class Observer::Run final : public ObserverFollower {
   const solver::ReducedSystem& s_;
   bool with_drift_, gives_up_, is_model_wrong_ = false;
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
-  Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
+  Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and the indicator's reading at the start of the run
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
@@ -444,13 +450,13 @@ class Observer::Run final : public ObserverFollower {
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
   std::vector<std::string> distrusted_;
-  std::deque<double> ambient_K_;  // of the last rows taken: as believed
+  std::deque<double> ambient_K_;  // as used, for the last rows
   std::deque<bool> is_ambient_doubted_;
   std::size_t first_ambient_row_ = 0;
   bool has_channels_ = false;
   std::vector<double> innovation_K_, dropped_s_;
   std::vector<double> mean_innovation_;
-  std::vector<double> last_s_;  // of each sensor's readings
+  std::vector<double> last_s_;  // of each sensor's last readings
   double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
   std::deque<Snapshot> history_;
   std::map<std::vector<double>, Step> steps_;
@@ -490,7 +496,7 @@ void Observer::learn(std::span<const ObservedRun> runs) {
 Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
   Observer other = *this;
   other.settings_.most_apart = std::numeric_limits<double>::infinity();
-  std::vector<double> apart;  // a mean of few rows, or one row in a thousand, is no bound
+  std::vector<double> apart;  // the mean of few rows, or one row in a thousand, is not used as a limit
   for (const ObservedRun& run : runs) {
     Run pass(other, false);
     for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {

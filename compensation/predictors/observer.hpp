@@ -1,6 +1,6 @@
 #pragma once
-// State observer: the reduced model, corrected by the thermometers there are. It uses physics and sensors: what the model has
-// wrong shows in the readings, and what the sensors do not see is the model's.
+// State observer: the reduced model, corrected by the available thermometers. It combines physics and sensors: readings
+// reveal the errors of the model, and the model describes what no sensor measures.
 
 #include <map>
 #include <span>
@@ -10,61 +10,67 @@
 
 namespace driftwright::compensation {
 
-/// How much is taken for granted. Standard deviations.
+/// Assumed uncertainties, as standard deviations.
 struct ObserverSettings {
-  double reading_K = 0.1;         ///< of a thermometer: noise and rounding
-  double model_K = 0.1;           ///< by which the model may miss a reading though its factors are right
-  double drift_um = 1.0;          ///< of the drift while it learns: white, beside what the zero of the indicator is off by
-  double model_um = 0.5;          ///< and the drift
-  double model_holds_s = 1800.0;  ///< for so long it misses in the same way: the rows in between tell nothing new
-  double factor = 0.15;  ///< of the logarithm of each heat source and each film, joint and link, before anything is known
-  double factor_walk = 0.02;     ///< by which a factor may wander in an hour
-  double scale = 0.05;           ///< of each displacement
-  double longest_step_s = 60.0;  ///< of the filter between readings
-  double period_s = 60.0;        ///< that the first readings of a run stand for; learn() takes it from its first run
-  /// How far sensors may keep away from the model before it is trusted less, over what chance has in one of a thousand rows; at least 1.
+  double reading_K = 0.1;  ///< of a thermometer: noise and rounding
+  double model_K = 0.1;    ///< error of the model in a reading even with the right factors
+  double drift_um = 1.0;   ///< of the measured drift in learn(): white noise, without the offset of the indicator's zero
+  double model_um = 0.5;   ///< error of the model in the drift
+  double model_holds_s = 1800.0;  ///< time for which this error stays the same; rows in between add no information
+  double factor = 0.15;           ///< of the logarithm of each heat source, film, joint and link, before learning
+  double factor_walk = 0.02;      ///< change of a factor in an hour
+  double scale = 0.05;            ///< of the scale of each displacement
+  double longest_step_s = 60.0;   ///< of the filter between readings
+  /// Interval that the first readings of a run are assumed to have; learn() takes it from its first run.
+  double period_s = 60.0;
+  /// Factor on the distance between sensors and model above which trust decreases; 1 is the distance that chance exceeds in
+  /// one of a thousand rows.
   double most_apart = 1.0;
 };
 
+/// The observer's result for a whole run.
 struct Observation {
-  std::vector<double> drift_um;         ///< per row of the readings: actual - commanded since the start of the run
-  std::vector<double> deviation_um;     ///< that the filter gives it, 1 sigma
-  Eigen::MatrixXd outputs;              ///< all outputs of the model in the state believed, n_outputs x n_rows, in K, m, rad
+  std::vector<double> drift_um;      ///< per row of the readings: actual - commanded since the start of the run
+  std::vector<double> deviation_um;  ///< its standard deviation by the filter
+  Eigen::MatrixXd outputs;           ///< all outputs of the model in the estimated state, n_outputs x n_rows, in K, m, rad
   std::vector<std::string> distrusted;  ///< sensors that were dropped, and when
 };
 
-/// An observer on its way through a run: after each row what its filter says of that row.
+/// An observer during a run: gives the filter's estimate after each row.
 class ObserverFollower : public Follower {
  public:
-  /// All outputs of the model in the state believed, in K, m, rad.
+  /// All outputs of the model in the estimated state, in K, m, rad.
   [[nodiscard]] virtual Eigen::VectorXd outputs() const = 0;
-  /// Reading minus what was expected of it, of each sensor [K]; NaN where it has none.
+  /// Reading minus its expected value, for each sensor [K]; NaN without a reading.
   [[nodiscard]] virtual const std::vector<double>& innovation_K() const = 0;
 };
 
-/// Extended Kalman filter over the reduced state z and factors on everything uncertain:
+/// Extended Kalman filter for the reduced state z and the uncertain factors:
 ///
-///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_ambient(u) + sum_e v_e c_e(u) (ambient g_e + o_e - G_e z),   w, v: random walks
-///     reading_i = l_i'z + ambient share,   drift = (1 + g) l_d'(z - z_start) + ambient share
+///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_ambient(u) + sum_e v_e c_e(u) (ambient g_e + o_e - G_e z), w, v:
+///     random walks reading_i = l_i'z + ambient share, drift = (1 + g) l_d'(z - z_start) + ambient share
 ///
-/// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
-/// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
-/// goes back to before it began. Where others stay away without that sensor, too, it is the model that is wrong: the sensor counts again, and the trust
-/// that the model deserves is 1 over how far their means are beyond what chance in a thousand rows, or the training runs, had (`most_apart`). An ambient that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+/// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. If a sensor's readings
+/// differ from the values expected from the rest (mean over about ten rows, by more than five deviations), it is dropped for
+/// the rest of the run, and the filter returns to its state before that began. If other sensors still differ without it, the
+/// model is wrong: the sensor is used again, and the trust in the model is 1 divided by the ratio of their mean distance to
+/// the distance that chance exceeds in a thousand rows, or that the training runs had (`most_apart`). An ambient that jumps
+/// by more than 3 K from row to row (for rows more than 10 min apart: in 10 min) is held at its old value until it returns.
+/// Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
 class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied
-  /// @param start    its state at the start of every run at the ambient temperature `start_ambient_K`; a run that starts in another ambient starts
-  ///                 as many kelvins higher everywhere
+  /// @param start  its state at the start of every run at the ambient temperature `start_ambient_K`; for a run that starts
+  ///                 in another ambient it is raised everywhere by the difference
   /// @param sensors  outputs in K that it reads; none: the model alone
   /// @param drift    output in m
-  /// @throws std::logic_error  for a system that is not linear; @throws InputError  for an output that the system has not
+  /// @throws std::logic_error  for a system that is not linear; @throws InputError  for an output that the system lacks
   Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_ambient_K, std::vector<std::string> sensors,
            std::string drift, ObserverSettings settings = {});
 
-  /// Follows runs in which the drift was measured too; what it learns of the factors stays.
+  /// Follows runs with measured drift; keeps what it learns about the factors.
   void learn(std::span<const ObservedRun> runs);
-  /// Follows a whole run by its sensors alone; afterwards the observer is what it was.
+  /// Follows a whole run with its sensors alone; the observer itself is unchanged.
   [[nodiscard]] Observation observe(const ObservedRun& run) const;
 
   /// Its sensors, in degC.
@@ -72,14 +78,15 @@ class Observer final : public Predictor {
   [[nodiscard]] bool is_driven() const override { return true; }
   [[nodiscard]] double reference_K() const override { return system_.reference_K; }
   [[nodiscard]] bool looks_after_inputs() const override { return true; }
-  /// Row by row what observe() gives of the whole run.
+  /// Gives row by row the same as observe() for the whole run.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
-  /// A follower that gives up no sensor and tells what it sees on its way: one that is wrong shows in its innovations. It outlives no observer.
+  /// A follower that never drops a sensor and shows its innovations, in which a wrong sensor is visible. The observer must
+  /// outlive it.
   [[nodiscard]] std::unique_ptr<ObserverFollower> watch() const;
 
-  /// The same, that trusts its model as far as twice what its sensors kept away from it in these runs.
+  /// A copy with most_apart set to twice the distance that its sensors had from the model in these runs.
   [[nodiscard]] Observer calibrated(std::span<const ObservedRun> runs) const;
-  /// The same, with what it has learned, reading other sensors.
+  /// A copy that keeps what it has learned and reads other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
 
   /// Factors on the model's heat flows (solver::flow_names()), then on the drift, with their standard deviations.
@@ -88,16 +95,16 @@ class Observer final : public Predictor {
     double value = 1.0, deviation = 0.0;
   };
   [[nodiscard]] std::vector<Factor> factors() const;
-  /// Their values as factors on the model: solver::with_factors() makes the machine that the filter believes in.
+  /// Their values as factors on the model: solver::with_factors() makes the estimated machine.
   [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
 
-  /// What is believed: normally distributed.
+  /// An estimate with a normal distribution.
   struct Belief {
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
   };
-  /// All that makes an observer, such as goes into a file.
+  /// All data of an observer, for storing it in a file.
   struct State {
     solver::ReducedSystem system;
     Eigen::VectorXd start;
@@ -108,11 +115,12 @@ class Observer final : public Predictor {
     Belief factors;  ///< of flow_names() minus 1, then of the drift minus 1
   };
   [[nodiscard]] State state() const;
-  /// The observer of that state. @throws std::logic_error, InputError  as the constructor, and for factors of another number
+  /// The observer with that state. @throws std::logic_error, InputError as the constructor, and for a wrong number of
+  /// factors
   [[nodiscard]] static Observer of_state(State state);
 
  private:
-  struct Step;  // what one drive does to the state over one step
+  struct Step;  // the effect of one drive on the state over one step
   class Run;
 
   solver::ReducedSystem system_;

@@ -10,7 +10,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr int kPack = 8;  // candidates that are computed side by side
+constexpr int kPack = 8;  // candidates that are computed in parallel
 using Pack = Eigen::Array<double, kPack, 1>;
 
 /// Σ_d j_d' A⁻¹ j_d of kPack matrices A at once, by Cholesky's decomposition.
@@ -45,7 +45,8 @@ Pack variances(const Entry& entry, const Eigen::MatrixXd& drift) {
   return all;
 }
 
-/// Orthonormal directions among the factors, those that readings and drifts tell most of first, n_factors x as many as count.
+/// Orthonormal directions among the factors, sorted by their effect on readings and drifts, n_factors x number of
+/// significant ones.
 Eigen::MatrixXd directions(const std::vector<RunSensitivity>& runs, int most) {
   const auto n = static_cast<Eigen::Index>(runs.front().drift_um.size());
   Eigen::MatrixXd by_reading = Eigen::MatrixXd::Zero(n, n), by_drift = by_reading;
@@ -65,13 +66,15 @@ Eigen::MatrixXd directions(const std::vector<RunSensitivity>& runs, int most) {
   const dense::SymmetricEigen eigen(sum);
   Eigen::Index kept = 1;
   double rest = eigen.eigenvalues().head(n - 1).sum();
-  while (kept < std::min<Eigen::Index>(n, most) && rest > ObserverLeft::kNeglected) rest -= eigen.eigenvalues()(n - 1 - kept++);
+  while (kept < std::min<Eigen::Index>(n, most) && rest > ObserverLeft::kNeglected)
+    rest -= eigen.eigenvalues()(n - 1 - kept++);
   return eigen.eigenvectors().rightCols(kept);
 }
 
 }  // namespace
 
-ObserverLeft::ObserverLeft(const std::vector<RunSensitivity>& runs, std::vector<double> scatter) : scatter_(std::move(scatter)) {
+ObserverLeft::ObserverLeft(const std::vector<RunSensitivity>& runs, std::vector<double> scatter)
+    : scatter_(std::move(scatter)) {
   if (runs.empty() || scatter_.empty()) throw std::logic_error("ObserverLeft: no run, or no scatter");
   n_candidates_ = static_cast<int>(runs.front().reading_K.front().rows());
   n_drifts_ = runs.front().drift_um.front().rows();
@@ -87,14 +90,17 @@ ObserverLeft::ObserverLeft(const std::vector<RunSensitivity>& runs, std::vector<
       const Eigen::Index end = moment == kMoments ? n_rows : n_rows * moment / kMoments;
       if (end == row) continue;
       for (; row < end; ++row) {
-        for (Eigen::Index f = 0; f < n_factors; ++f) j.row(f) = run.reading_K[static_cast<std::size_t>(f)].col(row).transpose();
+        for (Eigen::Index f = 0; f < n_factors; ++f)
+          j.row(f) = run.reading_K[static_cast<std::size_t>(f)].col(row).transpose();
         const Eigen::MatrixXd seen = (j.transpose() * basis) / std::sqrt(run.reading_K2);
         for (Eigen::Index a = 0, at = 0; a < n; ++a) {
-          for (Eigen::Index b = 0; b <= a; ++b, ++at) told.col(at).head(n_candidates_).array() += seen.col(a).array() * seen.col(b).array();
+          for (Eigen::Index b = 0; b <= a; ++b, ++at)
+            told.col(at).head(n_candidates_).array() += seen.col(a).array() * seen.col(b).array();
         }
       }
       Eigen::MatrixXd drift(n_factors, n_drifts_);
-      for (Eigen::Index f = 0; f < n_factors; ++f) drift.row(f) = run.drift_um[static_cast<std::size_t>(f)].col(end - 1).transpose();
+      for (Eigen::Index f = 0; f < n_factors; ++f)
+        drift.row(f) = run.drift_um[static_cast<std::size_t>(f)].col(end - 1).transpose();
       moments_.push_back({told, basis.transpose() * drift});
     }
   }
@@ -132,11 +138,15 @@ std::vector<double> ObserverLeft::with_each(std::span<const int> set) const {
     for (const Moment& moment : moments_) {
       for (std::size_t s = 0; s < scatter_.size(); ++s, ++i)
         sums[pack] += variances<kMost>(
-            [&](Eigen::Index at) -> Pack { return known[i](at) + moment.told.col(at).template segment<kPack>(first).array(); }, moment.drift);
+            [&](Eigen::Index at) -> Pack {
+              return known[i](at) + moment.told.col(at).template segment<kPack>(first).array();
+            },
+            moment.drift);
     }
   });
   std::vector<double> left;
-  for (int c = 0; c < n_candidates_; ++c) left.push_back(std::sqrt(sums[static_cast<std::size_t>(c / kPack)](c % kPack) / n));
+  for (int c = 0; c < n_candidates_; ++c)
+    left.push_back(std::sqrt(sums[static_cast<std::size_t>(c / kPack)](c % kPack) / n));
   return left;
 }
 

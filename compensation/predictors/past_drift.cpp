@@ -8,7 +8,7 @@
 namespace driftwright::compensation {
 namespace {
 
-/// A drift that is a function of the time since the run began; none is told of its lead-in.
+/// A drift that is a function of the time since the run began; NaN in its lead-in.
 class TimeFollower final : public Follower {
  public:
   explicit TimeFollower(std::function<double(double t_s)> drift_um) : drift_um_(std::move(drift_um)) {}

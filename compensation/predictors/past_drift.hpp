@@ -1,5 +1,5 @@
 #pragma once
-// Predictors that look at no reading at all: what any strategy has to beat.
+// Predictors that use no readings at all: the baselines that every strategy must beat.
 
 #include <span>
 
@@ -26,7 +26,7 @@ class EarlierRunsPredictor final : public Predictor {
   /// @param runs    records with the channel
   /// @param target  channel in um
   EarlierRunsPredictor(std::span<const Record> runs, const std::string& target);
-  /// One record a run, with one channel.
+  /// One record per run, with one channel.
   [[nodiscard]] const std::vector<Record>& runs() const { return runs_; }
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }
   [[nodiscard]] bool is_driven() const override { return false; }

@@ -13,9 +13,9 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kRankThreshold = 1.0e-10;  // pivot over largest pivot
-constexpr double kConstant = 1.0e-12;       // deviation over largest magnitude: rounding, not movement
+constexpr double kConstant = 1.0e-12;       // deviation over largest magnitude: below it a column is constant up to rounding
 
-/// Singular values of the columns that were kept: largest over smallest.
+/// Ratio of the largest to the smallest singular value of the kept columns.
 double condition_of(const dense::PivotedQr& qr) {
   if (qr.rank() == 0) return 1.0;
   const Eigen::VectorXd s = dense::SingularValues::alone(qr.r()).sigma;

@@ -20,8 +20,7 @@ struct Regression {
   double residual_rms = 0.0;         ///< sqrt(mean r^2) over the rows fitted, target_unit
   double max_abs_residual = 0.0;     ///< target_unit
   /// Largest over smallest singular value kept, of the centred inputs scaled to unit deviation [-]; 1 if rank
-  /// = 0. Errors in the readings may be amplified by this much: above about 100 the inputs tell the same
-  /// story twice.
+  /// = 0. Errors in the readings may be amplified by this factor: above about 100 the inputs are nearly redundant.
   double condition_number = 1.0;
   int n_samples = 0;   ///< rows fitted
   int n_left_out = 0;  ///< rows with a missing value
@@ -35,10 +34,10 @@ struct Regression {
 /// Least squares fit over the complete rows of all records, min |y - b0 - X b|.
 ///
 /// The columns are centred and scaled to unit deviation and factored by column-pivoted Householder QR; X'X is
-/// never formed, for that squares the condition number. Inputs that are constant or repeat others (relative
-/// pivot below 1e-10) leave the solution open: then the one with the smallest norm of the scaled coefficients
-/// is taken (complete orthogonal decomposition). It gives a constant input the coefficient 0 and shares a
-/// duplicated sensor's effect equally between the copies; `rank` says that it happened.
+/// never formed, because that squares the condition number. With inputs that are constant or repeat others (relative
+/// pivot below 1e-10) the solution is not unique: then the one with the smallest norm of the scaled coefficients
+/// is used (complete orthogonal decomposition). It gives a constant input the coefficient 0 and divides a
+/// duplicated sensor's effect equally between the copies; `rank` shows that this happened.
 ///
 /// @param inputs  channel names; @param target  channel name
 /// @throws InputError  when `inputs` is empty, there are fewer complete rows than unknowns (inputs + 1), and

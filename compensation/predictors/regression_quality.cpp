@@ -11,13 +11,13 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kDuplicate = 0.995;
-constexpr double kDependent = 1e-10;  // of a column's length left beside the others
+constexpr double kDependent = 1e-10;  // length of a column orthogonal to the others, as a share
 
 Eigen::MatrixXd centred(const Eigen::MatrixXd& x) {
   return x.rowwise() - x.colwise().mean();
 }
 
-/// Length of what is left of each column beside the others; 0 where nothing is. By QR with that column last, so that X'X is never formed.
+/// Length of each column orthogonal to the others; 0 if dependent. By QR with that column last, so that X'X is never formed.
 Eigen::VectorXd lengths_beside_others(const Eigen::MatrixXd& x) {
   Eigen::VectorXd left = x.colwise().norm().transpose();
   if (x.cols() < 2) return left;

@@ -13,7 +13,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: tests decide
+constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: weak, so the tests decide
 constexpr double kRowsEvery_s = 300.0;
 
 /// Factors from their logarithms: sources, ambient, joints, rates, then displacements.

@@ -1,6 +1,5 @@
 #pragma once
-// How good is a prediction, and how good is the laziest one? A strategy that does not beat both baselines is
-// none.
+// The error of a prediction, and of two simple baselines. A strategy that does not beat both baselines is useless.
 
 #include <limits>
 #include <span>
@@ -11,25 +10,25 @@
 
 namespace driftwright::compensation {
 
-/// In the unit of the residual. With n = 0 the three numbers are NaN, so that every comparison with a bound
+/// Error measures in the unit of the residual. With n = 0 the three numbers are NaN, so that every comparison with a bound
 /// fails.
 struct Score {
   double rmse = std::numeric_limits<double>::quiet_NaN();      ///< sqrt(mean r^2)
   double peak_abs = std::numeric_limits<double>::quiet_NaN();  ///< max |r|
-  double mean = std::numeric_limits<double>::quiet_NaN();      ///< the bias left
+  double mean = std::numeric_limits<double>::quiet_NaN();      ///< the remaining bias
   int n = 0;                                                   ///< values that are not NaN
 };
 
 /// Score of a residual series (measured minus predicted); NaN values are left out.
 [[nodiscard]] Score score(std::span<const double> residual);
 
-/// Baseline 1: the mean of all training values of `channel`, every sample weighing the same, at every row of
+/// Baseline 1: the mean of all training values of `channel`, each sample with equal weight, at every row of
 /// `test`.
 /// @throws InputError  when no training value exists, and as complete_rows()
 [[nodiscard]] std::vector<double> baseline_mean(std::span<const Record> train, const Record& test,
                                                 const std::string& channel);
 
-/// The same with the last training value of the last record that has one, as if the machine stayed where it was left.
+/// The same with the last training value of the last record that has one, as if the machine stayed in that state.
 [[nodiscard]] std::vector<double> baseline_last(std::span<const Record> train, const Record& test,
                                                 const std::string& channel);
 

@@ -23,7 +23,7 @@ TermColumns term_columns(std::span<const Record> records, const std::vector<Drif
                             lagged(record.time_s, taken_by(terms[i], channel.values), terms[i].power, terms[i].lag_s,
                                    is_drive(channel.unit))});
     }
-    // a lead-in has done its work: what is fitted begins with the first drift
+    // the lead-in only sets the lags: fitted rows begin with the first drift
     const std::vector<double>& drift = r.channels.front().values;
     const auto first = std::find_if(drift.begin(), drift.end(), [](double v) { return std::isfinite(v); });
     if (first != drift.end()) r = own_rows(std::move(r), static_cast<std::size_t>(first - drift.begin()));

@@ -1,5 +1,6 @@
 #pragma once
-// The terms of a formula as columns: readings at their powers and with their lags, ready for a fit; and a fit of columns as a formula.
+// Converts the terms of a formula into columns (readings with powers and lags) for a fit, and a fit of columns back into a
+// formula.
 
 #include <span>
 #include <string>
@@ -10,14 +11,14 @@
 
 namespace driftwright::compensation {
 
-/// Records in which every term has a channel of its own.
+/// Records with one channel per term.
 struct TermColumns {
-  std::vector<Record> records;          ///< as many rows as those they were made of; channels: the target, then one a term
+  std::vector<Record> records;          ///< with the rows of the original records; channels: the target, then one per term
   std::vector<std::string> names;       ///< of the terms' channels
   std::vector<DriftModel::Term> terms;  ///< with their units; coefficients 0
 };
 
-/// Lags run over the whole of each record, so that its rows may be parted afterwards.
+/// Lags are computed over the whole of each record, so that rows may be split afterwards.
 /// @throws InputError  when there is no record, or one lacks the target or an input
 [[nodiscard]] TermColumns term_columns(std::span<const Record> records, const std::vector<DriftModel::Term>& terms,
                                        const std::string& target);

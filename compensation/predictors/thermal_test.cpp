@@ -34,7 +34,7 @@ ThermalTest averaged(const ThermalTest& test, double over_s) {
 
 double noise_of(const std::vector<ThermalTest>& tests, Eigen::Index channel) {
   std::vector<double> differences;
-  double low = 0.0, high = 0.0;  // a channel that stands still away from 0 has a range, too
+  double low = 0.0, high = 0.0;  // the range includes 0, for a channel that is constant away from 0
   for (const ThermalTest& t : tests) {
     const auto y = t.readings.row(channel);
     low = std::min(low, y.minCoeff());

@@ -12,8 +12,8 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kInterpolation_um = 1e-6;  // differences of interpolated values: far below any resolution
-constexpr double kMostParts = 1000;         // of one block
+constexpr double kInterpolation_um = 1e-6;  // rounding of interpolated values: far below any resolution
+constexpr double kMostParts = 1000;         // per block
 constexpr int kSplitCost = 6;
 
 /// A time at which one axis may change.
@@ -102,7 +102,7 @@ class AxisPlanner {
     return c != 0.0 && beyond_zero > kPaperReach * axis_.tolerance_um;
   }
 
-  /// Puts places on the way of divisible blocks, so close that the drift between two is about a tenth of the tolerance.
+  /// Adds places in divisible blocks, so close that the drift between two is about a tenth of the tolerance.
   void add_parts() {
     std::vector<Place> parts;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
@@ -139,13 +139,14 @@ class AxisPlanner {
   double end_s_;
 };
 
-/// A block behind which the axis has the offset in force: one that is always run, in G90 and not in machine coordinates.
+/// True if the axis has the offset in force after the block: one that is always run, in G90 and not in machine coordinates.
 bool takes_offset(const NcStep& step, int axis) {
   return step.kind != NcStepKind::kNone && step.kind != NcStepKind::kMachine && step.named[axis] && step.absolute &&
          !step.deletable;
 }
 
-/// A block behind which the axis stands where no offset counts. The last block runs behind the line that takes corrections back.
+/// True if no offset applies to the axis' position after the block. The last block runs after the line that removes
+/// corrections.
 bool loses_offset(const NcStep& step, int axis) {
   if (step.ends_program) return step.named[axis];
   const bool all = !step.named[0] && !step.named[1] && !step.named[2];
@@ -156,8 +157,9 @@ bool cuts(const NcStep& step) {
   return step.kind == NcStepKind::kLine || step.kind == NcStepKind::kArc || step.kind == NcStepKind::kDrilling;
 }
 
-/// What the axis itself has of the plan: an offset moves nothing, so the first counts from the end of the block that commands the
-/// axis for the first time. Samples and both sides of each change; between them all is linear.
+/// The part of the plan that reaches the axis: a change of offset causes no motion, so the first one counts from the end of
+/// the block that commands the axis for the first time. Contains samples and both sides of each change; between them
+/// everything is linear.
 class CourseWriter {
  public:
   CourseWriter(const ProgramAxis& axis, std::span<const double> time_s) : axis_(axis), time_s_(time_s) {}
@@ -180,7 +182,7 @@ class CourseWriter {
   }
 
   AxisCourse course;
-  std::optional<LongStretch> without;  ///< where it cuts without a correction and leaves the tolerance
+  std::optional<LongStretch> without;  ///< where it cuts without a correction and exceeds the tolerance
 
  private:
   void along(const NcStep& step, std::size_t i, double until_s) {
@@ -209,7 +211,7 @@ class CourseWriter {
     course.peak_drift_um = std::max(course.peak_drift_um, std::abs(drift_um));
     if (judged) course.worst_um = std::max(course.worst_um, std::abs(left_um));
     if (!course.time_s.empty() && course.time_s.back() == t_s && course.correction_um.back() == correction_um) {
-      return;  // the end of the block before
+      return;  // it is the end of the block before
     }
     course.time_s.push_back(t_s);
     course.drift_um.push_back(drift_um);

@@ -8,7 +8,7 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kSameDrift_um = 1e-9;
-constexpr std::size_t kMostPoints = 40000;  // of one axis over all parts, which a picture cannot show any more
+constexpr std::size_t kMostPoints = 40000;  // of one axis over all parts; a picture cannot show more
 constexpr std::size_t kFewestPoints = 200;  // of one part
 
 bool agree(const std::vector<ProgramAxis>& a, const std::vector<ProgramAxis>& b, double resolution_um) {

@@ -14,10 +14,10 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kRounding_um = 1e-9;  // a drift on the edge is inside
-constexpr double kRounding = 1e-9;     // part of a step that is rounding, not size
+constexpr double kRounding_um = 1e-9;  // a drift on the limit counts as inside
+constexpr double kRounding = 1e-9;     // share of a step that counts as rounding
 
-/// Steps passed by the drift of a cell, the paper's way.
+/// Number of steps that the drift of a cell has passed, by the paper's rule.
 long steps_passed(const DriftCell& cell, double step_um) {
   const double extreme_um = cell.high_um >= -cell.low_um ? cell.high_um : cell.low_um;
   const long n = std::max(0L, std::lround(std::ceil(std::abs(extreme_um) / step_um - kRounding)) - 1);
@@ -27,7 +27,7 @@ long steps_passed(const DriftCell& cell, double step_um) {
   return extreme_um < 0.0 ? -n : n;
 }
 
-/// Whether n steps leave no more than the reach on the wrong side of zero, and no more than a step on the right one.
+/// True if n steps leave at most the reach on the wrong side of zero, and at most a step on the right side.
 bool serves(const DriftCell& cell, long n, double step_um) {
   const double c_um = static_cast<double>(n) * step_um;
   const double left_low = (n < 0 ? -cell.high_um + c_um : cell.low_um - c_um);
@@ -35,7 +35,7 @@ bool serves(const DriftCell& cell, long n, double step_um) {
   return left_low >= -kPaperReach * step_um && left_high <= step_um + kRounding_um;
 }
 
-/// Values that a correction may have.
+/// The values that a correction may have.
 struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -59,10 +59,10 @@ Interval admitted(const DriftCell& cell, double tolerance_um, double resolution_
   return i.empty() ? Interval{middle, middle} : i;
 }
 
-/// For each cell the first one behind it that cannot share its correction.
+/// For each cell the first later one that cannot share its correction.
 std::vector<std::size_t> reaches(const std::vector<Interval>& cells) {
   std::vector<std::size_t> reach(cells.size());
-  std::deque<std::size_t> highest_low, lowest_high;  // of the cells from i to the end of the reach
+  std::deque<std::size_t> highest_low, lowest_high;  // of the cells from i to the last one that can share
   std::size_t end = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     while (!highest_low.empty() && highest_low.front() < i) highest_low.pop_front();
@@ -81,13 +81,13 @@ std::vector<std::size_t> reaches(const std::vector<Interval>& cells) {
   return reach;
 }
 
-/// Starts of the corrections in a plan with the fewest. @param n_at_zero  cells at the start that need none
+/// Starts of the corrections in a cheapest plan with the fewest changes. @param n_at_zero  cells at the start that need none
 std::vector<std::size_t> cheapest_starts(const std::vector<Interval>& cells, std::size_t n_at_zero,
                                          std::span<const int> cost) {
   const std::vector<std::size_t> reach = reaches(cells);
-  std::vector<std::size_t> latest;  // starts of the pieces when each before them lasts as long as it can
+  std::vector<std::size_t> latest;  // starts of the pieces if each earlier one lasts as long as possible
   for (std::size_t start = n_at_zero; start < cells.size(); start = reach[start]) latest.push_back(start);
-  // Earliest starts that leave the rest feasible with as many pieces; each lies behind the latest of the piece before.
+  // Earliest starts that leave the rest feasible with as many pieces; each is after the latest start of the piece before.
   std::vector<std::size_t> earliest(latest.size());
   std::size_t end = cells.size();
   for (std::size_t k = latest.size(); k-- > 0;) {
@@ -103,7 +103,8 @@ std::vector<std::size_t> cheapest_starts(const std::vector<Interval>& cells, std
   for (std::size_t k = 0; k < latest.size(); ++k) {
     const std::size_t n = latest[k] - earliest[k] + 1;
     windows[k].resize(n);
-    std::vector<std::size_t> cheapest_from;  // of the window before: the cheapest from an index on, the last of equals
+    // Of the previous window: index of the cheapest from an index on, the last of equals.
+    std::vector<std::size_t> cheapest_from;
     if (k > 0) {
       cheapest_from.resize(windows[k - 1].size());
       for (std::size_t i = cheapest_from.size(); i-- > 0;) {
@@ -138,7 +139,7 @@ std::vector<std::size_t> cheapest_starts(const std::vector<Interval>& cells, std
   return starts;
 }
 
-/// Where operations begin, and every multiple of the resolution from there to their end.
+/// Starts of operations, and every multiple of the resolution from there to their ends.
 std::vector<double> grid_s(std::span<const double> boundaries_s, double resolution_s) {
   if (!(resolution_s > 0.0)) throw RangeError(fmt::format("resolution {} s must be positive", resolution_s));
   std::vector<double> times_s;
@@ -184,13 +185,13 @@ std::vector<double> steps_of_tolerance(std::span<const DriftCell> cells, double 
   for (std::size_t k = 1; k < n.size() && !cost.empty(); ++k) {
     const long before = n[k - 1], after = n[k];
     if (before == after || before * after < 0) continue;
-    if (std::abs(after) > std::abs(before)) {  // away from zero: earlier
+    if (std::abs(after) > std::abs(before)) {  // the drift moves away from zero: change earlier
       std::size_t best = k;
       for (std::size_t j = k; j-- > 1 && n[j] == before && serves(cells[j], after, step_um);) {
         if (cost[j] < cost[best]) best = j;
       }
       std::fill(n.begin() + static_cast<std::ptrdiff_t>(best), n.begin() + static_cast<std::ptrdiff_t>(k), after);
-    } else {  // back to it: later
+    } else {  // the drift returns to zero: change later
       std::size_t best = k;
       for (std::size_t j = k; j + 1 < n.size() && n[j] == after && n[j + 1] == after && serves(cells[j], before, step_um);
            ++j) {
@@ -212,7 +213,8 @@ std::vector<double> fewest_changes(std::span<const DriftCell> cells, double tole
   if (cells.empty()) return correction_um;
   std::vector<Interval> admits;
   for (const DriftCell& cell : cells) admits.push_back(admitted(cell, tolerance_um, resolution_um));
-  // No correction is one of 0 that costs no change: holding it as long as it serves never costs one more.
+  // No correction equals a correction of 0 without a change: keeping it as long as possible never needs an additional
+  // change.
   const Interval none{0.0, 0.0};
   std::size_t n_at_zero = 0;
   while (n_at_zero < admits.size() && !(admits[n_at_zero] & none).empty()) ++n_at_zero;

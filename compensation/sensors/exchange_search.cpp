@@ -10,15 +10,15 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kHelps = 1e-9;  // of what is left: less is rounding
+constexpr double kHelps = 1e-9;  // of the remaining error: smaller improvements are rounding
 constexpr std::uint64_t kSeed = 1;
-constexpr int kTriedAtRandom = 400, kMostBeginnings = 20;  // candidates times random beginnings
+constexpr int kTriedAtRandom = 400, kMostBeginnings = 20;  // candidates times random starts
 
 bool holds(const std::vector<int>& set, int candidate) {
   return std::find(set.begin(), set.end(), candidate) != set.end();
 }
 
-/// The candidate that leaves least beside a set; -1 where all are in it.
+/// The candidate that leaves the smallest error when added to a set; -1 if all are in it.
 int best_beside(const std::vector<int>& set, const std::vector<double>& left_um) {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
@@ -33,7 +33,7 @@ int best_beside(const std::vector<int>& set, const std::vector<double>& left_um)
 
 ThermometerSet exchanged(const DriftLeft& left, std::vector<int> members, std::size_t n_fixed, const Listener& listener) {
   double least = left.of(members);
-  std::size_t n_still = 0;  // members in a row that no exchange helped
+  std::size_t n_still = 0;  // consecutive members without a helpful exchange
   for (std::size_t i = n_fixed; n_still < members.size() - n_fixed && !listener.wants_end();) {
     std::vector<int> rest = members;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
@@ -50,7 +50,7 @@ ThermometerSet exchanged(const DriftLeft& left, std::vector<int> members, std::s
   return {members, left.of(members)};
 }
 
-/// Sets drawn at random, from those of two on, one number after another.
+/// Random sets, from size two on, one size after another.
 std::vector<std::vector<int>> random_beginnings(int n_candidates, int most, int n_free, const std::vector<int>& fixed) {
   const int n_random = std::clamp(kTriedAtRandom / n_candidates, 1, kMostBeginnings);
   Random random(kSeed);
@@ -68,7 +68,7 @@ std::vector<std::vector<int>> random_beginnings(int n_candidates, int most, int 
   return all;
 }
 
-/// As a piece: members, and what they leave.
+/// A set as the numbers of a piece: members, and the remaining error.
 Pieces::Numbers numbers_of(const ThermometerSet& set) {
   Pieces::Numbers numbers(set.members.begin(), set.members.end());
   numbers.push_back(set.left_um);
@@ -83,13 +83,14 @@ ThermometerSet set_of(const Pieces::Numbers& numbers) {
 
 }  // namespace
 
-std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed, const Listener& listener,
-                                      const Pieces& pieces) {
+std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed,
+                                      const Listener& listener, const Pieces& pieces) {
   const int n_free = left.n_candidates() - static_cast<int>(fixed.size());
   const int most = std::min(n_most, n_free);
   const std::vector<std::vector<int>> drawn = random_beginnings(left.n_candidates(), most, n_free, fixed);
   const auto from_drawn = [&](std::size_t b) {
-    return pieces.of(b, [&] { return numbers_of(exchanged(left, drawn[b], fixed.size(), listener)); }, listener);
+    return pieces.of(
+        b, [&] { return numbers_of(exchanged(left, drawn[b], fixed.size(), listener)); }, listener);
   };
   if (!pieces.shard.is_all()) {
     for (std::size_t b = 0; b < drawn.size(); ++b) {

@@ -1,5 +1,6 @@
 #pragma once
-// The n thermometers of many that leave least of a drift: one after another, then exchanged as long as an exchange helps.
+// Finds the n thermometers, out of many, with the smallest remaining drift error: adds one at a time, then exchanges members
+// while this helps.
 
 #include "base/pieces.hpp"
 #include "compensation/sensors/drift_left.hpp"
@@ -7,21 +8,22 @@
 namespace driftwright::compensation {
 
 struct ThermometerSet {
-  std::vector<int> members;  ///< candidates; those that were fixed come first
+  std::vector<int> members;  ///< candidates; fixed ones come first
   double left_um = 0.0;
 };
 
-/// The best sets of 1, 2, ... n_most thermometers beside those that are fixed. Each begins as the best known set of one fewer and the candidate that
-/// helps it most, and as some sets drawn at random; of each beginning, members are exchanged, each for the candidate that leaves least in its place,
-/// until no single exchange leaves less. Sets need not hold one another. It ends early when the listener wants an end.
+/// The best sets of 1, 2, ... n_most thermometers in addition to the fixed ones. The search for each size starts from the
+/// best known set of one fewer plus the candidate that helps it most, and from some random sets. From each start, members
+/// are exchanged, each for the candidate with the smallest error in its place, until no single exchange helps. Larger sets
+/// need not contain the smaller ones. Ends early when the listener requests an end.
 ///
-/// @param fixed   in every set. Of few candidates there are many random beginnings (of 20 or fewer twenty), of 400 and more one
-/// @param pieces  what each beginning led to; a shard does those of its own first, then what of the others nobody has kept yet
+/// @param fixed   in every set. The number of random starts is twenty for 20 or fewer candidates, and one for 400 and more
+/// @param pieces  the result of each start; a shard computes its own first, then those of the others that are not stored yet
 /// Source: exchange after Fedorov, Theory of Optimal Experiments (1972), ch. 3.
 [[nodiscard]] std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed = {},
                                                     const Listener& listener = {}, const Pieces& pieces = {});
 
-/// The best of all sets of n beside those that are fixed, by trying each.
+/// The best of all sets of n in addition to the fixed ones, by trying each.
 [[nodiscard]] ThermometerSet best_of_all_sets(const DriftLeft& left, int n, const std::vector<int>& fixed = {});
 
 }  // namespace driftwright::compensation

@@ -12,9 +12,9 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kNearZero = 0.05;         // of the span: kAutomatic divides by nothing smaller
-constexpr double kUndefined = 1.0e-9;      // of the span: nobody divides by anything smaller
-constexpr double kConstantSpan = 1.0e-12;  // span over largest magnitude: rounding, not movement
+constexpr double kNearZero = 0.05;         // of the span: kAutomatic avoids smaller divisors
+constexpr double kUndefined = 1.0e-9;      // of the span: below this an image is undefined
+constexpr double kConstantSpan = 1.0e-12;  // span over largest magnitude: below it a series is constant up to rounding
 
 double span_of(const Eigen::VectorXd& x) {
   return x.maxCoeff() - x.minCoeff();
@@ -63,7 +63,7 @@ Choice choose_image(const GreyOptions& options, const std::vector<std::string>& 
   return {Image::kInitialValue, "No series starts near 0 and none is a temperature, so each is divided by its first value."};
 }
 
-/// The dimensionless series, or none where its divisor vanishes.
+/// The dimensionless series, or none if its divisor vanishes.
 std::optional<Eigen::VectorXd> image_of(const Eigen::VectorXd& x, Image image) {
   if (image == Image::kRange) return ((x.array() - x.minCoeff()) / span_of(x)).matrix();
   const double divisor = image == Image::kInitialValue ? x(0) : x.mean();
@@ -190,7 +190,7 @@ Ranking rank_channels(std::span<const Record> records, const std::string& refere
                   .reason = images.reason,
                   .n_samples = static_cast<int>(images.reference.rows()),
                   .n_left_out = images.n_left_out};
-  // those without an image are no company: the extremes run over the others
+  // candidates without an image are left out of the extremes
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     RankedChannel& channel = ranking.channels.emplace_back();

@@ -1,5 +1,5 @@
 #pragma once
-// A sampled series between its samples.
+// Interpolates a sampled series.
 
 #include <span>
 
@@ -9,7 +9,7 @@ namespace driftwright::compensation {
 ///
 ///     x(t) = x_i + (x_{i+1} - x_i) (t - t_i) / (t_{i+1} - t_i)     for t_i <= t <= t_{i+1}
 ///
-/// NaN outside the samples and between two samples of which one is missing; at a sample exactly that sample.
+/// NaN outside the samples and between two samples of which one is missing; at a sample exactly its value.
 ///
 /// @param time_s  strictly increasing
 /// @param values  same length, any unit; missing values are NaN

@@ -11,11 +11,12 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kConstantDeviation = 1.0e-12;  // deviation over largest magnitude: rounding, not movement
-constexpr double kDependent = 1.0e-10;          // of a column's square left beside those before it
-constexpr double kMoves = 1.0e-10;              // variance in some rows, of that over all
+// Deviation over largest magnitude: below it a column is constant up to rounding.
+constexpr double kConstantDeviation = 1.0e-12;
+constexpr double kDependent = 1.0e-10;  // remaining square of a column after those before it, as a share
+constexpr double kMoves = 1.0e-10;      // variance in some rows over that in all rows
 
-/// The sums of some columns, with the constant before and the target behind them.
+/// The sums of some columns, with the constant first and the target last.
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& sums, std::span<const int> columns) {
   std::vector<Eigen::Index> kept = {0};
   for (int c : columns) kept.push_back(c + 1);
@@ -146,7 +147,8 @@ void require_enough_rows(double n_rows, std::size_t n_columns, const std::string
 }
 
 double held_out_rmse(const ProductSums& sums, std::span<const int> columns, double penalty) {
-  // Of these columns alone: hundreds of thermometers are tried by the thousand, and the sums of all are a megabyte a record.
+  // Only the sums of these columns: hundreds of thermometers are tried thousands of times, and the sums of all take a
+  // megabyte per record.
   std::vector<Eigen::MatrixXd> by_record;
   for (const Eigen::MatrixXd& record : sums.by_record) by_record.push_back(restricted(record, columns));
   Eigen::MatrixXd total = by_record.front();

@@ -33,7 +33,7 @@ std::vector<Block> blocks_of(const std::vector<Eigen::Index>& first) {
   return blocks;
 }
 
-/// Deng's grades over blocks drawn, from the distances of all rows.
+/// Deng's grades over drawn blocks, from the distances of all rows.
 Eigen::VectorXd resampled_grades(const Eigen::MatrixXd& distance, const std::vector<Block>& drawn, double rho) {
   double smallest = INFINITY, largest = 0.0, n = 0.0;
   for (const Block& b : drawn) {

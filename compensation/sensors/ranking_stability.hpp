@@ -1,5 +1,5 @@
 #pragma once
-// Would the ranking of sensors be another one with other data, or another distinguishing coefficient?
+// Tests how much the ranking of sensors depends on the data and on the distinguishing coefficient.
 
 #include <span>
 
@@ -10,21 +10,22 @@ namespace driftwright::compensation {
 struct RankedStability {
   std::string name;
   double lowest_rank = 0.0, highest_rank = 0.0;  ///< 5 % and 95 % quantile over the resamples; 1 is best
-  double share_chosen = 0.0;                     ///< of resamples in which it is among the n best
-  double grade_deviation = 0.0;                  ///< standard deviation of its grade over them
+  double share_chosen = 0.0;                     ///< share of resamples in which it is among the n best
+  double grade_deviation = 0.0;                  ///< standard deviation of its grade over the resamples
 };
 
+/// The result for all channels.
 struct RankingStability {
-  std::vector<RankedStability> channels;  ///< those that have a grade, in the order of the ranking
+  std::vector<RankedStability> channels;  ///< those with a grade, in the order of the ranking
   int n_resamples = 0;
-  /// (rho, the n best in their order), where rho runs from 0.1 to 1.
+  /// (rho, the n best in their order), for rho from 0.1 to 1.
   std::vector<std::pair<double, std::vector<std::string>>> by_rho;
-  /// Neighbours in the ranking whose grades differ by no more than two standard deviations of that difference, "X12 and X13".
+  /// Neighbours in the ranking whose grades differ by at most two standard deviations of that difference, "X12 and X13".
   std::vector<std::pair<std::string, std::string>> undecided;
 };
 
 /// Resamples the rows in blocks (a twentieth of each record, so that neighbours stay together) with replacement and ranks
-/// them anew; images are those of all rows. @param n  sensors to choose
+/// them again; images are those of all rows. @param n  number of sensors to choose
 /// Source: Kuensch, Ann. Statist. 17 (1989) 1217 (block bootstrap).
 [[nodiscard]] RankingStability ranking_stability(std::span<const Record> records, const std::string& reference,
                                                  const std::vector<std::string>& candidates, const GreyOptions& options,

@@ -56,7 +56,7 @@ Eigen::ArrayXd RegressionLeft::squares(const Fold& fold, std::span<const int> se
   a.diagonal().tail(n - 1).array() += fold.n_fitted * noise;
   const Eigen::MatrixXd between = fold.fitted(columns, Eigen::seqN(0, n_candidates_));
   const Eigen::MatrixXd to_drift = fold.fitted(columns, Eigen::lastN(n_drifts_));
-  // Each candidate c as what the set does not say of it, q_c = x_c - X u_c: bordered normal equations.
+  // The part of each candidate c that the set does not explain, q_c = x_c - X u_c: bordered normal equations.
   const Eigen::MatrixXd u = dense::solve_definite(a, between);
   const Eigen::MatrixXd b = dense::solve_definite(a, to_drift);
   const Eigen::ArrayXd own = fold.fitted.diagonal().head(n_candidates_).array() + fold.n_fitted * noise -

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMostSets = 2e6;
 constexpr int kPathSteps = 400;            // of the LASSO
 constexpr double kSmallestPenalty = 1e-5;  // of the largest
-constexpr int kMostSweeps = 300;           // per step: sensors that move as one trade their shares without end
+constexpr int kMostSweeps = 300;           // per step: nearly equal sensors exchange their shares endlessly
 constexpr double kConverged = 1e-9;        // change of a scaled coefficient in a sweep
 
 /// Correlations of inputs and target (last) over all records.

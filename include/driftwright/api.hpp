@@ -1,4 +1,4 @@
 #pragma once
-// What the shared library shows to programs that link it; everything else in it is hidden.
+// Marks what the shared library exports to programs that link it; every other symbol in it is hidden.
 
 #define DRIFTWRIGHT_API __attribute__((visibility("default")))

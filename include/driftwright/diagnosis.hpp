@@ -6,8 +6,9 @@
 
 namespace driftwright {
 
+/// How `Machine::diagnose` searches.
 struct DiagnoseOptions {
-  std::vector<std::string> without = {};  ///< keys of effects that are not looked for
+  std::vector<std::string> without = {};  ///< keys of effects that are not searched for
   bool causes_only = false;               ///< leave the scenario's own numbers in the extended scenario as they are
 };
 
@@ -17,24 +18,27 @@ struct Estimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
+/// One cause that the measurements suggest.
 struct Cause {
   std::string effect;    ///< key of the catalogue
   std::string where;     ///< region, sensor or channel
   std::string law;       ///< in words
   std::string standing;  ///< suspected, ambiguous, named
   std::vector<Estimate> parameters;
-  double log_evidence_gain = 0.0;   ///< logarithm of the Bayes factor, natural
-  bool is_written = true;           ///< whether the extended scenario has it
-  std::string why_not_written;      ///< where it has not, a clause
-  std::vector<Cause> alternatives;  ///< what the records cannot tell from it
+  double log_evidence_gain = 0.0;   ///< natural logarithm of the Bayes factor
+  bool is_written = true;           ///< whether the extended scenario contains it
+  std::string why_not_written;      ///< if it does not: the reason, as a clause
+  std::vector<Cause> alternatives;  ///< other causes that the records cannot distinguish from it
 };
 
-/// What is left of a channel, RMS: as the scenario is, with its numbers fitted, extended; on rows that were kept out; NaN where none could judge.
+/// RMS of the residual of one channel, on rows that were kept out of the fit: with the scenario as it is, with its numbers
+/// fitted, and with the extended scenario. NaN where no row could be judged.
 struct ChannelGain {
   std::string name, unit;
   double rmse_before = 0.0, rmse_calibrated = 0.0, rmse_after = 0.0, noise_floor = 0.0;
 };
 
+/// The result of a diagnosis.
 struct Diagnosis {
   std::string verdict;  ///< consistent, suspected, named, ambiguous, unexplained, insufficient_data
   std::string reason;   ///< one sentence
@@ -42,8 +46,8 @@ struct Diagnosis {
   std::vector<Estimate> calibrated;  ///< the scenario's own numbers, as fitted
   std::string holdout;               ///< how rows were kept out
   std::vector<ChannelGain> gain;
-  std::string extended_scenario;         ///< text of a scenario with what was found written in
-  std::vector<std::string> not_written;  ///< what of it could not be, and why
+  std::string extended_scenario;         ///< text of the scenario with what was found written into it
+  std::vector<std::string> not_written;  ///< what could not be written into it, and why
 };
 
 }  // namespace driftwright

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that the library offers.
+// Includes all public headers of the library.
 
 #include "driftwright/command.hpp"
 #include "driftwright/judging.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// The ways a command can end badly. Each is an exception type with its own exit code.
+// The exceptions that a command may end with. Each type has its own exit code.
 
 #include <stdexcept>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace driftwright {
 
-/// Where in an input file a value stands. line and column count from one; 0 = unknown.
+/// A position in an input file. line and column count from one; 0 = unknown.
 struct Where {
   std::string file;
   int line = 0;
@@ -17,7 +17,7 @@ struct Where {
   std::string excerpt;  ///< the source line, without its line break
 };
 
-/// The input is wrong and the user can mend it. Exit code 2.
+/// The input is wrong and the user can correct it. Exit code 2.
 /// what() reads "file:line:column: message [key]" followed by the source line with a caret.
 class DRIFTWRIGHT_API InputError : public std::runtime_error {
  public:
@@ -32,7 +32,7 @@ class DRIFTWRIGHT_API SolveError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The user ended the work before it was complete (Ctrl-C), and what was known is written. Exit code 130.
+/// The user ended the work before it was complete (Ctrl-C); what was known by then has been written. Exit code 130.
 class DRIFTWRIGHT_API EndedEarly : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -13,10 +13,11 @@ namespace driftwright {
 struct JudgedCase {
   std::string record;
   std::string failed;                                ///< "t05 stuck"; empty: all sensors intact
-  double rms_before_um = 0.0, peak_before_um = 0.0;  ///< of the drift
-  double rms_left_um = 0.0, peak_left_um = 0.0;      ///< of what the correction leaves
+  double rms_before_um = 0.0, peak_before_um = 0.0;  ///< of the drift without correction
+  double rms_left_um = 0.0, peak_left_um = 0.0;      ///< of what remains after the correction
 };
 
+/// One strategy with its verdict and all cases that it was judged on.
 struct JudgedStrategy {
   std::string name;
   std::string verdict;  ///< safe, within limits, unsafe
@@ -25,7 +26,7 @@ struct JudgedStrategy {
   std::vector<JudgedCase> cases;
 };
 
-/// As `driftwright validate --train ... --test ...`: every strategy that the scenario's `study` allows.
+/// Does what `driftwright validate --train ... --test ...` does: judges every strategy that the scenario's `study` allows.
 /// @param train, test  record CSVs, or parts of them such as run.csv:0h..20h
 /// @throws InputError, SolveError
 [[nodiscard]] DRIFTWRIGHT_API std::vector<JudgedStrategy> judge(const std::string& scenario_file,

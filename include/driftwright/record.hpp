@@ -1,7 +1,7 @@
 #pragma once
-// The record: time series with named channels that carry units. The simulator makes it, a measured CSV reads into it,
-// and every consumer takes it and never knows which it was. A record lies at the surface of the program: values stand
-// in the unit their channel names (degC, um, rpm), not in SI.
+// The record: time series with named channels that carry units. The simulator makes it, and a measured CSV is read into it.
+// Code that uses a record does not know which of the two it was. A record is an outer format of the program: its values are
+// in the unit that their channel names (degC, um, rpm), not in SI.
 
 #include <span>
 #include <string>
@@ -30,7 +30,7 @@ struct DRIFTWRIGHT_API Record {
   [[nodiscard]] std::size_t n_samples() const { return time_s.size(); }
   /// The channel of that name (with or without its unit), or nullptr.
   [[nodiscard]] const Channel* find(const std::string& name) const;
-  /// The channel of that name. @throws InputError  that lists the channels there are
+  /// The channel of that name. @throws InputError  if it does not exist; the message lists the existing channels
   [[nodiscard]] const Channel& at(const std::string& name) const;
   /// Names of the channels with that unit, in their order.
   [[nodiscard]] std::vector<std::string> names_with_unit(const std::string& unit) const;

@@ -1,5 +1,5 @@
 #pragma once
-// The C compiler at work for us, in a folder that goes away.
+// Runs a program such as the C compiler in a temporary folder.
 
 #include <filesystem>
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace driftwright::output {
 
-/// A folder of our own under the system's temporary one, gone with this object.
+/// A folder of our own under the system's temporary one; it is removed with this object.
 class TemporaryFolder {
  public:
-  /// @param purpose  goes into its name
+  /// @param purpose  part of its name
   /// @throws InputError  naming the folder and the system's reason
   explicit TemporaryFolder(const std::string& purpose);
   ~TemporaryFolder();
@@ -23,12 +23,13 @@ class TemporaryFolder {
 };
 
 struct ChildEnd {
-  int start_error = 0;   ///< errno where it could not be started, else 0
+  int start_error = 0;   ///< errno if it could not be started, else 0
   bool is_done = false;  ///< it ended with exit code 0
   std::string messages;  ///< what it wrote to standard output and standard error
 };
 
-/// Runs a program that is found along PATH and waits for it. @param folder  its current one, where its messages are kept meanwhile
+/// Runs a program that is found along PATH and waits for it.
+/// @param folder  its working directory; its messages are stored there meanwhile
 [[nodiscard]] ChildEnd run_child(std::vector<std::string> arguments, const std::filesystem::path& folder);
 
 }  // namespace driftwright::output

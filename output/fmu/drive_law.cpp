@@ -12,7 +12,7 @@ namespace {
 constexpr double kMmMin_per_m_s = 60e3;
 constexpr double kTolerance = 1e-13, kNarrowest = 1e-9, kLeastShare = 1e-6;
 constexpr int kNodes = kLawDegree + 1, kChecks = 41;
-constexpr std::size_t kMostPieces = 2000;  // a kink takes some forty
+constexpr std::size_t kMostPieces = 2000;  // most pieces; a kink needs about forty
 
 using Coefficients = std::array<double, kNodes>;
 
@@ -26,7 +26,7 @@ double sum(const double* c, double s) {
   return s * b0 - b1 + c[0];
 }
 
-/// By the values at the zeros of the next polynomial.
+/// Interpolates at the zeros of the next Chebyshev polynomial.
 Coefficients interpolated(const std::function<double(double)>& f, double low, double high) {
   Coefficients value{}, c{};
   for (int k = 0; k < kNodes; ++k) {
@@ -42,7 +42,7 @@ Coefficients interpolated(const std::function<double(double)>& f, double low, do
   return c;
 }
 
-/// @param at_rest  which f is the difference to, and whose rounding it has
+/// @param at_rest  value that was subtracted from the law; it sets the rounding error of f
 bool keeps_to(const Coefficients& c, const std::function<double(double)>& f, double at_rest, double low, double high) {
   double most = std::abs(at_rest), error = 0.0;
   for (int k = 0; k < kChecks; ++k) {
@@ -53,11 +53,11 @@ bool keeps_to(const Coefficients& c, const std::function<double(double)>& f, dou
   return error <= kTolerance * most;
 }
 
-/// @returns false where it would take more than kMostPieces
+/// @returns false if more than kMostPieces are needed
 bool add_pieces(LawTerm& term, const std::function<double(double)>& f, double at_rest, double low, double high) {
   Coefficients c = interpolated(f, low, high);
   const bool keeps = keeps_to(c, f, at_rest, low, high);
-  if (!keeps && high - low <= kNarrowest) c = {f(high)};  // a jump: what holds from there on holds at the very place
+  if (!keeps && high - low <= kNarrowest) c = {f(high)};  // a jump: use the value after it
   if (!keeps && high - low > kNarrowest) {
     const double middle = 0.5 * (low + high);
     return add_pieces(term, f, at_rest, low, middle) && add_pieces(term, f, at_rest, middle, high);
@@ -136,7 +136,7 @@ std::optional<DriveLaw> tabulated(const std::function<double(const Drive&)>& law
     if (!add_pieces(term, beyond_rest, table.at_rest, low, high)) return std::nullopt;
     table.terms.push_back(std::move(term));
   }
-  std::mt19937 random(1);  // drives in which all variables differ from 0
+  std::mt19937 random(1);  // drives in which no variable is 0
   std::uniform_real_distribution<double> share(0.05, 1.0);
   for (int k = 0; k < kChecks && ranges.size() > 1; ++k) {
     Drive drive;

@@ -46,7 +46,7 @@ std::string compiled(const std::vector<SourceFile>& sources, const std::string& 
         fmt::format("the C compiler '{}', which makes the binary of an FMU, cannot be started: {}. Install one (Debian: "
                     "apt install gcc), or name one in the environment variable CC",
                     compiler, std::strerror(end.start_error)));
-  if (!end.is_done)  // a full disk, no memory, another compiler than a C compiler
+  if (!end.is_done)  // a full disk, no memory, or a compiler for another language
     throw InputError(fmt::format("the C compiler '{}' has not made the binary of the FMU: {}", compiler, end.messages));
   return read_bytes(folder.path() / library);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A functional mock-up unit as one file: a zip of description, C sources, linux64 binary and reference result.
+// Writes a functional mock-up unit: a zip of description, C sources, linux64 binary and reference result.
 
 #include <filesystem>
 #include <string>
@@ -20,19 +20,19 @@ struct FmuOrder {
   FmuModel model = {};
   FmiVersion version = FmiVersion::k2;
   FmiInterfaces interfaces = {};
-  std::string reference_in = {}, reference_out = {};  ///< CSV of a run, in the names of the variables; "": none
-  std::string reference_words = {};                   ///< what run that is
+  std::string reference_in = {}, reference_out = {};  ///< CSV of a run, with the names of the variables; "": none
+  std::string reference_words = {};                   ///< describes that run
   double step_s = 60.0;                               ///< of the default experiment
 };
 
-/// All files of the unit; compiles the binary with `cc`, or what CC names, as C99 with all warnings as errors.
-/// @throws InputError  without a compiler, or with what it says where it fails
+/// All files of the unit. Compiles the binary with `cc`, or the compiler in CC, as C99 with all warnings as errors.
+/// @throws InputError  without a compiler, or with its messages if it fails
 [[nodiscard]] std::vector<FmuEntry> fmu_entries(const FmuOrder& order, const Provenance& made_by);
 
-/// A zip of entries, whose bytes do not depend on the time. @throws std::runtime_error  naming the file
+/// Writes entries as a zip whose bytes do not depend on the time. @throws std::runtime_error  naming the file
 void write_zip(const std::filesystem::path& file, const std::vector<FmuEntry>& entries);
 
-/// Name of a model as C and the standard allow it.
+/// A model's name in a form that C and the standard allow.
 [[nodiscard]] std::string model_identifier(const std::string& name);
 
 }  // namespace driftwright::output

@@ -28,7 +28,7 @@ std::vector<DriveRange> ranges_of(const Scenario& scenario) {
 }
 
 std::vector<std::vector<double>> drives_of(const Scenario& scenario, const std::vector<DriveRange>& ranges) {
-  constexpr std::size_t kMost = 24;  // a decomposition each; others are made when they are met
+  constexpr std::size_t kMost = 24;  // each needs a decomposition; others are decomposed when they occur
   std::vector<std::vector<double>> drives;
   for (const Cyclogram& c : scenario.cyclograms) {
     for (const Cyclogram::Section& s : c.sections) {
@@ -71,7 +71,7 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
   return list;
 }
 
-/// All but start and what is of one kind alone, sources and exchanges apart.
+/// All of the model except the start and the parts of one kind only; sources and exchanges are kept separate.
 FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system) {
   const MachineModel& machine = *scenario.machine;
   if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: the mass matrix must be the unit matrix");
@@ -144,7 +144,8 @@ void require_exportable(const Scenario& scenario) {
 FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& reduced) {
   const MachineModel& machine = *scenario.machine;
   FmuModel model = model_of(scenario, reduced.system);
-  std::erase_if(model.outputs, [](const FmuOutput& o) { return effects::is_mean_output(o.name); });  // of no instrument
+  std::erase_if(model.outputs,
+                [](const FmuOutput& o) { return effects::is_mean_output(o.name); });  // no instrument reads them
   sum_up_constants(model);
   model.start = reduced.start;
   model.start_ambient_K = scenarios::felt_ambient_at_start_K(machine);

@@ -1,5 +1,5 @@
 #pragma once
-// What becomes a functional mock-up unit, as numbers: the reduced machine, or an observer over it.
+// The model of a functional mock-up unit as numbers: the reduced machine, or an observer over it.
 
 #include <optional>
 #include <string>
@@ -13,8 +13,8 @@ namespace driftwright::output {
 
 struct FmuOutput {
   std::string name, unit;             ///< "degC", "um" or "urad"
-  Eigen::VectorXd state;              ///< of K, m or rad per unit of each state
-  double ambient = 0.0;               ///< per kelvin of the ambient
+  Eigen::VectorXd state;              ///< K, m or rad per unit of each state
+  double ambient = 0.0;               ///< per kelvin of the ambient, in K, m or rad
   double factor = 1.0, offset = 0.0;  ///< from K, m, rad to the unit
 };
 
@@ -28,7 +28,7 @@ struct FmuExchange {
   DriveLaw coefficient;
 };
 
-/// Of an observer (Observer): what it reads, its settings, what it has learned.
+/// What an observer unit has in addition: its sensors, settings and learned factors.
 struct FmuObserver {
   std::vector<int> sensor_output = {};  ///< indices of outputs
   std::vector<std::string> sensors = {};
@@ -37,8 +37,8 @@ struct FmuObserver {
   compensation::Observer::Belief factors = {};
 };
 
-/// dz/dt = -K z + f, M = 1, as solver::ThermalSystem. What the drive does not change is summed in K0, f0 and h0 in a machine; an observer
-/// has a factor on each source and exchange and keeps them apart.
+/// dz/dt = -K z + f, M = 1, as solver::ThermalSystem. For a machine, parts that the drive does not change are summed in
+/// K0, f0 and h0; an observer has a factor on each source and exchange and keeps them separate.
 struct FmuModel {
   std::string name = {};         ///< of the scenario
   std::string description = {};  ///< one sentence
@@ -53,17 +53,20 @@ struct FmuModel {
   double start_ambient_K = 0.0;
   bool start_follows_ambient = false;
   TimeSeries ambient = {};
-  std::vector<std::vector<double>> known_drives = {};  ///< of the cyclograms: decomposed when an instance is made
+  std::vector<std::vector<double>> known_drives = {};  ///< of the cyclograms; their decompositions are made with an instance
   double duration_s = 0.0;                             ///< of the cyclogram of the reference result
   std::optional<FmuObserver> observer = {};
 };
 
-/// Looks whether a scenario's machine can be exported: whether drive and ambient say all. Cheap, before anything is computed.
-/// @throws InputError  naming the effect: one of drive, ambient or instruments, one for a time or one cyclogram alone, one that follows a column
+/// Checks whether a scenario's machine can be exported, that is, whether drive and ambient determine it. Fast; call it
+/// before anything is computed.
+/// @throws InputError  naming the effect: one of drive, ambient or instruments, one limited to a time or a cyclogram, one
+/// that follows a column
 void require_exportable(const scenarios::Scenario& scenario);
 
-/// @param reduced  linear
-/// @throws InputError  naming the law: one that follows temperatures, a thermostat, two variables of the drive that act together
+/// @param reduced  must be linear
+/// @throws InputError  naming the law: one that depends on temperatures, a thermostat, two variables of the drive that
+/// act together
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
 /// @throws InputError  as machine_fmu()
 [[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer);

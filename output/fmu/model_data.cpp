@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kPerLine = 6;
 
-/// `static const double NAME[] = {...};`, one zero where there is none: C knows no empty arrays.
+/// `static const double NAME[] = {...};`, with one zero for an empty list: C has no empty arrays.
 std::string array(const std::string& name, const std::vector<double>& values) {
   std::string text = fmt::format("static const double {}[] = {{", name);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -24,7 +24,7 @@ void append(std::vector<double>& list, const Eigen::MatrixXd& symmetric) {
   list.insert(list.end(), symmetric.data(), symmetric.data() + symmetric.size());
 }
 
-/// The list `static const drive_law NAME[]` and, before it, what its laws point to.
+/// The list `static const drive_law NAME[]`, after the arrays that its laws point to.
 std::string laws(const std::string& name, const std::vector<const DriveLaw*>& list) {
   std::string text, rows;
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -44,7 +44,7 @@ std::string laws(const std::string& name, const std::vector<const DriveLaw*>& li
   return text + fmt::format("static const drive_law {}[] = {{\n{}}};\n", name, rows.empty() ? "  {0.0, 0, 0}\n" : rows);
 }
 
-/// In words that a comment may hold.
+/// Text that is safe in a comment.
 std::string comment(std::string text) {
   for (std::size_t at = 0; (at = text.find("*/", at)) != std::string::npos;) text.replace(at, 2, "* /");
   for (std::size_t at = 0; (at = text.find("/*", at)) != std::string::npos;) text.replace(at, 2, "/ *");
@@ -52,7 +52,7 @@ std::string comment(std::string text) {
 }
 
 std::vector<double> nominal_of(const FmuModel& model) {
-  // What changes an output by 1 K, 2 um or 20 urad, no state more than 1 K everywhere.
+  // The change of a state that changes an output by 1 K, 2 um or 20 urad, and no temperature by more than 1 K.
   std::vector<double> nominal;
   for (Eigen::Index i = 0; i < model.start.size(); ++i) {
     double per_unit = 1.0 / model.ones.norm();

@@ -7,9 +7,9 @@
 
 namespace driftwright::output {
 
-/// Numbers are written in hexadecimal, to the last bit.
-/// @param identifier  of the model, as C allows
-/// @param guid        that modelDescription.xml names
+/// Numbers are written in hexadecimal and are exact.
+/// @param identifier  of the model, a valid C name
+/// @param guid        the one in modelDescription.xml
 [[nodiscard]] std::string model_data_c(const FmuModel& model, const std::string& identifier, const std::string& guid,
                                        const std::string& made_by);
 

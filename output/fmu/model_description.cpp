@@ -30,7 +30,7 @@ constexpr Unit kUnits[] = {{"s", "s=\"1\""},
                            {"um", "m=\"1\" factor=\"1e-06\""},
                            {"urad", "rad=\"1\" factor=\"1e-06\""}};
 
-/// XML knows no control characters: they become blanks.
+/// XML allows no control characters: they become blanks.
 std::string xml_text(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
@@ -173,7 +173,7 @@ bool is_state(const FmuVariable& v) {
   return v.reference >= kStates && v.reference < kDerivatives;
 }
 
-/// What an output of the machine depends on: the states that it reads, and the ambient.
+/// The dependencies of an output of the machine: the states that it reads, and the ambient.
 std::vector<std::size_t> dependencies(const FmuModel& model, const std::vector<FmuVariable>& variables,
                                       const FmuVariable& output) {
   std::vector<std::size_t> list;

@@ -10,7 +10,7 @@ namespace driftwright::output {
 
 enum class FmiVersion { k2, k3 };
 
-/// Which interfaces a unit offers.
+/// The interfaces that a unit has.
 struct FmiInterfaces {
   bool model_exchange = true, co_simulation = true;
 };
@@ -28,7 +28,7 @@ struct FmuVariable {
 };
 
 /// Time, inputs, parameters, outputs, states and their derivatives.
-/// @throws InputError  for two of one name, such as a sensor called as an input
+/// @throws InputError  for two variables with the same name, such as a sensor named like an input
 [[nodiscard]] std::vector<FmuVariable> variables_of(const FmuModel& model);
 
 /// @param source_files  C files; @param step_s  of the default experiment

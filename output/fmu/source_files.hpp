@@ -1,5 +1,5 @@
 #pragma once
-// The C files of sources/ as text: what is inside a unit is, to the byte, what stands there.
+// The C files of sources/ as text; a unit contains them unchanged.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 #pragma once
-// The page beside a running machine: its picture, which rows of a stream then colour (docs/how-to/follow.md). What it shows comes by the stream alone.
+// The page beside a running machine: its picture, coloured by the rows of a stream (docs/how-to/follow.md). All numbers
+// come from the stream.
 
 #include <optional>
 #include <string>
@@ -11,15 +12,16 @@ namespace driftwright::output {
 
 struct LivePage {
   std::string name = {}, subtitle = {};
-  std::string note = {};  ///< a sentence on what is not shown; "": none
+  std::string note = {};  ///< says what is not shown; "": none
   std::string made_by = {};
   double reference_degC = 20.0;
   std::optional<TwinSurface> surface = {};
-  std::vector<PictureMark> marks = {};      ///< of the surface
-  std::optional<TwinNetwork> network = {};  ///< of a machine of lumped nodes
+  std::vector<PictureMark> marks = {};      ///< on the surface
+  std::optional<TwinNetwork> network = {};  ///< for a machine of lumped nodes
 };
 
-/// The text of the HTML file. It asks `events` beside itself, with the query that it was opened with; names are text and never markup.
+/// The text of the HTML file. It requests `events` from its own address, with the same query; names are inserted as text,
+/// never as markup.
 [[nodiscard]] std::string live_html(const LivePage& page);
 
 }  // namespace driftwright::output

@@ -1,5 +1,5 @@
 #pragma once
-// The files of page/ as text: what the page is made of is, to the byte, what stands there.
+// The files of page/ as text; pages contain them unchanged.
 
 #include <string>
 #include <vector>

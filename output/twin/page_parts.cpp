@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kColours = 256;
-constexpr double kDarkest = 0.22;  // of the palette: darker ones would hide how a cold body is shaped
+constexpr double kDarkest = 0.22;  // lowest share of the palette: darker colours would hide the shape of a cold body
 
 Json json_of(const Quantised& q) {
   return {{"scale", text_of(q.scale)}, {"value", text_of(q.value)}};
@@ -84,7 +84,7 @@ std::string page_text(const std::string& frame_name, const std::string& title, c
       {"@TITLE@", escaped(title)}, {"@STYLE@", joined(styles)}, {"@DATA@", safe}, {"@SCRIPT@", joined(scripts)}};
   std::string text;
   std::size_t from = 0;
-  for (const auto& [mark, part] : parts) {  // in their order: what was put in is not looked at again
+  for (const auto& [mark, part] : parts) {  // in order: inserted text is not searched again
     const std::size_t at = frame.find(mark, from);
     text += frame.substr(from, at - from) + part;
     from = at + mark.size();

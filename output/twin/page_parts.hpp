@@ -1,5 +1,6 @@
 #pragma once
-// What pages with a machine in them are made of: numbers as text, the picture of the machine, its colours, and the files of page/ put together.
+// Parts of pages that show a machine: numbers as text, the machine's picture, its colours, and the assembly of the files
+// of page/.
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -13,14 +14,14 @@
 
 namespace driftwright::output {
 
-/// Lumped nodes and who exchanges heat with whom; the ambient is the last node.
+/// Lumped nodes and the pairs that exchange heat; the ambient is the last node.
 struct TwinNetwork {
   std::vector<std::string> node = {};
   std::vector<std::pair<int, int>> link = {};
-  Eigen::MatrixXd temperature = {};  ///< of all nodes but the ambient in each state, over the reference [K]
+  Eigen::MatrixXd temperature = {};  ///< of all nodes except the ambient, in each state, over the reference [K]
 };
 
-/// Numbers as base64 of their bytes, little-endian, as pages read them.
+/// Numbers as base64 of their little-endian bytes, as pages read them.
 template <class Number>
 [[nodiscard]] std::string text_of(const Number* data, std::size_t n) {
   return base64({reinterpret_cast<const char*>(data), n * sizeof(Number)});  // NOLINT: bytes are required
@@ -35,16 +36,16 @@ template <class Derived>
 }
 
 [[nodiscard]] nlohmann::ordered_json surface_json(const TwinSurface& surface);
-/// Each at its point, and at which node of the surface it moves along.
+/// Each mark with its point, and the node of the surface that it moves with.
 [[nodiscard]] nlohmann::ordered_json marks_json(const std::vector<PictureMark>& marks, const TwinSurface& surface);
 [[nodiscard]] nlohmann::ordered_json network_json(const TwinNetwork& network);
 /// The colours of temperature from cold to warm, three bytes each, as base64.
 [[nodiscard]] std::string palette_text();
 
-/// The frame (a file of page/) with what stands in place of its marks @TITLE@, @STYLE@, @DATA@ and @SCRIPT@.
-/// @param title    becomes text
+/// The frame (a file of page/) with its placeholders @TITLE@, @STYLE@, @DATA@ and @SCRIPT@ replaced.
+/// @param title    is escaped
 /// @param styles, scripts  files of page/, in their order
-/// @param data     in which nothing can end the element that it stands in
+/// @param data     is written so that nothing in it can end its HTML element
 [[nodiscard]] std::string page_text(const std::string& frame, const std::string& title,
                                     const std::vector<std::string>& styles, const nlohmann::ordered_json& data,
                                     const std::vector<std::string>& scripts);

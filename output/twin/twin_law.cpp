@@ -9,14 +9,13 @@ namespace {
 
 using AnyLaw = std::function<double(const Drive&, const std::vector<double>&)>;
 
-constexpr double kSame = 1e-9;  // parts of a law, relative, that do not act together
+constexpr double kSame = 1e-9;  // relative; smaller differences count as no interaction
 constexpr int kTrials = 24;
-constexpr double kNode_K = 1.0;      // nodes of a temperature by itself
-constexpr double kWideNode_K = 4.0;  // and of one beside a difference
-constexpr int kDifferences =
-    80;  // nodes of a difference on either side of zero, by their cube: dense where free convection begins
+constexpr double kNode_K = 1.0;      // spacing of nodes of a single temperature
+constexpr double kWideNode_K = 4.0;  // spacing of nodes of a temperature beside a difference
+constexpr int kDifferences = 80;  // nodes on either side of zero, spaced by their cube: dense where free convection begins
 
-/// Drives and temperatures at which it is looked what acts together.
+/// Drives and temperatures at which interactions are tested.
 struct Trial {
   Drive drive;
   std::vector<double> probe_K;
@@ -32,7 +31,7 @@ std::vector<Trial> trials_of(int n_probes, const std::vector<DriveRange>& ranges
   return trials;
 }
 
-/// The temperatures of some probes, usual ones of the others.
+/// The temperatures of some probes, with the usual temperature for the others.
 std::vector<double> only(const std::vector<double>& probe_K, std::initializer_list<int> probes, double usual_K) {
   std::vector<double> t_K(probe_K.size(), usual_K);
   for (int p : probes) t_K[static_cast<std::size_t>(p)] = probe_K[static_cast<std::size_t>(p)];
@@ -43,7 +42,7 @@ bool is_same(double a, double b, double scale) {
   return std::abs(a - b) <= kSame * (std::abs(scale) + std::abs(a) + std::abs(b));
 }
 
-/// Whether two probes do more together than each on its own.
+/// Whether two probes interact: their joint effect differs from the sum of their single effects.
 bool act_together(const AnyLaw& law, int p, int q, const std::vector<Trial>& trials, double usual_K) {
   return std::any_of(trials.begin(), trials.end(), [&](const Trial& t) {
     const auto at = [&](std::initializer_list<int> probes) { return law(t.drive, only(t.probe_K, probes, usual_K)); };
@@ -52,14 +51,14 @@ bool act_together(const AnyLaw& law, int p, int q, const std::vector<Trial>& tri
   });
 }
 
-/// Whether the law looks at a probe at all.
+/// Whether the law depends on a probe at all.
 bool counts(const AnyLaw& law, int p, const std::vector<Trial>& trials, double usual_K) {
   return std::any_of(trials.begin(), trials.end(), [&](const Trial& t) {
     return law(t.drive, only(t.probe_K, {p}, usual_K)) != law(t.drive, only(t.probe_K, {}, usual_K));
   });
 }
 
-/// Whether of two probes the difference alone counts.
+/// Whether the law depends only on the difference of two probes.
 bool is_of_difference(const AnyLaw& law, int p, int q, const std::vector<Trial>& trials, double usual_K) {
   return std::all_of(trials.begin(), trials.end(), [&](const Trial& t) {
     std::vector<double> here = only(t.probe_K, {p, q}, usual_K), there = here;
@@ -85,7 +84,8 @@ std::vector<double> difference_nodes(double most_K) {
   return nodes;
 }
 
-/// The law at each node of a table, other probes at their usual temperature. @returns false as twin_law() nothing
+/// Fills the table with the law at each node, other probes at their usual temperature. @returns false if twin_law() must
+/// give up
 bool fill(TwinTable& table, const AnyLaw& law, int n_probes, const std::vector<DriveRange>& ranges, double usual_K) {
   const std::size_t n_last = table.axes.back().nodes_K.size(),
                     n = n_last * (table.axes.size() == 2 ? table.axes.front().nodes_K.size() : 1);
@@ -94,7 +94,7 @@ bool fill(TwinTable& table, const AnyLaw& law, int n_probes, const std::vector<D
     const auto place = [&](const TwinAxis& axis, double node_K) {
       if (axis.minus < 0) {
         t_K[static_cast<std::size_t>(axis.probe)] = node_K;
-      } else {  // the first probe's temperature stands; the other follows from the difference
+      } else {  // the first probe keeps its temperature; the other one follows from the difference
         t_K[static_cast<std::size_t>(axis.minus)] = t_K[static_cast<std::size_t>(axis.probe)] - node_K;
       }
     };

@@ -1,5 +1,5 @@
 #pragma once
-// A law of the catalogue as numbers that a page can look up: over the drive, and over the temperatures that it looks at.
+// Tabulates a law of the catalogue for a page, over the drive and the temperatures that it depends on.
 
 #include <functional>
 #include <optional>
@@ -11,33 +11,33 @@
 
 namespace driftwright::output {
 
-/// Between which temperatures laws are tabulated [K], absolute, and what other ones are held at while one varies.
+/// The range of absolute temperatures in which laws are tabulated [K], and the value of the others while one varies.
 struct TemperatureRange {
   double low_K = 0.0, high_K = 0.0, usual_K = 0.0;
 };
 
-/// What a table varies over: one of the law's probes, or how much warmer it is than another.
+/// The variable of a table: the temperature of one of the law's probes, or its difference to another probe.
 struct TwinAxis {
   int probe = 0;                     ///< index in the law's list of probes
-  int minus = -1;                    ///< of the other one; -1: none
-  std::vector<double> nodes_K = {};  ///< increasing; a law is linear between them
+  int minus = -1;                    ///< index of the other probe; -1: none
+  std::vector<double> nodes_K = {};  ///< increasing; the law is linear between them
 };
-/// A law over one or two of its probes, the others at their usual temperature.
+/// A law over one or two of its probes, with the others at their usual temperature.
 struct TwinTable {
   std::vector<TwinAxis> axes = {};  ///< one or two
-  std::vector<DriveLaw> at = {};    ///< at each node, the last axis fastest
+  std::vector<DriveLaw> at = {};    ///< one per node, the last axis fastest
 };
 
-/// Its value at usual temperatures over the drive, and tables, each of which adds what it differs from that.
+/// The law's value at usual temperatures over the drive, plus tables, each of which adds its difference to that.
 struct TwinLaw {
   DriveLaw drive = {};
   std::vector<TwinTable> tables = {};
 };
 
-/// Tabulates a law of drive and temperatures: `drive` to rounding, temperatures by nodes so close that what is linear between them misses by less
-/// than a thousandth. Probes that act together share a table.
-/// @param law       at a drive and temperatures of its probes
-/// @returns nothing where more than two probes act together, two variables of the drive do, or a number is not finite
+/// Tabulates a law of drive and temperatures: exact in the drive to rounding, and in temperature with nodes so close that
+/// linear interpolation errs by less than a thousandth. Probes that act together share a table.
+/// @param law       function of a drive and the temperatures of its probes
+/// @returns nothing if more than two probes or two variables of the drive act together, or if a number is not finite
 [[nodiscard]] std::optional<TwinLaw> twin_law(
     const std::function<double(const Drive&, const std::vector<double>& probe_K)>& law, int n_probes,
     const std::vector<DriveRange>& ranges, const TemperatureRange& range);

@@ -14,9 +14,10 @@ namespace {
 using scenarios::MachineModel;
 using scenarios::Scenario;
 
-constexpr std::size_t kMostTimes = 200;  // at which laws change by themselves
+constexpr std::size_t kMostTimes = 200;  // most times at which laws change
 constexpr double kColder_K = 25.0,
-                 kWarmer_K = 90.0;  // than ambient and reference, what laws of temperature are tabulated for
+                 kWarmer_K =
+                     90.0;  // below and above ambient and reference: range in which laws of temperature are tabulated
 
 std::vector<DriveRange> ranges_of(const Scenario& scenario) {
   std::vector<DriveRange> ranges;
@@ -145,7 +146,7 @@ LumpedSystem lumped_system(const MachineModel& model) {
   const Eigen::Index n = system.size();
   const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, Eigen::MatrixXd::Identity(n, n));
   Eigen::VectorXd start = scenarios::start_state(model, machine);
-  for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
+  for (const solver::FixedUnknowns& f : machine.system.fixed) {  // prescribed values jump at once, as in simulate()
     for (int i : f.unknowns) start[i] = f.follows_ambient ? scenarios::felt_ambient_at_start_K(model) : f.theta.at(0.0);
   }
   return {.system = solver::project(system, basis),

@@ -1,5 +1,5 @@
 #pragma once
-// What a page holds of a machine's small system, as numbers: dz/dt = -K z + f with laws as tables, whether they follow temperatures or not.
+// The small system of a machine as numbers for a page: dz/dt = -K z + f, with tabulated laws, also laws of temperatures.
 
 #include <string>
 #include <vector>
@@ -9,29 +9,30 @@
 
 namespace driftwright::output {
 
-/// A law of a source or exchange between the times at which it changes on its own.
+/// A law of a source or exchange that changes at given times.
 struct TwinTimedLaw {
-  std::vector<TwinLaw> laws = {};    ///< different ones
-  std::vector<int> of_stretch = {};  ///< index of the law before the first time of change, behind it, ...
-  std::vector<int> probes = {};      ///< of the laws, in the system's list
-  int thermostat = -1;               ///< off: zero
+  std::vector<TwinLaw> laws = {};    ///< the different ones
+  std::vector<int> of_stretch = {};  ///< index of the law before the first time of change, after it, ...
+  std::vector<int> probes = {};      ///< of the laws, as indices in the system's list
+  int thermostat = -1;               ///< index; the law is zero while it is off
 };
 
 struct TwinModel {
   std::vector<DriveRange> drive = {};
-  solver::ReducedSystem system = {};  ///< M = 1; its laws stand in `powers_W` and `coefficients`
+  solver::ReducedSystem system = {};  ///< M = 1; its laws are in `powers_W` and `coefficients`
   Eigen::VectorXd start = {};
   std::vector<TwinTimedLaw> powers_W = {}, coefficients = {};
   TimeSeries ambient = {};              ///< over the reference temperature [K]
-  std::vector<std::string> notes = {};  ///< what of the scenario the page leaves out, a sentence each
+  std::vector<std::string> notes = {};  ///< parts of the scenario that the page leaves out, one sentence each
   [[nodiscard]] bool follows_temperatures() const { return system.looks_at_state() || !system.thermostats.empty(); }
 };
 
-/// @throws InputError  naming the law: one that no table of twin_law() says; a recorded column that drives the machine; prescribed temperatures over time
+/// @throws InputError  naming the law: one that twin_law() cannot tabulate; a recorded column that drives the machine;
+/// prescribed temperatures over time
 [[nodiscard]] TwinModel twin_model(const scenarios::Scenario& scenario, const solver::ReducedSystem& system,
                                    const Eigen::VectorXd& start);
 
-/// A machine of lumped nodes as it is, in unknowns of unit mass, and the temperatures of its nodes over the reference in these [K].
+/// A machine of lumped nodes, unreduced, in unknowns of unit mass, and its node temperatures over the reference [K].
 struct LumpedSystem {
   solver::ReducedSystem system;
   Eigen::VectorXd start;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Vectors one after the other, each n numbers; empty ones as zeros.
+/// Vectors one after the other, n numbers each; empty vectors become zeros.
 class Rows {
  public:
   explicit Rows(Eigen::Index n) : n_(n) {}
@@ -52,7 +52,7 @@ Json json_of(const TwinTimedLaw& timed) {
   return {{"laws", laws}, {"of_stretch", timed.of_stretch}, {"probes", timed.probes}, {"thermostat", timed.thermostat}};
 }
 
-/// Outputs that instruments tell.
+/// The outputs that instruments read.
 std::vector<Eigen::Index> told_outputs(const solver::Outputs& outputs) {
   std::vector<Eigen::Index> told;
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSharp = 0.85;  // cosine between the normals of two triangles, below which their edge is drawn
 
-/// Edges that are drawn, of triangles over the nodes of the skin.
+/// The edges to draw, for triangles over the nodes of the skin.
 std::vector<std::uint32_t> edges_of(const TwinSurface& surface, const std::vector<int>& region) {
   const auto normal = [&](std::size_t t) -> Eigen::Vector3f {
     const auto at = [&](std::size_t k) { return surface.coords_m.col(surface.triangle[3 * t + k]); };

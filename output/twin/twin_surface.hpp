@@ -1,5 +1,6 @@
 #pragma once
-// The outside of a machine with the fields of its small system's states, small enough for a page: modes as 16-bit numbers.
+// The outer surface of a machine with the fields of its small system's states, small enough for a page: fields as 16-bit
+// numbers.
 
 #include <cstdint>
 #include <string>
@@ -9,23 +10,23 @@
 
 namespace driftwright::output {
 
-/// Numbers as 16 bits: value = scale * integer.
+/// Numbers in 16 bits: value = scale * integer.
 struct Quantised {
   std::vector<double> scale = {};        ///< of each mode
   std::vector<std::int16_t> value = {};  ///< mode by mode
 };
-/// Each column by its own largest magnitude. @param modes  n x n_modes
+/// Each column is scaled by its own largest magnitude. @param modes  n x n_modes
 [[nodiscard]] Quantised quantised(const Eigen::MatrixXf& modes);
 
 struct TwinSurface {
-  std::vector<int> node = {};                ///< of the mesh: those of the skin, each once
-  Eigen::Matrix3Xf coords_m = {};            ///< of these
-  std::vector<std::uint32_t> triangle = {};  ///< three of these each, counterclockwise from outside
-  std::vector<std::uint32_t> edge = {};      ///< two of these each: where parts meet, or the skin bends sharply
-  Quantised temperature = {};                ///< of these over the reference in each state [K]
-  Quantised displacement_m = {};             ///< x, y, z of the first, then of the next, in each state; empty without fields
+  std::vector<int> node = {};                ///< nodes of the mesh on the skin, each once
+  Eigen::Matrix3Xf coords_m = {};            ///< of these nodes
+  std::vector<std::uint32_t> triangle = {};  ///< three indices of these each, counterclockwise from outside
+  std::vector<std::uint32_t> edge = {};      ///< two indices of these each: where parts meet, or the skin bends sharply
+  Quantised temperature = {};                ///< of these nodes over the reference, in each state [K]
+  Quantised displacement_m = {};             ///< x, y, z of each node in turn, in each state; empty without fields
 };
-/// @throws std::logic_error  for a machine without fields of temperature
+/// @throws std::logic_error  for a machine without temperature fields
 [[nodiscard]] TwinSurface twin_surface(const scenarios::ReducedMachine& machine);
 
 }  // namespace driftwright::output

@@ -24,7 +24,7 @@ bool is_path_key(const std::string& key) {
 
 std::string absolute_path_text(const std::string& path, const std::filesystem::path& folder_of_scenario) {
   std::string text(1, '"');
-  for (char c : (folder_of_scenario / path).lexically_normal().string()) {  // an absolute path stays what it is
+  for (char c : (folder_of_scenario / path).lexically_normal().string()) {  // an absolute path is unchanged
     if (c == '"' || c == '\\') text += '\\';
     text += c;
   }

@@ -1,5 +1,6 @@
 #pragma once
-// A scenario's text that will stand in another folder: the files that it names are looked for beside it, so they are named by absolute paths.
+// Makes the paths in a scenario's text absolute, so that the text can be written to another folder: relative paths are
+// relative to the scenario's folder.
 
 #include <filesystem>
 
@@ -10,11 +11,11 @@ namespace driftwright::scenarios {
 /// Whether the text at a key of a scenario is the path of a file.
 [[nodiscard]] bool is_path_key(const std::string& key);
 
-/// The path as a scenario in any folder may name it, in double quotes as YAML takes them.
+/// The path in double quotes as YAML reads them, valid for a scenario in any folder.
 [[nodiscard]] std::string absolute_path_text(const std::string& path, const std::filesystem::path& folder_of_scenario);
 
-/// Makes all paths of a scenario absolute where they stand.
-/// @returns those that cannot be edited there (YamlText::replace): aliases
+/// Makes all paths of a scenario absolute, in place.
+/// @returns the paths that cannot be edited (YamlText::replace): aliases
 [[nodiscard]] std::vector<const ConfigNode*> give_absolute_paths(YamlText& yaml,
                                                                  const std::filesystem::path& folder_of_scenario);
 

@@ -7,10 +7,10 @@
 namespace driftwright::scenarios {
 namespace {
 
-/// FNV-1a over bytes: short, and strong enough to tell one's own files apart.
+/// FNV-1a over bytes: short, and good enough to distinguish the user's own files.
 void add_to_hash(std::uint64_t& hash, std::string_view bytes) {
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  hash = (hash ^ 0xffu) * 1099511628211ull;  // so that "ab", "c" differs from "a", "bc"
+  hash = (hash ^ 0xffu) * 1099511628211ull;  // so that "ab", "c" and "a", "bc" differ
 }
 
 void add_file_to_hash(std::uint64_t& hash, const std::filesystem::path& path) {

@@ -1,5 +1,5 @@
 #pragma once
-// A number for everything that decides a result: what is kept under another one is stale.
+// A hash of everything that determines a result: results kept under another hash are stale.
 
 #include <filesystem>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace driftwright::scenarios {
 
-/// Of files, as they are written, of the files that their values name, and of further words, such as the version of the program or an option, and the files that
-/// those name. 16 hex digits.
-/// @param folder  that named files are relative to
+/// Hash, as 16 hex digits, of parsed files, of the files that their values name, and of further words, such as the
+/// version of the program or an option, and the files that those words name.
+/// @param folder  named files are relative to it
 [[nodiscard]] std::string content_key(const std::vector<ConfigNodePtr>& roots, const std::filesystem::path& folder,
                                       const std::vector<std::string>& words);
 

@@ -26,7 +26,7 @@ std::vector<std::string> names_of(const Entries& entries) {
   return names;
 }
 
-/// `tilt` goes with tilts, any other amount with displacements.
+/// Requires `tilt` for tilts, and any other amount for displacements.
 void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
   const std::vector<effects::Parameter>& parameters = effect.kind->parameters;
   const auto knows = [&](const char* name) {
@@ -39,7 +39,7 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
                        fmt::format("'{}' is a tilt; a `share` of a displacement fits displacements alone", effect.place));
     return;
   }
-  if (knows("gain") && effect.has("gain")) return;  // in um or urad, as its displacement is
+  if (knows("gain") && effect.has("gain")) return;  // a gain has the unit of its displacement
   throw InputError(effect.where,
                    is_tilt ? fmt::format("'{}' is a tilt; {} requires `tilt` in urad there", effect.place, effect.kind->key)
                            : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
@@ -154,7 +154,7 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
     for (const effects::Mention& mention : e.kind->mentions) {
       const std::string& name = e.words.at(mention.name);
       if (name.empty() || mention.of == effects::Mention::Of::kColumn)
-        continue;  // left out; or of records: require_columns()
+        continue;  // not given; or a column, which require_columns() checks
       const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
       must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "displacement", name,
                      is_sensor ? sensors : by_sensitivities);

@@ -31,7 +31,7 @@ ConfigNodePtr present_scalar(const std::string& key, const ConfigNode& node, Fou
   return scalar_at(node, text);
 }
 
-/// The same map or list with another value for some entries: `make` returns what is to stand at a key (of a list "").
+/// The same map or list with some values replaced: `make` returns the value for a key ("" for entries of a list).
 ConfigNodePtr with_values(const ConfigNodePtr& node,
                           const std::function<ConfigNodePtr(const std::string& key, const ConfigNodePtr& value)>& make) {
   auto next = std::make_shared<ConfigNode>(*node);
@@ -40,7 +40,7 @@ ConfigNodePtr with_values(const ConfigNodePtr& node,
   return next;
 }
 
-/// What stands below a list of sensors, displacements or tilts: `node: hall` at any depth.
+/// Present words below a list of sensors, displacements or tilts: `node: hall` at any depth.
 ConfigNodePtr outputs_in_present_words(const ConfigNodePtr& node, Found& found) {
   return with_values(node, [&](const std::string& key, const ConfigNodePtr& value) {
     if (key == "node" && is_former(*value)) return present_scalar(key, *value, found);
@@ -85,7 +85,7 @@ ConfigNodePtr effect_in_present_words(const ConfigNodePtr& entry, Found& found) 
   });
 }
 
-/// Each is told once in the life of a program, which reads a scenario for more than one purpose: by file, line and key.
+/// Prints each note once per run of the program, which may read a scenario several times: by file, line and key.
 void tell(const FormerWord& word) {
   static std::mutex mutex;
   static std::set<std::string> told;
@@ -153,7 +153,7 @@ ConfigNodePtr value_in_present_words(const ConfigNodePtr& value, const std::stri
   const std::string top = address.substr(0, address.find_first_of(".["));
   const std::string key =
       address.substr(address.find_last_of(".[") == std::string::npos ? 0 : address.find_last_of(".[") + 1);
-  const bool is_entry = address == top + "[" + key;  // of a list
+  const bool is_entry = address == top + "[" + key;  // an entry of a list
   ConfigNodePtr present = value;
   if (address == top || is_entry) {
     ConfigNode list = *value, root = *value;

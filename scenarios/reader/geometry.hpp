@@ -1,5 +1,6 @@
 #pragma once
-// The geometry of a machine alone, as a scenario that is being written has it first: before supports, effects and cyclograms.
+// Reads only the geometry of a machine, for a scenario that is still being written, without supports, effects or
+// cyclograms.
 
 #include <string>
 
@@ -9,10 +10,11 @@ namespace driftwright::scenarios {
 
 struct Geometry {
   std::string name;
-  MachineModel machine;  ///< mesh, and materials, sensors and displacements as far as they are there; nothing else
+  MachineModel machine;  ///< mesh, and materials, sensors and displacements if present; nothing else
 };
 
-/// Reads the keys `name`, `machine`, `materials`, `sensors` and `displacements` of a scenario and looks at no other: read_scenario() does.
+/// Reads the keys `name`, `machine`, `materials`, `sensors` and `displacements` of a scenario and ignores all others,
+/// which read_scenario() reads.
 /// @throws InputError
 [[nodiscard]] Geometry read_geometry(const std::string& path);
 

@@ -10,9 +10,9 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kStopShare = 0.15;                          // of a random cyclogram's sections
-constexpr std::size_t kFewestSpeeds = 3;                     // levels that curve with speed want them, standstill beside
-constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // of a section's mean length
+constexpr double kStopShare = 0.15;                          // share of stops among a random cyclogram's sections
+constexpr std::size_t kFewestSpeeds = 3;                     // needed to fit a curve over speed, in addition to standstill
+constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // relative to a section's mean length
 
 }  // namespace
 

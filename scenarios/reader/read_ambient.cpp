@@ -14,7 +14,7 @@ namespace {
 constexpr double kColdestAmbient_K = 200.0, kHottestAmbient_K = 400.0;
 
 TimeSeries of_record(const ConfigMap& in, double reference_K) {
-  const auto path = std::filesystem::path(in.file()).parent_path() / in.text("csv");  // an absolute path stays
+  const auto path = std::filesystem::path(in.file()).parent_path() / in.text("csv");  // an absolute path is unchanged
   std::optional<ColumnMap> columns;
   if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
   const Record record = read_record(path.string(), columns).record;

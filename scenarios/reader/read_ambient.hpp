@@ -1,5 +1,5 @@
 #pragma once
-// The ambient temperature over time, as scenarios write it: rows, or a channel of a record CSV (docs/how-to/cyclograms.md).
+// Reads the ambient temperature over time: rows, or a channel of a record CSV (docs/how-to/cyclograms.md).
 
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"

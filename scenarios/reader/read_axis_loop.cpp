@@ -38,7 +38,8 @@ Servo read_servo(const ConfigMap& in) {
   s.speed_reset_s = in.quantity("speed_reset");
   s.feed_forward = in.quantity("feed_forward");
   s.largest_acceleration_um_s2 = in.quantity("largest_acceleration");
-  // The speed loop of a sampled drive with a = gain (v_ref - v) is stable below 2 / period, the cascade below a quarter of the inner loop.
+  // The speed loop of a sampled drive with a = gain (v_ref - v) is stable below 2 / period, the cascade below a quarter
+  // of the inner loop's gain.
   if (!(s.speed_gain_1_s * s.period_s <= 1.0))
     in.fail("speed_gain",
             fmt::format("the value must be at most 1 / period = {:g} 1/s, or the speed rings", 1.0 / s.period_s));

@@ -15,7 +15,7 @@ struct AxisLoopSettings {
   Where where;
 };
 
-/// What the block may name, and what its keys default to.
+/// What the keys of the block may refer to, and their defaults.
 struct AxisLoopContext {
   std::vector<std::string> displacements = {};
   std::vector<std::string> sensors = {};
@@ -25,9 +25,9 @@ struct AxisLoopContext {
   double duration_s = 0.0;           ///< of the judged cyclogram
 };
 
-/// What the key `axis_loop` may hold.
+/// The schema of the key `axis_loop`.
 [[nodiscard]] schema::Map axis_loop_schema();
-/// @throws InputError  file, line and key; also where the run would be too long to simulate
+/// @throws InputError  file, line and key; also for a run that is too long to simulate
 [[nodiscard]] AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& context);
 
 }  // namespace driftwright::scenarios

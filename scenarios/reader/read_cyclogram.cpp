@@ -44,9 +44,9 @@ std::string beside(const ConfigMap& in, const std::string& key) {
   return (std::filesystem::path(in.file()).parent_path() / in.text(key)).string();  // an absolute path replaces the folder
 }
 
-/// A column of rows that is none of the drive's: `heater_W`.
+/// A column of rows that is not part of the drive: `heater_W`.
 struct FurtherColumn {
-  std::string name, unit;  ///< as a record has them
+  std::string name, unit;  ///< as in a record
   [[nodiscard]] std::string quantity_unit() const {
     return unit == "W_m2" ? "W/m^2" : unit == "mm_min" ? "mm/min" : unit == "count" ? "1" : unit;
   }
@@ -64,7 +64,7 @@ std::optional<FurtherColumn> further_column(const std::string& header) {
 struct RowColumns {
   std::vector<const Column*> drive;
   std::vector<FurtherColumn> further;
-  std::vector<bool> is_further;  ///< of each column behind the duration
+  std::vector<bool> is_further;  ///< of each column after the duration
 };
 
 std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std::string& key, const RowColumns& columns,
@@ -82,7 +82,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
     if (!(row[0] >= kShortest_s))
       in.fail(key, fmt::format("the section lasts {:g} s; its duration must be 1 ms or more", row[0]));
     Cyclogram::Section section{row[0], {}};
-    std::size_t n_before = 0;  // of the drive
+    std::size_t n_before = 0;  // number of columns of the drive
     for (std::size_t j = 0; j < columns.is_further.size(); ++j) {
       double value = row[j + 1];
       if (columns.is_further[j]) {
@@ -104,7 +104,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
   return sections;
 }
 
-/// `columns:` without its first, the duration.
+/// The entries of `columns:` without the first, the duration.
 RowColumns row_columns(const ConfigMap& in) {
   std::vector<std::string> known;
   for (const Column& c : columns()) known.emplace_back(c.name);
@@ -149,12 +149,12 @@ void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
   cyclogram.remarks.front() = fmt::format("{}: {}", in.text("nc_program"), cyclogram.remarks.front());
 }
 
-/// Columns of a cyclogram that is not repeated yet.
+/// Repeats the columns of a cyclogram.
 void repeat_columns(Cyclogram& cyclogram, int times) {
   const double length_s = cyclogram.duration_s();
   for (Cyclogram::Column& column : cyclogram.columns) {
     TimeSeries once = column.rows;
-    if (times > 1 && once.time_s.size() > 1 && once.time_s.back() >= length_s) {  // a record's last row ends it
+    if (times > 1 && once.time_s.size() > 1 && once.time_s.back() >= length_s) {  // the last row of a record is its end
       once.time_s.pop_back();
       once.value.pop_back();
     }
@@ -286,7 +286,7 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
 
 namespace {
 
-/// Numbered parameters of LinuxCNC's parameter file, such as 5221 of G54.
+/// Reads numbered parameters from LinuxCNC's parameter file, such as 5221 of G54.
 std::map<int, double> read_parameter_file(const std::string& path) {
   std::map<int, double> parameters;
   int number = 0;

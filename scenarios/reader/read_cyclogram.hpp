@@ -1,5 +1,5 @@
 #pragma once
-// What drives the machine, as scenarios write it: rows, a record CSV or an NC program (docs/how-to/cyclograms.md).
+// Reads what drives the machine: rows, a record CSV or an NC program (docs/how-to/cyclograms.md).
 
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"
@@ -7,29 +7,29 @@
 
 namespace driftwright::scenarios {
 
-/// What the map `cyclograms` may hold.
+/// The schema of the map `cyclograms`.
 [[nodiscard]] schema::Map cyclograms_schema();
-/// The keys of a map about an NC program: those of read_nc_settings(), resolution and cutting_power.
+/// The keys for an NC program: those of read_nc_settings(), resolution and cutting_power.
 [[nodiscard]] std::vector<schema::Key> nc_keys();
 
-/// The cyclogram `name` of the map `cyclograms`. Paths in it are relative to the folder of the scenario.
+/// Reads the cyclogram `name` of the map `cyclograms`. Paths in it are relative to the folder of the scenario.
 /// @throws InputError  file, line and column of the scenario, the CSV or the NC program
 [[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);
 
-/// The map {columns, rows} that read_cyclogram() reads as this cyclogram: a row for each stretch in which the drive and all columns stay as they
-/// are. Numbers have 9 digits.
+/// The map {columns, rows} that read_cyclogram() reads as this cyclogram: one row for each stretch in which the drive and
+/// all columns are constant. Numbers have 9 digits.
 [[nodiscard]] std::string rows_yaml(const Cyclogram& cyclogram);
 
-/// Whose language a program is written in, by its name in scenarios.
+/// Names in scenarios of the NC languages.
 inline const std::vector<std::string> kDialects = {"linuxcnc", "siemens", "heidenhain"};
 [[nodiscard]] NcControl control_of(const std::string& dialect);
 [[nodiscard]] const std::string& dialect_of(NcControl control);
 
-/// The keys dialect, rapid, tool_change, dwell_unit, machine_zero, ignore of an NC program. @throws InputError
+/// Reads the keys dialect, rapid, tool_change, dwell_unit, machine_zero and ignore of an NC program. @throws InputError
 [[nodiscard]] NcSettings read_nc_settings(const ConfigMap& in);
 
-/// The cyclogram that an NC program makes (nc_sections.hpp), with its remarks.
-/// @throws InputError  for a program that takes no time or turns the spindle faster than any
+/// The cyclogram of an NC program (nc_sections.hpp), with its remarks.
+/// @throws InputError  for a program without duration, or with a spindle speed beyond any machine
 [[nodiscard]] Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s,
                                      double cutting_power_W);
 

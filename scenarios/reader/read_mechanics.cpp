@@ -3,7 +3,8 @@
 namespace driftwright::scenarios {
 namespace {
 
-/// Softer springs drown in the rounding of the machine's own stiffness, stiffer ones drown it.
+/// Softer springs vanish in the rounding error of the machine's stiffness; with stiffer ones the machine's stiffness
+/// vanishes.
 constexpr double kSoftest_N_m = 1e3, kStiffest_N_m = 1e13;
 
 schema::Value stiffness() {

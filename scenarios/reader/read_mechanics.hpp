@@ -1,24 +1,24 @@
 #pragma once
-// Reads `supports:` and `joints:`: what holds the machine to the ground and its parts to each other.
+// Reads `supports:` and `joints:`: the connections of the machine to the ground and of its parts to each other.
 
 #include "base/config_map.hpp"
 #include "solver/mechanics.hpp"
 
 namespace driftwright::scenarios {
 
-/// A support with where it stands in the file.
+/// A support, with its line in the file.
 struct SupportEntry {
   solver::Support support;
   Where where;
 };
 
-/// A joint's mechanics with where its name stands.
+/// A joint's mechanics, with the line of its name.
 struct JointEntry {
   solver::JointMechanics mechanics;
   Where where;
 };
 
-/// What an entry of `supports` and one of `joints` may hold.
+/// The schemas of an entry of `supports` and of `joints`.
 [[nodiscard]] schema::Map support_schema();
 [[nodiscard]] schema::Map joint_schema();
 

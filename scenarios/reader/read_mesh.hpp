@@ -1,5 +1,5 @@
 #pragma once
-// Where the mesh of a scenario comes from: a generator or a file.
+// The source of a scenario's mesh: a generator or a file.
 
 #include <variant>
 
@@ -10,19 +10,19 @@
 
 namespace driftwright::scenarios {
 
-/// No mesh: lumped nodes alone.
+/// A machine without mesh, with lumped nodes only.
 struct LumpedMachine {};
 
-/// How the mesh comes about. A new generator or reader is a new alternative.
+/// How the mesh is made. A new generator or reader is a new alternative.
 using MeshRecipe = std::variant<mesh::KneeMill, mesh::GantryTable, mesh::ImportedMesh, LumpedMachine>;
 
-/// What the map `machine` may hold.
+/// The schema of the map `machine`.
 [[nodiscard]] schema::Value mesh_recipe_schema();
-/// Reads the map `machine`: with the key `mesh` a file, relative to the scenario's folder, else a generator.
+/// Reads the map `machine`: with the key `mesh` a file, relative to the scenario's folder, otherwise a generator.
 /// @throws InputError
 [[nodiscard]] MeshRecipe read_mesh_recipe(const ConfigMap& in);
 
-/// @throws InputError, SolveError  as build_knee_mill() and import_mesh()
+/// Makes the mesh. @throws InputError, SolveError  as build_knee_mill() and import_mesh()
 [[nodiscard]] mesh::Mesh build_mesh(const MeshRecipe& recipe);
 
 }  // namespace driftwright::scenarios

@@ -45,7 +45,7 @@ BySensitivity read_sensitivities(const ConfigMap& in) {
   return by;
 }
 
-/// `positions: {axis: x, at: [-200 mm, 0 mm, 200 mm]}`: where the table has travelled to.
+/// `positions: {axis: x, at: [-200 mm, 0 mm, 200 mm]}`: the positions that the table travels to.
 std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const DisplacementOutput& base) {
   const int axis = read_axis(in, "axis");
   std::vector<DisplacementOutput> outputs;

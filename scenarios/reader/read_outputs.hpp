@@ -1,5 +1,5 @@
 #pragma once
-// What is measured on the machine: thermometers, displacements, tilts.
+// The measurements on the machine: thermometers, displacements, tilts.
 
 #include <array>
 #include <optional>
@@ -26,17 +26,18 @@ struct Sensor {
   Where where;
 };
 
-/// Tool and table as the mesh has them.
+/// Tool and table, in the position of the mesh.
 struct ToolAgainstTable {
   int axis = 0;  ///< 0, 1, 2 = x, y, z
   PointOnRegion tool;
-  std::optional<PointOnRegion> table;  ///< none: the tool against the ground, which neither moves nor turns
-  /// How far the table has travelled from where the mesh has it: the indicator then stands on another spot of it.
+  std::optional<PointOnRegion> table;  ///< none: the tool against the ground, which is fixed
+  /// Travel of the table from its position in the mesh; the indicator then stands on another point of it.
   Eigen::Vector3d travel_m = Eigen::Vector3d::Zero();
 };
 
-/// Displacement by mean temperatures: Σ sensitivity (T - T_reference). For machines of lumped nodes, and beside a mesh for bodies
-/// that are not in it: the screw of a semi-closed axis, whose growth moves the tool and is unseen by the motor's encoder.
+/// Displacement from mean temperatures: Σ sensitivity (T - T_reference). For machines of lumped nodes, and in addition to
+/// a mesh for bodies that are not in it: the screw of a semi-closed axis, whose growth moves the tool unseen by the
+/// motor's encoder.
 struct BySensitivity {
   struct Term {
     effects::Body body;
@@ -46,23 +47,23 @@ struct BySensitivity {
   Where where;
 };
 
-/// Error of the tool against the table along an axis: actual - commanded. The stand of the indicator is a rigid body that
-/// moves and turns with the table at its foot; without a table it stands on the ground. One of both parts at least; with both
-/// the error is their sum, and a positive sensitivity moves the tool along the axis.
+/// Error of the tool against the table along an axis: actual - commanded. The indicator's stand is a rigid body that
+/// moves and turns with the table at its foot; without a table it is fixed to the ground. At least one of the two parts
+/// is required; with both the error is their sum, and a positive sensitivity moves the tool along the axis.
 struct DisplacementOutput {
   std::string name;
   std::optional<ToolAgainstTable> points = {};
   std::optional<BySensitivity> by_sensitivity = {};
 };
 
-/// Change of angle of the line from -> to about an axis, against the table (ISO 230-3); right-handed.
+/// Change of the angle of the line from -> to about an axis, against the table (ISO 230-3); right-handed.
 struct TiltOutput {
   std::string name;
   int axis = 0;
   PointOnRegion from, to, table;
 };
 
-/// What an entry of `sensors`, `displacements` and `tilts` may hold.
+/// The schemas of an entry of `sensors`, `displacements` and `tilts`.
 [[nodiscard]] schema::Map sensor_schema();
 [[nodiscard]] schema::Map displacement_schema();
 [[nodiscard]] schema::Map tilt_schema();

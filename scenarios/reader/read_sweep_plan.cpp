@@ -19,10 +19,10 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr int kMostMembers = 1000000;
-/// The keys of an entry of `vary` of which one says how it varies.
+/// The keys of an entry of `vary` that say how the value varies; exactly one is required.
 const std::vector<std::string> kKinds = {"values", "from", "uniform", "log_uniform", "normal"};
 
-/// Where a value below a key of `in` stands.
+/// The position of a value below a key of `in`.
 Where where_of(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
   return node.where(in.where(key).key);
 }
@@ -36,7 +36,7 @@ Quantity read_number(const ConfigMap& in, const std::string& key, const ConfigNo
   }
 }
 
-/// The same in the variation's unit.
+/// Reads a number and converts it to the variation's unit.
 double read_number_in_unit(const ConfigMap& in, const std::string& key, const ConfigNode& node, const Variation& v) {
   const Quantity quantity = read_number(in, key, node);
   try {
@@ -46,7 +46,8 @@ double read_number_in_unit(const ConfigMap& in, const std::string& key, const Co
   }
 }
 
-/// `values:` a list, or a map of names. Numbers with units of one kind make a column of numbers, everything else one of words.
+/// `values:` a list, or a map of names. Numbers with units of one kind become a column of numbers, all else a column of
+/// words.
 void read_values(const ConfigMap& in, Variation& v) {
   const ConfigNode& values = *in.value("values");
   if (!(values.is_list() || values.is_map()) || values.items.empty())
@@ -120,7 +121,7 @@ void read_normal(const ConfigMap& in, Variation& v) {
   if (!(sd.number > 0.0)) normal.fail("sd", "the standard deviation must be above 0");
 }
 
-/// A name for columns from an address: effects[link@housing].conductance gives effects_link_housing_conductance.
+/// A column name from an address: effects[link@housing].conductance gives effects_link_housing_conductance.
 std::string name_of_address(const std::string& address) {
   std::string name;
   for (char c : address) {
@@ -303,8 +304,8 @@ schema::Map variation_schema() {
           .about = "What varies."};
 }
 
-/// Values that stand for all of a variation: those listed, of many as many as are tried, ends among them; both ends of a range; the mean of a normal
-/// distribution, whose tails may be refused member by member.
+/// Values that represent a variation: those listed (at most kMostTried of them, including the ends); both ends of a
+/// range; the mean of a normal distribution, whose tails may be refused member by member.
 std::vector<SweepValue> tried_values(const Variation& v) {
   constexpr std::size_t kMostTried = 50;
   if (v.spread) {
@@ -318,7 +319,7 @@ std::vector<SweepValue> tried_values(const Variation& v) {
   return some;
 }
 
-/// Why the reader refuses a scenario; nothing where it takes it.
+/// The reader's error for a scenario; none if it accepts it.
 std::optional<InputError> refusal_of(const ConfigNodePtr& tree) {
   try {
     (void)read_scenario(ConfigMap::of_tree(tree));
@@ -328,7 +329,7 @@ std::optional<InputError> refusal_of(const ConfigNodePtr& tree) {
   }
 }
 
-/// Whether a member that has the value is refused, too: values of a list may go together and fit none alone.
+/// Whether a member with the value is also refused: listed values of several variations may be valid only together.
 bool is_refused_in_member(const SweepPlan& plan, std::size_t variation, const SweepValue& value) {
   for (std::size_t m = 0; m < plan.n_members; ++m) {
     if (plan.value(m, variation).node != value.node) continue;
@@ -339,11 +340,11 @@ bool is_refused_in_member(const SweepPlan& plan, std::size_t variation, const Sw
       return true;
     }
   }
-  return true;  // an end of a range, which no member hits
+  return true;  // an end of a range, which no member reaches
 }
 
-/// Tries each value in the scenario as it is otherwise. @throws InputError  with the study's line, for a wrong unit, a number out of range and whatever else
-/// the reader refuses
+/// Tries each value in the otherwise unchanged scenario. @throws InputError  with the study's line, for a wrong unit, a
+/// number out of range and whatever else the reader refuses
 void require_values_that_fit(const SweepPlan& plan) {
   for (std::size_t i = 0; i < plan.variations.size(); ++i) {
     for (const SweepValue& value : tried_values(plan.variations[i])) {
@@ -399,7 +400,8 @@ SweepPlan read_sweep_plan(const std::string& path) {
                "what differs");
   const ConfigMap in = whole.described_by(sweep_schemas());
   plan.name = in.name("name");
-  const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
+  const auto scenario_path =
+      std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path is unchanged
   if (!std::filesystem::is_regular_file(scenario_path))
     in.fail("scenario", fmt::format("there is no file '{}' (paths are relative to the study)", scenario_path.string()));
   plan.scenario = read_scenario_tree(scenario_path.string());

@@ -14,7 +14,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kLeastFeed_m_s = 1e-9;  // above 0
+constexpr double kLeastFeed_m_s = 1e-9;  // smallest feed above 0
 
 TableScale read_scale(const ConfigMap& in, const std::vector<std::string>& sensors) {
   TableScale scale;

@@ -27,7 +27,7 @@ double read_time_s(const std::string& text, const std::string& argument) {
   }
 }
 
-/// A time that no row of that very time misses, for sums of decimal fractions are off by rounding.
+/// Slightly earlier than a time, so that rounding of decimal fractions does not skip the row at exactly that time.
 double before(double time_s) {
   return std::isfinite(time_s) ? time_s - 1e-9 * std::max(1.0, time_s) : time_s;
 }
@@ -54,7 +54,7 @@ std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record
   const std::vector<double>& t = record.time_s;
   if (part.is_whole()) return {0, t.size()};
   const double last_s = t.back() - t.front(), step_s = last_s / static_cast<double>(t.size() - 1);
-  const auto row = [&](double time_s) {  // the first at or after it
+  const auto row = [&](double time_s) {  // the first row at or after it
     return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + before(time_s)) - t.begin());
   };
   if (part.from_s > last_s || (std::isfinite(part.until_s) && part.until_s > last_s + step_s))

@@ -7,16 +7,16 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kLeastRest_s = 600.0;
-constexpr double kStill = 0.01;               // of the top speed: the spindle stands
-constexpr std::size_t kMostRuns = 8;          // as many fits of each strategy decide what it leaves open
+constexpr double kStill = 0.01;               // share of the top speed below which the spindle is at rest
+constexpr std::size_t kMostRuns = 8;          // most runs, since each strategy is fitted once per run
 constexpr std::size_t kFewestRowsOfRun = 20;  // of a run
 constexpr double kBack = 0.05, kBack_K = 0.2, kBack_um = 0.5;
-constexpr std::size_t kMeanRows = 5;  // what noise is taken out of
+constexpr std::size_t kMeanRows = 5;  // rows averaged to reduce noise
 
-/// A stretch in which the drive rests, with a start behind it.
+/// A stretch in which the drive rests, followed by a restart.
 struct Rest {
   double length_s = 0.0;
-  std::size_t start = 0;  ///< row at which the drive starts anew
+  std::size_t start = 0;  ///< row at which the drive restarts
 };
 
 bool rests(const Drive& drive, double still_rpm) {
@@ -49,7 +49,7 @@ std::vector<Rest> rests_of(const CutRecord& cut, std::size_t first, std::size_t 
   return list;
 }
 
-/// A channel over the ambient where that is known and it is a temperature.
+/// A channel; a temperature minus the ambient, if that is known.
 std::vector<double> over_ambient(const CutRecord& cut, const Channel& channel, bool is_temperature) {
   std::vector<double> x = channel.values;
   if (!is_temperature || cut.ambient.time_s.empty()) return x;
@@ -57,7 +57,7 @@ std::vector<double> over_ambient(const CutRecord& cut, const Channel& channel, b
   return x;
 }
 
-/// Mean of what is there in some rows; NaN where nothing is.
+/// Mean of the values in some rows, without gaps; NaN if there are none.
 double mean_of(const std::vector<double>& x, std::size_t first, std::size_t last) {
   double sum = 0.0, n = 0.0;
   for (std::size_t i = first; i < last; ++i) {
@@ -68,7 +68,7 @@ double mean_of(const std::vector<double>& x, std::size_t first, std::size_t last
   return n > 0.0 ? sum / n : std::nan("");
 }
 
-/// Those of some rows, in rising order, at which the machine is back in balance; one way through the record.
+/// Those of the given rows, in rising order, at which the machine is back in balance; in one pass through the record.
 std::vector<std::size_t> in_balance(const CutRecord& cut, const std::vector<std::size_t>& rows) {
   std::vector<bool> is_back(rows.size(), true);
   for (const Channel& c : cut.record.channels) {

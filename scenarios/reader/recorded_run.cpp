@@ -16,27 +16,27 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kJitter = 0.01;      // of the top speed: no change of the drive, unless it stays
-constexpr std::size_t kStays = 3;     // rows of one and the same value, which no tachometer that jitters shows
-constexpr double kRoom_K = 293.15;    // the reference where there is no machine
-constexpr double kManyMissing = 0.1;  // of the readings of speed or ambient
+constexpr double kJitter = 0.01;      // share of the top speed; a smaller change is jitter, unless the new value stays
+constexpr std::size_t kStays = 3;     // rows with exactly the same value; a jittering tachometer never shows that many
+constexpr double kRoom_K = 293.15;    // reference temperature without a machine
+constexpr double kManyMissing = 0.1;  // share of missing readings of speed or ambient that is reported
 
 std::ptrdiff_t n_readings(const Channel& channel) {
   return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
 }
 
-/// What a channel of the drive may hold.
+/// A channel of the drive and its allowed values.
 struct DriveKind {
   const char* name;
   const char* unit;
   double most;         ///< in `unit`
-  bool may_be_signed;  ///< the sign does not count
+  bool may_be_signed;  ///< the sign is ignored
 };
 constexpr DriveKind kSpeed{"speed", "rpm", 1e6, false}, kCutting{"cutting_power", "W", 1e9, false},
     kFeeds[] = {{"feed_x", "mm_min", 6e6, true}, {"feed_y", "mm_min", 6e6, true}, {"feed_z", "mm_min", 6e6, true}};
 
-/// A channel of the drive, if it is there. A plan's last row ends it; its values do not count.
-/// @throws InputError  for another unit than it has to have, and for a value that no machine has
+/// A channel of the drive, if there is one. The last row of a plan is only its end; its values are not checked.
+/// @throws InputError  for another unit than required, and for an impossible value
 const Channel* drive_channel(const Record& record, const DriveKind& kind, bool is_plan) {
   const Channel* channel = record.find(kind.name);
   if (!channel) return nullptr;
@@ -61,15 +61,15 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
   return channel;
 }
 
-/// Whether a channel reads the same in a row and those after it: what was commanded, however small the change.
+/// Whether a channel has the same value in a row and those after it; then it was commanded, however small the change.
 bool stays(const Channel& channel, std::size_t row) {
   if (row + kStays > channel.values.size()) return false;
   const auto first = channel.values.begin() + static_cast<std::ptrdiff_t>(row);
   return std::all_of(first, first + kStays, [&](double v) { return v == *first; });
 }
 
-/// Sections of constant drive, each row's from its time on; what is missing is held.
-/// @throws InputError  where the record does not say one
+/// Sections of constant drive: each row's value holds from its time on, and gaps are held.
+/// @throws InputError  if the record contains no drive
 Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool is_plan) {
   const std::string& path = record.source;
   if (is_plan && record.time_s.front() != 0.0)
@@ -90,7 +90,7 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool
   Cyclogram cyclogram;
   double top_rpm = 0.0;
   for (double rpm : speed->values) top_rpm = std::isnan(rpm) ? top_rpm : std::max(top_rpm, rpm);
-  // before its first reading as at it
+  // Before its first reading the speed has the value of that reading.
   double last_rpm = *std::find_if(speed->values.begin(), speed->values.end(), [](double rpm) { return !std::isnan(rpm); });
   Drive drive;
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
@@ -113,7 +113,7 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool
   return cyclogram;
 }
 
-/// What was recorded beside drive, ambient and readings.
+/// The recorded channels besides drive, ambient and readings.
 std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vector<double>& time_s,
                                           const MachineModel* machine, const std::vector<std::string>& on_ambient) {
   std::vector<std::string> known = {kSpeed.name, kCutting.name, kAmbient};
@@ -138,8 +138,8 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
   return columns;
 }
 
-/// The recorded ambient, held where a reading is missing, over the reference.
-/// @throws InputError  for a unit that is none of an ambient temperature, in the header or by the numbers
+/// The recorded ambient over the reference, with gaps held.
+/// @throws InputError  for a unit that is no temperature, in the header or by the size of the numbers
 TimeSeries ambient_of(const Record& record, const Channel& channel, const std::vector<double>& time_s, double reference_C,
                       const TimeSeries* expected) {
   if (channel.unit != "degC") {
@@ -147,7 +147,7 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
   }
   const double first_C =
       *std::find_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
-  if (expected && !expected->value.empty()) {  // the ambient drives the machine: in the wrong unit it spoils every channel
+  if (expected && !expected->value.empty()) {  // the ambient drives the machine: a wrong unit would spoil every channel
     const auto [low, high] = std::minmax_element(expected->value.begin(), expected->value.end());
     if (const auto unit = foreign_temperature(channel.values, reference_C + *low, reference_C + *high)) {
       throw InputError(fmt::format(
@@ -164,7 +164,7 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
   return ambient;
 }
 
-/// Rows too far apart for what drove the machine to be known between them.
+/// Notes rows that are too far apart to know the drive between them.
 void note_coarse_rows(RecordedRun& run) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < run.time_s.size(); ++i) steps_s.push_back(run.time_s[i] - run.time_s[i - 1]);
@@ -177,7 +177,7 @@ void note_coarse_rows(RecordedRun& run) {
          false});
 }
 
-/// As it may become the name of a cyclogram.
+/// The source's name in a form that a cyclogram may have.
 std::string name_of(const std::string& source) {
   std::string name = std::filesystem::path(source).stem().string();
   for (char& c : name) {

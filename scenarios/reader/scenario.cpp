@@ -19,7 +19,7 @@ namespace driftwright::scenarios {
 namespace {
 
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
-  std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
+  std::set<std::string> names = {"speed",  "time",   "feed_x",  // further columns of records
                                  "feed_y", "feed_z", "cutting_power"};
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
@@ -177,7 +177,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   return s;
 }
 
-/// The map has the channels that the study is about, with or without their units, and its target in um.
+/// Checks that the map has the channels of the study, with or without their units, and its target in um.
 void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& study) {
   std::vector<std::string> names = {study.target}, known;
   names.insert(names.end(), study.candidates.begin(), study.candidates.end());
@@ -236,7 +236,7 @@ schema::Map solver_schema() {
                   "`fields_at` and `fields_every` exclude each other; write only one of them"}}};
 }
 
-/// @param of_machine  its cyclograms are simulated; else it is about records alone
+/// @param of_machine  true: its cyclograms are simulated; false: it is about records alone
 schema::Map study_schema(bool of_machine) {
   using namespace schema;
   const Study s;
@@ -332,7 +332,7 @@ schema::Map records_scenario_schema() {
           .about = "A scenario without `machine` is about measured records alone (see `scenarios/spindle_22.yaml`)."};
 }
 
-/// Else a missing `machine` would make all that goes with it unknown keys.
+/// A clearer error: with `machine` missing, all keys that need it would be unknown keys.
 void reject_what_wants_a_machine(const ConfigMap& top) {
   if (top.has("machine")) return;
   if (top.has("vary"))
@@ -396,7 +396,7 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
       at.run = cyclogram.name;
       try {
         balance.for_each_law([&](const std::string&, const effects::Law& law) {
-          if (law.probes.empty()) (void)law(at);  // those that look at temperatures are tried as the run goes
+          if (law.probes.empty()) (void)law(at);  // laws of temperatures are tried during the run
         });
       } catch (const RangeError& e) {
         throw InputError(effect.where, fmt::format("{} at the {:g} rpm of cyclogram '{}': {}", effect.name(),
@@ -484,7 +484,7 @@ Scenario read_scenario(const ConfigMap& top) {
   if (const auto table = in.optional_map("table")) {
     scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
   }
-  check_instruments(*scenario.machine, scenario.cyclograms);  // points of a table are displacements, too
+  check_instruments(*scenario.machine, scenario.cyclograms);  // displacements include the points of a table
   in.reject_unknown_keys();
   return scenario;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A scenario file as plain data: SI inside, nothing computed yet. One read_... function per struct reads by the description beside it.
+// A scenario file as plain data in SI units, with nothing computed yet. One read_... function per struct reads it, by the
+// schema beside it.
 
 #include <array>
 #include <map>
@@ -43,7 +44,7 @@ enum class Start {
   kSteady,     ///< the steady state at standstill in the first ambient temperature
 };
 
-/// All that the simulation needs.
+/// All data that the simulation needs.
 struct MachineModel {
   double reference_K = 293.15;
   MeshRecipe mesh;
@@ -59,39 +60,38 @@ struct MachineModel {
   TimeSeries ambient;       ///< minus reference_K [K]
   Where where;
   std::string
-      written;  ///< the keys that decide mesh and matrices, as the scenario has them; numbers of effects are not among them
+      written;  ///< the keys that determine mesh and matrices, as in the scenario; numbers of effects are not included
 };
 
-/// What a cyclogram is run on.
+/// The model that a cyclogram is simulated on.
 enum class ModelKind {
-  kFull,     ///< the finite elements themselves
-  kReduced,  ///< a small system made of them, which is kept on disk
+  kFull,     ///< the finite elements
+  kReduced,  ///< a small system reduced from them, which is kept on disk
 };
 
 struct SolverSettings {
   ModelKind model = ModelKind::kFull;
   double reduction_tolerance_K =
-      8e-3;  ///< error of the reduced model against the full one, estimated; with 2 um/K and 20 urad/K
+      8e-3;  ///< estimated error of the reduced model against the full one; with 2 um/K and 20 urad/K
   solver::TransientOptions transient;
   double output_interval_s = 60.0;
   double fields_every_s = 1800.0;
-  std::vector<double>
-      fields_at_s;        ///< instead of fields_every_s where not empty; the start and the end are written in any case
-  bool stresses = false;  ///< stresses beside the other fields
+  std::vector<double> fields_at_s;  ///< replaces fields_every_s unless empty; the start and the end are always written
+  bool stresses = false;            ///< stresses beside the other fields
   FieldsFormat fields_format = FieldsFormat::kVtu;
 };
 
-/// What is fitted and what it is judged by.
+/// What is fitted, and the data that it is judged by.
 struct Study {
-  std::string target;                   ///< displacement channel that ranking and verdict are about
+  std::string target;                   ///< displacement channel that is ranked and judged
   std::vector<std::string> candidates;  ///< temperature channels to choose from; empty: all of the record
-  /// Temperatures and target count from the first row of each record, as where the tool is set anew before each run.
+  /// Temperatures and target are zero at the first row of each record, as when the tool is set before each run.
   bool count_from_start = false;
-  compensation::Image image = compensation::Image::kAutomatic;  ///< that sensors are ranked by
-  std::vector<std::string> train;                               ///< cyclograms
-  std::string judge;                                            ///< cyclogram
+  compensation::Image image = compensation::Image::kAutomatic;  ///< method of ranking the sensors
+  std::vector<std::string> train;                               ///< names of cyclograms
+  std::string judge;                                            ///< name of a cyclogram
   int sensors_to_choose = 4;
-  /// Step of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
+  /// Resolution of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
   double sensor_resolution_K = 0.0;
   int thermal_modes = 20;
   double tolerance_um = 10.0;
@@ -103,9 +103,8 @@ struct Scenario {
   std::string path;
   std::string name;
   std::optional<MachineModel> machine;  ///< absent in a scenario about measured records alone
-  std::optional<ColumnMap>
-      columns;  ///< how the records that verbs are given are written; absent: as docs/reference/record.md has it
-  std::map<std::string, std::string> topics;  ///< of channels, by their headers: where `follow` takes their numbers from
+  std::optional<ColumnMap> columns;     ///< format of the records given to verbs; absent: as in docs/reference/record.md
+  std::map<std::string, std::string> topics;  ///< by the channels' headers: where `follow` gets their numbers
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;
   std::optional<Study> study;
@@ -113,25 +112,25 @@ struct Scenario {
   std::optional<Validation> validation;
   std::optional<ScheduleSettings> schedule;
   std::optional<AxisLoopSettings> axis_loop;
-  std::optional<TableSettings> table;  ///< its points stand behind the machine's own displacements
+  std::optional<TableSettings> table;  ///< its points follow the machine's own displacements
 
-  /// @throws InputError  naming the cyclograms there are
+  /// @throws InputError  listing the existing cyclograms
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
 };
 
-/// What a scenario file may hold: with a machine, or about records alone.
+/// The schemas of a scenario file: with a machine, or about records alone.
 [[nodiscard]] const std::vector<schema::Map>& scenario_schemas();
 
-/// Looks whether a cyclogram can be run on the scenario's machine: every law defined at every speed, outputs not too many.
-/// read_scenario() has done so for the scenario's own. @throws InputError
+/// Checks whether a cyclogram can be run on the scenario's machine: that every law is defined at every speed, and that
+/// there are not too many outputs. read_scenario() checks the scenario's own. @throws InputError
 void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
 
 /// @throws InputError  with file, line and key
 [[nodiscard]] Scenario read_scenario(const std::string& path);
-/// The same from the map at the top of a scenario, which may have been edited.
+/// The same from the top map of a scenario, which may have been edited.
 [[nodiscard]] Scenario read_scenario(const ConfigMap& in);
 
-/// The scenario's machine, or its study. @param verb  that needs it. @throws InputError  where there is none
+/// The scenario's machine, or its study. @param verb  verb that needs it. @throws InputError  if there is none
 [[nodiscard]] const MachineModel& require_machine(const Scenario& scenario, const std::string& verb);
 [[nodiscard]] const Study& require_study(const Scenario& scenario, const std::string& verb);
 

@@ -25,7 +25,7 @@ const std::vector<std::pair<std::string, Scalar>>& scalar_names() {
 }
 
 std::string number_label(double number) {
-  return fmt::format("{:.12g}", number);  // what the table shows is what the member is simulated with
+  return fmt::format("{:.12g}", number);  // the table shows exactly the number that is simulated
 }
 
 SweepValue Variation::value_of(double number) const {
@@ -94,7 +94,7 @@ std::string SweepPlan::table_header() const {
 
 namespace {
 
-/// The effects of a member that change thermal expansion, which influence vectors follow from, as they are written.
+/// The effects of a member that change thermal expansion, on which influence vectors depend, as written.
 std::string expansion_factors(const SweepPlan& plan, std::size_t member) {
   const ConfigNodePtr tree = tree_of(plan, member);
   const ConfigNode* effects = tree->find("effects");
@@ -140,7 +140,8 @@ std::vector<std::size_t> members_of_part(const SweepPlan& plan, std::size_t part
 }
 
 std::string content_key(const SweepPlan& plan, const std::string& version) {
-  return content_key({plan.study, plan.scenario}, std::filesystem::path(plan.scenario->source->path).parent_path(), {version});
+  return content_key({plan.study, plan.scenario}, std::filesystem::path(plan.scenario->source->path).parent_path(),
+                     {version});
 }
 
 }  // namespace driftwright::scenarios

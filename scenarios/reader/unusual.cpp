@@ -19,7 +19,7 @@ std::string at_line(const Where& where, const std::string& sentence) {
   return fmt::format("{}:{}: {}{}", clean_name(where.file), where.line, sentence, key);
 }
 
-/// The largest value that a law takes, and where.
+/// The largest value of a law, and where it occurs.
 struct Largest {
   double value = 0.0;
   double speed_rpm = 0.0;
@@ -31,7 +31,7 @@ struct NamedDrive {
   std::string cyclogram;
 };
 
-/// Every drive once.
+/// Each different drive once.
 std::vector<NamedDrive> drives_of(const Scenario& scenario) {
   std::vector<NamedDrive> drives;
   for (const Cyclogram& cyclogram : scenario.cyclograms) {
@@ -56,7 +56,7 @@ Largest largest_of(const effects::Law& law, const effects::Effect& effect, const
     try {
       const double value = law(at);
       if (!(std::abs(value) <= std::abs(largest.value))) largest = {value, d.drive.speed_rpm, d.cyclogram};
-    } catch (const RangeError&) {  // outside of what its formula holds for: a run says so
+    } catch (const RangeError&) {  // outside the valid range of its formula; a run reports it
     }
   }
   return largest;
@@ -170,7 +170,7 @@ std::vector<std::string> unusual_values(const Record& record, bool with_temperat
       for (std::size_t i = 0; i < channel.values.size(); ++i) {
         const double value = f.unit_SI * channel.values[i] / range.unit_SI;
         const double outside = std::max(range.low - value, value - range.high);
-        if (!(outside > 0.0)) continue;  // a missing value is no number
+        if (!(outside > 0.0)) continue;  // NaN for a missing value
         is_outside = true;
         if (outside > f.outside) f.outside = outside, f.value = value, f.at_s = record.time_s[i], f.channel = channel.name;
       }

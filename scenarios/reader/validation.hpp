@@ -1,5 +1,6 @@
 #pragma once
-// What strategies of correction are judged on: families of cyclograms, seasons of the ambient, instruments, failing sensors.
+// The key `validation`: what strategies of correction are judged on: families of cyclograms, seasons of the ambient,
+// instruments and failing sensors.
 
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"
@@ -7,7 +8,7 @@
 namespace driftwright::scenarios {
 
 struct Validation {
-  std::vector<Cyclogram> train;  ///< fitted on, in the ambient as the scenario has it
+  std::vector<Cyclogram> train;  ///< to fit on, in the scenario's ambient
   struct Family {
     std::string name;
     std::vector<Cyclogram> cyclograms;
@@ -15,25 +16,25 @@ struct Validation {
   std::vector<Family> families;
   struct Season {
     std::string name;
-    double offset_K = 0.0;  ///< of the ambient against the scenario's
-    double swing_K = 0.0;   ///< amplitude of a sine of 24 h that begins with each cyclogram
+    double offset_K = 0.0;  ///< of the ambient over the scenario's
+    double swing_K = 0.0;   ///< amplitude of a sine with a period of 24 h that begins with each cyclogram
   };
-  std::vector<Season> seasons;  ///< the first is the scenario's own ambient, "as trained"
-  double noise_K = 0.0;         ///< of thermometers, white, 1 sigma
+  std::vector<Season> seasons;  ///< the first is the scenario's ambient, "as trained"
+  double noise_K = 0.0;         ///< of thermometers, white, standard deviation
   double resolution_K = 0.0;
   double drift_noise_um = 0.0;  ///< of the indicator in the training runs
   double model_scatter =
-      0.1;  ///< 1 sigma of the logarithm by which the model that strategies are given is wrong in each power and exchange
+      0.1;  ///< standard deviation of the logarithm of each power and exchange of the model given to strategies
   double fails_at = 0.5;  ///< share of a cyclogram after which a sensor fails
   double tolerance_um = 10.0;
   int seed = 1;
   Where where;
 };
 
-/// What the key `validation` may hold.
+/// The schema of the key `validation`.
 [[nodiscard]] schema::Map validation_schema();
-/// @param known      cyclograms that may be named
-/// @param tolerance  where the block has none
+/// @param known      cyclograms that the block may name
+/// @param tolerance  for a block without its own
 /// @throws InputError  file, line, key
 [[nodiscard]] Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known,
                                          double tolerance_um);

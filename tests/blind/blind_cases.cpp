@@ -1,9 +1,9 @@
 // Writes blind cases: blind_cases --from 0 --to 399 -o DIR [--every K --offset J]
 //
 // Cases that are there are kept. With --every 2 --offset 1 every second seed alone, so that two processes share the work.
-// blind_cases --further DIR/case_0008 --diagnosis FILE.json -o FILE.csv: one more record of a case, with the cyclogram that its diagnosis
-// proposes; nothing where it proposes none.
-// --mesh-share 1.3 tries everything out on coarse meshes, four times as fast.
+// blind_cases --further DIR/case_0008 --diagnosis FILE.json -o FILE.csv: one more record of a case, with the cyclogram
+// that its diagnosis proposes; nothing where it proposes none. --mesh-share 1.3 tries everything out on coarse meshes,
+// four times as fast.
 
 #include <fmt/format.h>
 

@@ -26,8 +26,8 @@ double wanted_d_prime(Random& random) {
   return random.log_uniform(12.0, 60.0);
 }
 
-/// Laws that cannot be made quiet (a factor within the prior is calibration, a swap has no size, a stop lasts some minutes) may be
-/// louder than wanted.
+/// Laws that cannot be made quiet (a factor within the prior is calibration, a swap has no size, a stop lasts some
+/// minutes) may be louder than required.
 bool fits(const Hidden& h, double d, double wanted) {
   constexpr double kLoudest = 200.0;
   const bool may_be_louder = wanted >= 12.0 && (is_factor(h.what) || !has_size(h.what) || h.what == Hide::kMissingStop);

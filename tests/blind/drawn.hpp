@@ -1,5 +1,5 @@
 #pragma once
-// What a seed decides: class, machine, cyclograms, ambient, noise, and which effects are hidden where.
+// What a seed determines: class, machine, cyclograms, ambient, noise, and the hidden effects with their places.
 
 #include <array>
 #include <cstdint>
@@ -13,12 +13,13 @@ namespace driftwright::blind {
 
 enum class CaseClass { kOne, kTwo, kNone, kOutside, kConfounded };
 [[nodiscard]] const char* class_name(CaseClass of);
-/// From this seed on cases hold one of the effects that the catalogue gained later, in a lumped machine: probe lag, coolant that the scenario
-/// lacks, a door. Earlier seeds go on making the cases that they made.
+/// From this seed on, cases have one of the effects that were added to the catalogue later, in a lumped machine: probe
+/// lag, a coolant that the scenario lacks, a door. Earlier seeds still make the same cases.
 inline constexpr std::uint64_t kFirstOfLater = 400;
-/// Of 40 seeds in a row 12 are one, 10 two, 10 none, 5 outside, 3 confounded, in mixed order.
+/// Of 40 consecutive seeds 12 have one effect, 10 two, 10 none, 5 one outside the catalogue, 3 are confounded, in mixed
+/// order.
 [[nodiscard]] CaseClass class_of(std::uint64_t seed);
-/// Index into subject_names(); each class meets each machine.
+/// Index into subject_names(); each class is combined with each machine.
 [[nodiscard]] std::size_t subject_of(std::uint64_t seed);
 
 /// The recorded ambient: a ramp and a slow sine, over the reference.
@@ -43,7 +44,7 @@ struct Noise {
   double quantum = 0.0;
   /// Standard deviation of a reading, rounding included.
   [[nodiscard]] double total() const;
-  /// Standard deviation of white noise that hides a slow signal in rows of interval_s as well as this one does.
+  /// Standard deviation of white noise that hides a slow signal, in rows of interval_s, as well as this noise does.
   [[nodiscard]] double against_slow(double interval_s) const;
 };
 
@@ -53,20 +54,21 @@ struct CasePlan {
   std::vector<RecordPlan> records;  ///< measured ones, then the holdout
   std::vector<Noise> noise;         ///< per output
   double ambient_noise_K = 0.02;
-  std::vector<std::string> confusable;  ///< "<key> <where>": what the records cannot tell from the truth
+  std::vector<std::string> confusable;  ///< "<key> <where>": effects that the records cannot distinguish from the truth
   bool displacements_only = false;      ///< the records hold no temperature of the confounded region
-  std::string confusion;                ///< what makes it confounded, in words
+  std::string confusion;                ///< reason for the confusion, in words
   [[nodiscard]] std::size_t n_measured() const { return records.size() - 1; }
 };
 
-/// All but the hidden effects. Records of a confounded case are drawn with its effects.
+/// Draws everything except the hidden effects. Records of a confounded case are drawn with its effects.
 [[nodiscard]] CasePlan draw_plan(const Subject& subject, std::uint64_t seed);
 
-/// One effect of the catalogue, its size the middle of its range, anywhere.
+/// An effect of the catalogue at any place, with the middle size of its range.
 [[nodiscard]] Hidden draw_hidden(const Subject& subject, const CasePlan& plan, Random& random);
-/// One whose law is in no catalogue.
+/// An effect whose law is in no catalogue.
 [[nodiscard]] Hidden draw_foreign(const Subject& subject, Random& random);
-/// Effects that the records cannot tell from others; fills the plan's confusable, and its records with such as hide the difference.
+/// Effects that the records cannot distinguish from others; fills the plan's confusable, and sets records that hide the
+/// difference.
 [[nodiscard]] std::vector<Hidden> draw_confounded(const Subject& subject, CasePlan& plan, Random& random);
 
 }  // namespace driftwright::blind

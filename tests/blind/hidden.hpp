@@ -1,6 +1,6 @@
 #pragma once
-// What is hidden in a case: one effect of a kind, at a place, of a size, and its own laws for heat, drive, ambient and readings. Keys and
-// meanings are the catalogue's; nothing of the catalogue's code is used.
+// The hidden effects of a case: kind, place and size, with their own laws for heat, drive, ambient and readings. Keys and
+// meanings are the catalogue's, but none of its code is used.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace driftwright::blind {
 
-/// A kind of effect and the law it follows; several laws may share a key of the catalogue.
+/// A kind of effect with its law; several laws may share a key of the catalogue.
 enum class Hide {
   kHeatConstant,      ///< size W in a region or node
   kHeatOfSpeed,       ///< size W (n / at_speed)^exponent
@@ -41,7 +41,7 @@ enum class Hide {
   kClockOffset,       ///< size s, > 0: logged late
   kSpeedOverride,     ///< true speed = (1 + size) times the recorded one
   kMissingStop,       ///< from time_s on for size s
-  kOscillatingHeat,   ///< size W sin(2π t / lag_s); drawn as if in no catalogue, of which it is by now
+  kOscillatingHeat,   ///< size W sin(2π t / lag_s); drawn as if in no catalogue, though the catalogue has it now
   kTravelCreep,       ///< in no catalogue: size um per hour at top speed, with the revolutions made so far
   kAcceleratingHeat,  ///< in no catalogue: size J per rpm of each change of speed, released over a minute
   kContactLater,      ///< link times exp(size) from time_s on
@@ -56,23 +56,23 @@ struct Hidden {
   double size = 0.0;
   double low = 0.0, high = 0.0;  ///< bounds of |size|
   double at_speed_rpm = 0.0, exponent = 0.0, time_s = 0.0, lag_s = 0.0;
-  int record = -1;  ///< the one it acts in, from 0; -1: in all, and the holdout
+  int record = -1;  ///< index of the record it acts in; -1: all, and the holdout
 };
 
-/// Key of the catalogue, "" for a law that is in none.
+/// Key of the catalogue; "" for a law without one.
 [[nodiscard]] std::string key_of(Hide what);
 /// The law in words, for truth.json.
 [[nodiscard]] const char* law_name(Hide what);
 /// True where size is a logarithm of a factor.
 [[nodiscard]] bool is_factor(Hide what);
-/// False for a swap, which is there or not.
+/// False for a swap, which has no size.
 [[nodiscard]] bool has_size(Hide what);
 
 struct TruthParameter {
   std::string name, unit;
   double value = 0.0;
 };
-/// As truth.json has them: in the catalogue's units.
+/// The parameters as in truth.json: in the catalogue's units.
 [[nodiscard]] std::vector<TruthParameter> parameters_of(const Hidden& hidden);
 
 /// Changes materials, capacities and expansions. Effects that act in one record only are none of these.
@@ -88,7 +88,7 @@ void hide_in_readings(const Hidden& hidden, const Cyclogram& true_drive, double 
 /// Displacements first, then detachment, lag, errors, swap, clock.
 [[nodiscard]] int reading_order(Hide what);
 
-/// The scatter parameters that a hidden factor stands on: they are left at their nominal value.
+/// The scatter parameters that a hidden factor changes: they keep their nominal value.
 [[nodiscard]] bool stands_on(const Hidden& hidden, const ScatterParameter& parameter);
 
 }  // namespace driftwright::blind

@@ -1,9 +1,9 @@
 #pragma once
-// The thermal matrices of a machine without their laws, and the laws beside them: what this side's own time integration runs.
+// The thermal matrices of a machine and, separately, its laws, for the blind cases' own time integration.
 //
 //     M dθ/dt = -K(u) θ + f(u),   K = K0 + Σ_e c_e G_e,   f = Σ_s P_s b_s + Σ_e c_e (θ_ambient g_e + gradient o_e)
 //
-// The matrices are the solver's; laws, steps and stages are not.
+// The matrices come from the solver; laws, steps and stages do not.
 
 #include <Eigen/Core>
 #include <functional>
@@ -38,14 +38,14 @@ struct Network {
 using FullNetwork = Network<solver::SparseRow>;
 using SmallNetwork = Network<Eigen::MatrixXd>;
 
-/// Laws in the order of the network's sources and exchanges, as a heat balance lists them: films, links, contacts.
+/// Laws in the order of the network's sources and exchanges, as in a heat balance: films, links, contacts.
 struct Laws {
   std::vector<effects::Law> powers_W, coefficients;
   double gradient_K_m = 0.0;  ///< of the ambient air
 };
 [[nodiscard]] Laws laws_of(const effects::HeatBalance& balance);
 
-/// What surrounds and drives a run.
+/// Surroundings and drive of a run.
 struct Run {
   Cyclogram drive;                          ///< the true one; sections begin at multiples of the step
   std::function<double(double)> ambient_K;  ///< true ambient temperature minus the reference at a time [s]
@@ -55,11 +55,12 @@ struct Run {
 
 /// Outputs at 0, step, 2 step, ... (n_outputs x n_times), from the reference temperature.
 ///
-/// SDIRK of order 2 with two stages, γ = 1 - 1/√2, L-stable (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006-1021), with steps of one
-/// length, in four parts for two minutes after each change of drive or coefficients: a pocket of air answers within seconds. Powers
-/// are taken at the stages; where they look at temperatures, at the stage's own, by two rounds of substitution.
-/// Coefficients are those of the middle of the step and look at no temperature.
-/// @throws std::logic_error  for a coefficient that looks at temperatures
+/// SDIRK of order 2 with two stages, γ = 1 - 1/√2, L-stable (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006-1021), with
+/// constant steps, divided by four for two minutes after each change of drive or coefficients, since an air pocket
+/// responds within seconds. Powers are evaluated at the stages; powers that depend on temperatures use those of the
+/// stage, by two rounds of substitution. Coefficients are those of the middle of the step and must not depend on
+/// temperatures.
+/// @throws std::logic_error  for a coefficient that depends on temperatures
 [[nodiscard]] Eigen::MatrixXd integrate(const FullNetwork& network, const Laws& laws, const Run& run);
 [[nodiscard]] Eigen::MatrixXd integrate(const SmallNetwork& network, const Laws& laws, const Run& run);
 

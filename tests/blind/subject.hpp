@@ -1,5 +1,5 @@
 #pragma once
-// A machine that cases are made of: its nominal scenario, the finer mesh its truth lives on, and a small system for cheap derivatives.
+// A machine for cases: its nominal scenario, the finer mesh of the truth, and a small system for cheap derivatives.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace driftwright::blind {
 
-/// Every number of a machine that may differ from what its scenario says.
+/// All numbers of a machine that may differ from its scenario.
 struct Values {
   std::vector<effects::Effect> effects;
   std::vector<double> conductivity, heat_capacity, expansion;  ///< factors, per region
@@ -17,7 +17,7 @@ struct Values {
   std::vector<std::vector<double>> sensitivity;                ///< factors, per displacement and term
 };
 
-/// A number that scatters: its logarithm is normal with this standard deviation about the nominal one.
+/// A number that scatters: its logarithm is normal around the nominal value, with this standard deviation.
 struct ScatterParameter {
   std::string name;
   double sigma = 0.1;
@@ -35,7 +35,7 @@ struct Subject {
   std::vector<Eigen::MatrixXd> influence;  ///< per region: n_nodes x n_displacements
   std::vector<std::string> nodes;          ///< lumped nodes, in their order
   double top_speed_rpm = 0.0;
-  // The small system at nominal values, M-orthonormal, and what each region and node contributes.
+  // The small system at nominal values, M-orthonormal, and the contributions of each region and node.
   SmallNetwork small;
   std::vector<Eigen::MatrixXd> small_mass, small_conduction, small_displacement;  ///< per region
   Eigen::MatrixXd small_node;                                                     ///< size x n_nodes
@@ -50,7 +50,7 @@ struct Subject {
   }
 };
 
-/// Names of the machines that cases take turns with.
+/// Names of the machines that cases use in turn.
 [[nodiscard]] const std::vector<std::string>& subject_names();
 
 /// @param folder      of the machines' scenarios
@@ -62,8 +62,8 @@ struct Subject {
 /// Multiplies one number.
 void scale(Values& values, const ScatterParameter& parameter, double factor);
 
-/// What the values say about heat, and behind it a source without power for every region, surface and node ("spare <name>") and a film
-/// without coefficient for every surface: places for what is hidden, so that the structure is always the same.
+/// The heat balance of the values, followed by a source without power for every region, surface and node ("spare <name>")
+/// and a film without coefficient for every surface: places for hidden effects, so that the structure is always the same.
 [[nodiscard]] effects::HeatBalance balance_of(const Subject& subject, const Values& values);
 
 [[nodiscard]] FullNetwork full_network(const Subject& subject, const Values& values);

@@ -7,7 +7,7 @@
 using namespace driftwright;
 
 int main(int argc, char** argv) {
-  mesh::all_threads_are_ours();  // as the program says; else what OpenMP leaves behind would have the files read in this process
+  mesh::all_threads_are_ours();  // as in the program; otherwise OpenMP's threads would read the files in this process
   const bool reads_drawings = argc > 1 && std::string(argv[1]) == "step";  // which take a hundred times as long
   if (reads_drawings) {
     --argc;

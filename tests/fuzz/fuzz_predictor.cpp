@@ -1,4 +1,4 @@
-// Files of predictors, their hash mended so that what is behind it is reached, and the predictor run on a record.
+// Files of predictors, with a corrected hash, so that the content after it is read, and the predictor run on a record.
 
 #include <nlohmann/json.hpp>
 

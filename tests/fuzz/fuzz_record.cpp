@@ -1,4 +1,4 @@
-// Records, plain and by a map of columns, and the run that a record tells of.
+// Records, plain and by a map of columns, and the run of a record.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// An input that is broken by chance, the same for the same seed and number.
+// A randomly broken input, the same for the same seed and number.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,12 +13,13 @@ struct Sample {
   std::string bytes;
 };
 
-/// Good files, folders taken with all that is in them and of one of these extensions; sorted by name. @throws InputError  where there is none
+/// Good files; folders give all files below them with one of these extensions; sorted by name. @throws InputError  if
+/// there are none
 [[nodiscard]] std::vector<Sample> read_corpus(const std::vector<std::filesystem::path>& places,
                                               const std::vector<std::string>& extensions);
 
-/// One of them after one to eight mutations; each hundredth as it is.
-/// @param words  that mean something in the format, to be put in
+/// One of the files after one to eight mutations; one in a hundred is unchanged.
+/// @param words  meaningful words of the format, to be inserted
 [[nodiscard]] Sample mutated(const std::vector<Sample>& corpus, const std::vector<std::string>& words, std::uint64_t seed,
                              std::uint64_t number);
 

@@ -1,6 +1,7 @@
-// Curves over time on a canvas. The mark of the present time is an element beside it, so that playing draws nothing anew.
+// Curves over time on a canvas. The mark of the present time is an element beside it, so that nothing is redrawn while
+// time runs.
 
-const LEAST_SPAN = 0.02;  // of an axis: what differs by less is level
+const LEAST_SPAN = 0.02;  // least span of an axis: smaller differences are drawn level
 const MARGIN = {left: 60, right: 14, top: 10, bottom: 24};
 const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a5fbf"];
 const styleOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -15,7 +16,7 @@ function ticks(low, high, most) {
 }
 
 class Chart {
-  // @param along  unit of time, and how many seconds it has
+  // @param along  unit of time, and its number of seconds
   constructor(canvas, unit, along = {unit: "min", unit_s: 60}) {
     Object.assign(this, {canvas, unit, along, begin_s: 0, end_s: 1, low: 0, high: 1});
     this.mark = canvas.parentElement.querySelector("i");
@@ -38,8 +39,8 @@ class Chart {
   markAt(time_s) { this.mark.style.transform = `translateX(${this.x(time_s)}px)`; }
 
   // @param curves  [{time_s, values, colour, isStepped, width}]
-  // @param range   [low, high], or null: what the curves take
-  // A value that is NaN is a gap.
+  // @param range   [low, high], or null: the range of the curves
+  // NaN leaves a gap.
   draw(curves, end_s, range = null, band = null, begin_s = 0) {
     const {canvas} = this, dense = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
     canvas.width = Math.round(canvas.clientWidth * dense);

@@ -1,7 +1,8 @@
-// What a correction leaves of a drift: by the scenario's regression on its thermometers, or, where it has none, by this model one row late and zeroed at the start.
+// The drift that a correction leaves: by the scenario's regression on its thermometers or, without one, by this model one
+// row late and zeroed at the start.
 
-// Whole periods of the encoder that follow a prediction: the pulse injector puts in the next one when half of it is due.
-// Math.round is away from zero here, as C's.
+// Whole periods of the encoder that follow a prediction: the pulse injector inserts the next one when half of it is due.
+// Rounds halves away from zero, as C's round does; Math.round alone does not.
 const rounded = x => Math.sign(x) * Math.round(Math.abs(x));
 
 // @returns {correction, left} per row [um]; `left` is the larger of just before and just after the correction is renewed

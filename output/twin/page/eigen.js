@@ -1,8 +1,8 @@
-// Eigenvectors of a symmetric matrix: Householder's reduction to three diagonals, then implicit QL steps (Bowdler et al., Numer. Math. 11
-// (1968) 293). A generator: it gives way after each row, so that no frame waits for it.
+// Eigenvectors of a symmetric matrix: Householder's tridiagonal reduction, then implicit QL steps (Bowdler et al., Numer.
+// Math. 11 (1968) 293). A generator: it yields after each row, so that no frame waits for it.
 
-// @param a  n x n by rows; the lower triangle of it becomes the reflections
-// @returns {values, vectors}, a vector a row
+// @param a  n x n by rows; its lower triangle is overwritten by the reflections
+// @returns {values, vectors}, one vector per row
 function* symmetricEigen(n, a) {
   const d = new Float64Array(n), e = new Float64Array(n), v = new Float64Array(n * n);
   yield* reduceToThreeDiagonals(n, a, d, e, v);
@@ -19,7 +19,8 @@ function* symmetricEigen(n, a) {
   return {values: d, vectors: v};
 }
 
-// A becomes H ... A ... H with the diagonal d and e beside it; v: the product of the reflections, column k of it in row k.
+// Reduces A to H ... A ... H with the diagonal d and the off-diagonal e; v: the product of the reflections, its column k
+// in row k.
 function* reduceToThreeDiagonals(n, a, d, e, v) {
   const w = new Float64Array(n), p = new Float64Array(n), beta = new Float64Array(n);
   for (let k = 0; k + 2 < n; ++k) {
@@ -52,7 +53,7 @@ function* reduceToThreeDiagonals(n, a, d, e, v) {
   if (n > 1) e[n - 2] = a[(n - 1) * n + n - 2];
   for (let i = Math.max(0, n - 2); i < n; ++i) d[i] = a[i * n + i];
   for (let i = 0; i < n; ++i) v[i * n + i] = 1;
-  for (let k = n - 3; k >= 0; --k) {  // from the last reflection on, each acts on the block that those behind it have made
+  for (let k = n - 3; k >= 0; --k) {  // backwards: each reflection acts on the block made by the later ones
     if (beta[k] === 0) continue;
     for (let i = k + 1; i < n; ++i) w[i] = a[i * n + k];
     for (let j = k + 1; j < n; ++j) {

@@ -1,4 +1,4 @@
-// Fields on the machine's surface as sums of the states' fields, which are kept as 16-bit numbers.
+// Fields on the machine's surface as sums of the states' fields, which are stored as 16-bit numbers.
 
 const decodeBytes = text => {
   const bytes = atob(text), out = new Uint8Array(bytes.length);
@@ -7,7 +7,7 @@ const decodeBytes = text => {
 };
 const doubles = text => new Float64Array(decodeBytes(text));
 
-// y = A x, A by rows.
+// y = A x, with A by rows.
 function product(rows, columns, a, x, y) {
   for (let i = 0; i < rows; ++i) {
     let sum = 0;
@@ -28,17 +28,17 @@ class SurfaceFields {
     this.isStill = this.displacement.value.length === 0;
     this.temperature_K = new Float32Array(this.n);   // over the reference
     this.displaced_m = new Float32Array(3 * this.n);
-    this.next = 0;  // node that the sum under way goes on with
+    this.next = 0;  // next node of the running sum
     this.state = null;
   }
 
-  // Begins to sum for a state; what stood there before stays until a node's turn.
+  // Starts a sum for a state; each node keeps its old value until its turn.
   begin(state) {
     this.state = Float64Array.from(state);
     this.next = 0;
   }
 
-  // Goes on for some milliseconds. @returns whether the fields are whole
+  // Continues for some milliseconds. @returns whether the fields are complete
   work(budget_ms) {
     const until = performance.now() + budget_ms;
     while (this.next < this.n) {

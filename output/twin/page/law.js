@@ -1,6 +1,7 @@
-// Laws as the writer of the page has tabulated them: what a source gives [W] or an exchange conducts, over drive and temperatures.
+// Tabulated laws of the page's data: the heat of a source [W] or the conductance of an exchange, over drive and
+// temperatures.
 
-// A sum over the variables of the drive: a polynomial of log x in Chebyshev's form in each piece, 0 at rest beside `rest`.
+// A sum over the variables of the drive: in each piece a polynomial of log x in Chebyshev form, 0 at rest, plus `rest`.
 // @param law    {rest, terms: [{variable, log_x, c}]}
 function driveLaw(law, drive) {
   let value = law.rest;
@@ -27,14 +28,14 @@ function driveLaw(law, drive) {
   return value;
 }
 
-// A law of temperatures under one drive: numbers over one or two axes, linear between nodes. What an axis looks at: the temperature of a
-// probe, or (minus >= 0) how much it is warmer than another one.
+// A law of temperatures under one drive: numbers over one or two axes, linear between nodes. An axis is the temperature
+// of a probe, or (minus >= 0) its difference to another probe.
 // @param tables  [{axes: [{probe, minus, nodes}], at: [law over the drive for each pair of nodes]}]
 function tablesUnder(tables, drive) {
   return tables.map(t => ({axes: t.axes, values: Float64Array.from(t.at, law => driveLaw(law, drive))}));
 }
 
-// Which piece of an axis holds x, and where in it; beyond the axis, its end.
+// The piece of an axis that contains x, and the position in it; the end of the axis for x beyond it.
 function placeOn(nodes, x) {
   let low = 0, high = nodes.length - 1;
   while (high - low > 1) {
@@ -45,8 +46,8 @@ function placeOn(nodes, x) {
   return [low, Math.min(1, Math.max(0, (x - nodes[low]) / (nodes[low + 1] - nodes[low])))];
 }
 
-// The law at some temperatures: each table adds what it differs from the value at usual temperatures.
-// @param probe_K  temperatures of all probes, absolute
+// The law at given temperatures: each table adds its difference from the value at usual temperatures.
+// @param probe_K  absolute temperatures of all probes
 function valueOfTables(usual, tables, probe_K) {
   let value = usual * (1 - tables.length);
   for (const {axes, values} of tables) {

@@ -1,8 +1,8 @@
-// The page beside a running machine: what each message of the server says, at once, and the last hours of it as curves.
+// The page beside a running machine: each message of the server at once, and the last hours as curves.
 
 const UNIT = {degC: "°C", um: "µm", urad: "µrad", mm_min: "mm/min", "1": "", W_m2: "W/m²"};
 const MOST_POINTS = 6000, WINDOW_s = 12 * 3600;
-const PATIENCE_ms = 6000;   // the server says something every 2 s
+const PATIENCE_ms = 6000;   // the server sends something every 2 s
 const AGAIN_ms = 1000;
 const clock = s => `${Math.floor(s / 3600)} h ${String(Math.floor(s / 60) % 60).padStart(2, "0")} min ${String(Math.floor(s) % 60).padStart(2, "0")} s`;
 
@@ -49,11 +49,11 @@ class LivePage {
     this.dirty.picture = true;
   }
 
-  // The stream of the server; where it ends it is asked again for what came since.
+  // The stream of the server; when it ends, it is requested again with what came since.
   connect() {
     const query = new URLSearchParams(location.search);
     query.set("since", this.last);
-    this.heard_ms = performance.now();  // as long again for the first answer; lost it stays until then
+    this.heard_ms = performance.now();  // the first answer may take as long; a lost connection is reported until then
     const source = this.source = new EventSource(`events?${query}`);
     source.addEventListener("row", event => {
       this.last = event.lastEventId;
@@ -75,7 +75,7 @@ class LivePage {
 
   hear(message) {
     this.heard();
-    if (message.head && this.head) return location.reload();  // another run, which may be of another machine
+    if (message.head && this.head) return location.reload();  // another run, possibly of another machine
     if (message.head) this.begin(message);
     for (const point of message.points) this.points.push(Float64Array.from(point, x => x ?? NaN));
     const end_s = message.run_s, begin = this.points.findIndex(p => p[0] >= end_s - WINDOW_s);
@@ -90,7 +90,7 @@ class LivePage {
     Object.assign(this.dirty, {charts: true, state: message.state.length > 0});
   }
 
-  // Of a server that is new to the page: what its rows hold, and all curves anew.
+  // Takes the head of a message from a server that is new to the page: the columns of its rows; all curves start again.
   begin({head}) {
     this.head = head;
     this.points = [];
@@ -137,7 +137,7 @@ class LivePage {
     return new Chart(canvas, unit);
   }
 
-  // The numbers of the line, as it has them.
+  // Shows the numbers of the line unchanged.
   tell() {
     const {line, values} = this.now, fixed = (x, digits) => x === null || x === undefined ? "–" : x.toFixed(digits);
     const fill = (table, rows) => {

@@ -2,13 +2,14 @@
 //
 //     K = K0 + sum c_e G_e,   f = sum P_s b_s + sum c_e (ambient g_e + o_e)
 //
-// In the eigenvectors of K a stretch of constant drive and linear ambient temperature is a sum of exponentials, exact over any step. Laws that
-// follow temperatures are held at their value where the stretch began; what they change beyond it enters by the exponential Runge-Kutta method of
-// second order (Cox & Matthews, J. Comput. Phys. 176 (2002) 430, ETD2RK), with steps by its error, and thermostats switch where their probe passes.
+// In the eigenvectors of K the solution over a stretch with constant drive and linear ambient is a sum of exponentials,
+// exact for any step. Laws of temperatures are held at their value at the start of the stretch; their change enters by
+// the exponential Runge-Kutta method of second order (Cox & Matthews, J. Comput. Phys. 176 (2002) 430, ETD2RK), with
+// steps by its error. Thermostats switch where their probe passes the limit.
 
 // e^-x, (1 - e^-x) / x and (1 - (1 - e^-x) / x) / x, x >= 0
 function decayOf(x) {
-  if (x < 1e-2) {  // differences of nearly equal numbers: their series
+  if (x < 1e-2) {  // avoids differences of nearly equal numbers
     return [Math.exp(-x), 1 - x / 2 * (1 - x / 3 * (1 - x / 4 * (1 - x / 5 * (1 - x / 6)))),
             0.5 - x / 6 * (1 - x / 4 * (1 - x / 5 * (1 - x / 6 * (1 - x / 7))))];
   }
@@ -23,7 +24,7 @@ function addTransposed(rows, columns, a, x, y) {
     if (xi !== 0) for (let j = 0; j < columns; ++j) y[j] += a[row + j] * xi;
   }
 }
-// The ambient over the reference temperature [K], linear between knots and constant outside.
+// The ambient over the reference temperature [K], linear between knots and constant outside of them.
 function ambientAt(ambient, time_s) {
   const t = ambient.time_s, v = ambient.value_K;
   if (!(time_s > t[0])) return v[0];
@@ -34,14 +35,14 @@ function ambientAt(ambient, time_s) {
 }
 
 class Machine {
-  static MOST_KEPT = 240;  // decompositions
+  static MOST_KEPT = 240;  // most decompositions that are stored
   static FIRST_STEP_S = 5;
-  static HELD_FROM = 0.6;    // what coefficients of temperature are held at, over what they are
+  static HELD_FROM = 0.6;    // lowest and highest ratio of held to present coefficients of temperature
   static HELD_TO = 1.7;
   static TYPICAL_K = 4;
-  static ERROR_K = 1e-3;   // of a step's first guess, at the outputs; 2 um count as 1 K
+  static ERROR_K = 1e-3;   // error of a step's first guess, at the outputs; 2 um count as 1 K
 
-  // @param m  the system, as the page's data have it
+  // @param m  the system, as in the page's data
   constructor(m) {
     Object.assign(this, m);
     this.kept = new Map();
@@ -57,7 +58,7 @@ class Machine {
     return next;
   }
 
-  // The law of a source or exchange that holds at a time.
+  // The law of a source or exchange at a time.
   lawAt(choices, time_s) {
     let stretch = 0;
     while (stretch < this.change_times_s.length && this.change_times_s[stretch] <= time_s + 1e-9) ++stretch;
@@ -80,7 +81,7 @@ class Machine {
     return into;
   }
 
-  // K of a set of coefficients in its eigenvectors; a generator, since that may take longer than a frame has.
+  // K of a set of coefficients, in its eigenvectors; a generator, since this may take longer than a frame.
   * decomposition(c) {
     const key = c.join();
     const known = this.kept.get(key);
@@ -97,7 +98,7 @@ class Machine {
     return d;
   }
 
-  // A law under a drive; tables of temperature are kept for the drive met last.
+  // A law under a drive; tables of temperature are stored for the last drive.
   under(choices, drive, time_s) {
     const law = this.lawAt(choices, time_s), key = drive.join();
     if (law.key !== key) {
@@ -109,9 +110,10 @@ class Machine {
     return {rest: law.rest, tables: law.live, thermostat: law.thermostat, typical: law.typical};
   }
 
-  // What holds from a state on while the drive stays: laws, decomposition, loads in the eigenvectors. Coefficients that follow temperatures are
-  // held at one value (now.held) while that is near enough: a decomposition costs more than what they change. It is no less than half of what is
-  // typical: what is left then damps less than what is held, however steep free convection begins.
+  // All that is constant from a state on while the drive stays: laws, decomposition, loads in the eigenvectors.
+  // Coefficients that depend on temperatures are held at one value (now.held) while it is close enough, since a
+  // decomposition costs more than their change. The value is at least half of the typical one: then the remainder damps
+  // less than the held part, however steep free convection begins.
   * stretch(drive, time_s, now) {
     const n = this.n, {z, isOn} = now;
     const powers = this.powers.map(choices => this.under(choices, drive, time_s));
@@ -135,7 +137,7 @@ class Machine {
             liveCoefficients: coefficients.map((law, e) => [law, e]).filter(([law]) => law.tables.length > 0)};
   }
 
-  // What laws of temperature add to the slopes beyond what the stretch holds them at, in the eigenvectors.
+  // What laws of temperature add to the slopes beyond their held values, in the eigenvectors.
   beyond(stretch, modes, ambient_K, z, into) {
     const n = this.n;
     z.fill(0);
@@ -157,7 +159,7 @@ class Machine {
     return product(n, n, stretch.d.vectors, heat, into);
   }
 
-  // Modes after a step in which the ambient is linear: of the linear system alone.
+  // The modes of the linear system alone after a step with linear ambient.
   linearStep(stretch, modes, time_s, h_s, into) {
     const d = stretch.d, ambient = ambientAt(this.ambient, time_s), slope = (ambientAt(this.ambient, time_s + h_s) - ambient) / h_s;
     if (Math.abs(h_s - d.step_s) > 1e-12 * h_s) {
@@ -175,7 +177,8 @@ class Machine {
     return this.probes(z, ambient_K)[t.probe] - (isOn[k] ? t.off_below_K : t.on_above_K);
   }
 
-  // From time_s to end_s under one drive. @param now  {z, isOn, step_s}: the state, which thermostats are on, the step tried next; changed
+  // From time_s to end_s under one drive.
+  // @param now  {z, isOn, step_s}: the state, which thermostats are on, and the next step to try; changed in place
   * advance(now, drive, time_s, end_s) {
     const n = this.n, {z, isOn} = now;
     while (time_s < end_s - 1e-9) {
@@ -193,7 +196,7 @@ class Machine {
     }
   }
 
-  // Steps until until_s, or until a thermostat switches. @returns  when that is; the modes change in place
+  // Steps until until_s, or until a thermostat switches. @returns the time reached; the modes change in place
   * followingSteps(stretch, modes, now, time_s, until_s) {
     const n = this.n, {z, isOn} = now, guess = new Float64Array(n), before = new Float64Array(n), after = new Float64Array(n), d = stretch.d;
     const room = new Float64Array(n), told = new Float64Array(this.n_outputs);
@@ -228,7 +231,7 @@ class Machine {
       }
       tries = 0;
       const passed = this.thermostats.findIndex((t, k) => passes(k, h_s));
-      if (passed >= 0) {  // halve the step to where it switches
+      if (passed >= 0) {  // halve the step to find where it switches
         let low = 0, high = h_s;
         while (high - low > 1e-3) {
           const middle = 0.5 * (low + high);

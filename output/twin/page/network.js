@@ -1,4 +1,4 @@
-// A machine of lumped nodes: circles in the colours of their temperatures, joined where heat passes.
+// A machine of lumped nodes: circles coloured by temperature, joined where heat is exchanged.
 
 const SVG = "http://www.w3.org/2000/svg";
 const svgElement = (parent, name, attributes, text = "") => {

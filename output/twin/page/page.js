@@ -1,6 +1,6 @@
-// The page: what a person sees and turns, and the frame that keeps it up to date.
+// The page: its controls, and the frame loop that keeps it up to date.
 
-const FRAME = {run_ms: 1.5, fields_ms: 1.5};  // of script, in each frame
+const FRAME = {run_ms: 1.5, fields_ms: 1.5};  // time for script in each frame
 const isLength = o => o.unit !== "degC";
 const UNIT = {degC: "°C", um: "µm", urad: "µrad"};
 
@@ -90,7 +90,7 @@ class Page {
     if (data.target >= 0) channel.value = data.target;
     channel.addEventListener("change", () => this.dirty.charts = true);
     byId("left-words").textContent = `as the correction leaves it (${data.correction.name})`;
-    for (const element of document.querySelectorAll(".driven")) element.hidden = data.drive.length === 0;  // a machine that stands still in its ambient
+    for (const element of document.querySelectorAll(".driven")) element.hidden = data.drive.length === 0;  // no drives
     byId("charts").classList.toggle("still", data.drive.length === 0);
     if (data.drive.length > 1) {
       const variable = document.createElement("select");
@@ -129,7 +129,7 @@ class Page {
     this.off = off;
   }
 
-  // What a person does.
+  // Actions of the user.
   choose(name) {
     byId("cyclogram").value = name;
     this.twin.time_s = 0;
@@ -161,7 +161,7 @@ class Page {
     Object.assign(this.dirty, {charts: true, fields: true, texts: true});
   }
 
-  // Script of a frame: model, fields, numbers. Drawing comes behind it, in draw().
+  // The script of a frame: model, fields, numbers. draw() follows it.
   update(now_ms) {
     const {twin, dirty} = this, passed_s = Math.min(0.1, (now_ms - (this.last_ms ?? now_ms)) / 1000);
     this.last_ms = now_ms;
@@ -228,7 +228,7 @@ class Page {
     if (!byId("marks").hidden) placeMarks(this.marks, scene, fields);
   }
 
-  // The colours span what has been seen of the run so far.
+  // Extends the range of colours to what the run has shown so far.
   reach(values_K) { this.range_K = reached(this.range_K, values_K, this.data.reference_degC); }
 
   drawCharts() {
@@ -266,7 +266,7 @@ class Page {
                run.end_s, [0, 1.04 * d.most]);
   }
 
-  // The moment of the largest drift, and a magnification at which the displacement then is seen.
+  // Goes to the moment of the largest drift, with a magnification that makes the displacement visible.
   showWorst() {
     const {twin, fields, scene} = this;
     const shown = this.drawn.length > 0 ? Number(byId("channel").value) : 0, at = twin.run.column(shown);

@@ -1,4 +1,4 @@
-// The machine beside what a page says of it: its colour bar, its scene, the names at its points.
+// The picture of the machine in a page: its scene, colour bar, and the names at its points.
 
 const byId = id => document.getElementById(id);
 
@@ -11,8 +11,8 @@ function paintBar(palette) {
   pen.putImageData(pixels, 0, 0);
 }
 
-// Colours from the lowest to the highest of what was seen before and is seen now, said at the ends of the bar.
-// @param range_K  [low, high] before, over the reference
+// The range of colours, from the lowest to the highest value seen so far and now; it is written at the ends of the bar.
+// @param range_K  [low, high] so far, over the reference
 function reached([low, high], values_K, reference_degC) {
   for (const v of values_K) {
     if (v < low) low = v;
@@ -24,7 +24,7 @@ function reached([low, high], values_K, reference_degC) {
   return [low, high];
 }
 
-// @returns null where it cannot be drawn; curves and numbers go on without the picture
+// @returns null if it cannot be drawn; curves and numbers work without the picture
 function sceneOf(surface, palette) {
   try {
     return new Scene(byId("machine"), {
@@ -46,7 +46,7 @@ function labelsOf(marks) {
   });
 }
 
-// Each at its point, its name beside it and below the names that it would cover.
+// Places each mark at its point, with its name beside it, moved down where names would overlap.
 function placeMarks(marks, scene, fields) {
   const [width, height] = [64, 17];
   const placed = marks.map(mark => {

@@ -1,11 +1,11 @@
-// Cyclograms as a person changes them: by drawing, by a slider from now on, as text.
+// Cyclograms that the user changes: by drawing, by a slider from now on, or as text.
 
-const BINS = 60;     // that a drawing has
+const BINS = 60;     // of a drawing
 const DRAWN_STEPS = 50;  // of the drive's largest value
 
 const copyOf = plan => plan.map(s => ({duration_s: s.duration_s, drive: Float64Array.from(s.drive)}));
 
-// Neighbours of the same drive are one section.
+// Joins neighbouring sections with the same drive.
 function merged(plan) {
   const list = [];
   for (const section of plan) {
@@ -17,7 +17,7 @@ function merged(plan) {
   return list;
 }
 
-// The plan with one variable of the drive at another value from a time on, to the plan's end.
+// The plan with one variable of the drive at another value, from a time to the plan's end.
 function changedFrom(plan, time_s, variable, value) {
   const list = [];
   let start = 0;
@@ -30,16 +30,16 @@ function changedFrom(plan, time_s, variable, value) {
   return merged(list);
 }
 
-// The plan in bins of even length, each with the drive in its middle.
+// The plan in bins of equal length, each with the drive at its middle.
 function binned(plan) {
   const end = planDuration(plan), width = end / BINS;
   return Array.from({length: BINS}, (_, i) => ({duration_s: width, drive: Float64Array.from(driveAt(plan, (i + 0.5) * width))}));
 }
 
-// "minutes, value, value": a section a line
+// "minutes, value, value": one section per line
 const planText = plan => plan.map(s => [+(s.duration_s / 60).toPrecision(10), ...Array.from(s.drive, v => +v.toPrecision(10))].join(", ")).join("\n");
 
-// @throws Error  saying what is wrong with which line
+// @throws Error  saying which line is wrong and why
 function planOf(text, drive) {
   const plan = [];
   text.split("\n").forEach((line, i) => {

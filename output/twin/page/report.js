@@ -1,4 +1,4 @@
-// With #report behind its address the page writes what it computes into itself, for whoever wants to compare it (docs/how-to/view.md).
+// With #report after its address the page writes its results into itself, for comparison (docs/how-to/view.md).
 
 const FRAMES = 100;  // of each kind that are timed
 const sorted = list => Float64Array.from(list).sort();
@@ -24,7 +24,7 @@ function reportOf(page) {
   return report;
 }
 
-// Script of frames [ms] while time goes on and somebody does something in each.
+// Script time of frames [ms] while time runs and `act` does something in each.
 function framesWhile(page, act, n) {
   page.choose(page.data.first);
   page.play(true);

@@ -1,8 +1,8 @@
-// A plan of sections run on the machine: rows of outputs and states, from the start to the end.
+// A plan of sections, run on the machine: rows of outputs and states, from the start to the end.
 
 const planDuration = plan => plan.reduce((sum, section) => sum + section.duration_s, 0);
 
-// The drive at a time; the last section's behind the end.
+// The drive at a time; after the end that of the last section.
 function driveAt(plan, time_s) {
   let start = 0;
   for (const section of plan) {
@@ -13,7 +13,7 @@ function driveAt(plan, time_s) {
 }
 
 class Run {
-  // @param before, from_s  a run of which the rows up to that time hold here, too
+  // @param before, from_s  a run whose rows up to that time are taken over
   constructor(machine, plan, interval_s, before = null, from_s = 0) {
     this.machine = machine;
     this.plan = plan;
@@ -43,7 +43,7 @@ class Run {
 
   get isDone() { return this.n_done === this.time_s.length; }
 
-  // Goes on row by row; gives way within a row where that takes long.
+  // Computes row by row; yields within a row that takes long.
   * work() {
     const m = this.machine, n = m.n, k = m.thermostats.length, ambient = t => ambientAt(m.ambient, t);
     const now = {z: new Float64Array(n), isOn: null, step_s: 0};
@@ -87,7 +87,7 @@ class Run {
     return this;
   }
 
-  // Between which rows a time is, and where: of rows that are done.
+  // The rows around a time, and its position between them; only among finished rows.
   place(time_s) {
     const last = this.n_done - 1;
     if (last <= 0) return [0, 0, 0];
@@ -100,7 +100,7 @@ class Run {
     return [low, high, Math.min(1, Math.max(0, (time_s - this.time_s[low]) / (this.time_s[high] - this.time_s[low])))];
   }
 
-  // Linear between rows, which is far below what a picture shows.
+  // Linear interpolation between rows; its error is far too small to see.
   between(values, width, time_s, into) {
     const [low, high, share] = this.place(time_s);
     for (let i = 0; i < width; ++i)
@@ -114,7 +114,7 @@ class Run {
   }
 }
 
-// How far runs of the page are from what was embedded: the largest difference in K and in um (1 urad counts as 1 um).
+// The largest differences between runs of the page and the embedded rows, in K and in um (1 urad counts as 1 um).
 function largestDifference(run, check) {
   const largest = {K: 0, um: 0}, n = run.machine.n_outputs;
   run.machine.outputs_told.forEach((output, o) => {

@@ -117,7 +117,7 @@ class Scene {
             sx * right[2], sy * up[2], -sz * away[2], 0, pan[0] - sx * dot(right), pan[1] - sy * dot(up), sz * dot(away), 1];
   }
 
-  // Where a point is in the canvas, in CSS pixels.
+  // The position of a point in the canvas, in CSS pixels.
   project(point) {
     const m = this.matrix(), x = k => m[k] * point[0] + m[4 + k] * point[1] + m[8 + k] * point[2] + m[12 + k];
     return [0.5 * (1 + x(0)) * this.canvas.clientWidth, 0.5 * (1 - x(1)) * this.canvas.clientHeight];
@@ -154,7 +154,7 @@ class Scene {
   }
 }
 
-// Mouse, finger and keys turn the machine.
+// Mouse, touch and keys turn the machine.
 function handle(scene, changed) {
   const canvas = scene.canvas;
   let from = null;

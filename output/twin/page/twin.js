@@ -1,4 +1,4 @@
-// The twin without a page: the data made into a machine, the plan that runs, the present time.
+// The twin without a page: the machine from the data, the running plan, and the present time.
 
 function machineOf(m) {
   const laws = list => list.map(choices => ({
@@ -14,12 +14,12 @@ function machineOf(m) {
   return new Machine({...m, ...numbers, powers: laws(m.powers), coefficients: laws(m.coefficients),
                       ambient: {time_s: doubles(m.ambient.time_s), value_K: doubles(m.ambient.value_K)}});
 }
-// A law of the drive; a mere number where it is constant.
+// A law of the drive; a plain number if it is constant.
 const lawOf = law => typeof law === "number" ? {rest: law, terms: []} :
     {rest: law.rest, terms: law.terms.map(t => ({variable: t.variable, log_x: doubles(t.log_x), c: doubles(t.c)}))};
 
 class Twin {
-  static MOST_ROWS = 3000;  // of a run that is shown
+  static MOST_ROWS = 3000;  // of a displayed run
 
   constructor(data) {
     this.data = data;
@@ -33,10 +33,10 @@ class Twin {
 
   cyclogram(name) { return this.cyclograms.find(c => c.name === name).plan; }
 
-  // The rows that `driftwright predict` would give of a plan.
+  // The rows that `driftwright predict` would give for a plan.
   rowsOf(plan) { return new Run(this.machine, plan, this.data.interval_s).finish(); }
 
-  // Runs another plan; rows before from_s are those of the plan before.
+  // Runs another plan; rows before from_s are those of the previous plan.
   take(plan, from_s = 0) {
     const interval_s = this.data.interval_s, rows = planDuration(plan) / interval_s;
     const shown_s = interval_s * Math.max(1, Math.ceil(rows / Twin.MOST_ROWS));
@@ -45,7 +45,7 @@ class Twin {
     this.time_s = Math.min(this.time_s, this.run.end_s);
   }
 
-  // Goes on with the run for some milliseconds. @returns whether it has gone on
+  // Continues the run for some milliseconds. @returns whether it advanced
   work(budget_ms) {
     if (this.run.isDone) return false;
     const until = performance.now() + budget_ms;
@@ -53,10 +53,10 @@ class Twin {
     return true;
   }
 
-  // One variable of the drive from now on.
+  // Sets one variable of the drive from now on.
   setDrive(variable, value) { this.take(changedFrom(this.run.plan, this.time_s, variable, value), this.time_s); }
 
-  // Time goes on; what is not known yet is waited for. @returns outputs()
+  // Advances time, and computes rows that are missing. @returns outputs()
   step(dt_s) {
     this.time_s = Math.min(this.run.end_s, this.time_s + dt_s);
     while (!this.isKnown()) this.working.next();
@@ -64,7 +64,7 @@ class Twin {
   }
   isKnown() { return this.run.isDone || (this.run.n_done > 0 && this.run.time_s[this.run.n_done - 1] >= this.time_s); }
 
-  // What the instruments say now, by name, in their units.
+  // The present readings of the instruments, by name, in their units.
   outputs() {
     this.run.outputsAt(this.time_s, this.told);
     return Object.fromEntries(this.machine.outputs_told.map((o, i) => [o.name, this.told[i]]));
@@ -72,7 +72,7 @@ class Twin {
   stateNow() { return this.run.stateAt(this.time_s, this.state); }
   ambientNow_K() { return ambientAt(this.machine.ambient, this.time_s); }
 
-  // Whether the page says what `driftwright predict` says: the largest differences over the rows that came with it.
+  // Compares the page with `driftwright predict`: the largest differences over the embedded rows.
   check() {
     const {check} = this.data, values = doubles(check.values);
     const run = this.rowsOf(this.cyclogram(check.cyclogram));
