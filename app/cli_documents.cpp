@@ -76,7 +76,8 @@ std::string man_page(const CLI::App& cli, const std::string& version) {
   std::string text = fmt::format(
       ".TH DRIFTWRIGHT 1 \"\" \"driftwright {}\" \"User Commands\"\n.SH NAME\ndriftwright \\- {}\n.SH SYNOPSIS\n.B "
       "driftwright\n"
-      ".I VERB FILE\n[\\fIOPTIONS\\fR]\n.SH DESCRIPTION\n{}. Each verb reads a scenario in YAML and writes its results into "
+      ".I VERB FILE\n[\\fIOPTIONS\\fR]\n.SH DESCRIPTION\n{}. Most verbs read a scenario in YAML and write their results "
+      "into "
       "a folder.\n.SH OPTIONS\n",
       version, roff("digital twin of a machine tool's thermal behaviour"), roff(cli.get_description()));
   add_options(text, cli);
@@ -87,9 +88,9 @@ std::string man_page(const CLI::App& cli, const std::string& version) {
     if (!verb->get_footer().empty()) text += fmt::format(".PP\n.nf\n{}\n.fi\n", roff(verb->get_footer()));
   }
   return text +
-         ".SH EXIT STATUS\n0 done; 1 a bug of ours; 2 the input is wrong; 3 the numerics gave up; 130 ended by Ctrl\\-C, "
-         "what was known "
-         "written (diagnose).\n";
+         ".SH EXIT STATUS\n0 done; 1 a bug in Driftwright; 2 the input is wrong, or something is missing; 3 the solver "
+         "failed; "
+         "130 ended by Ctrl\\-C (diagnose then writes its results so far).\n";
 }
 
 std::string bash_completion(const CLI::App& cli) {

@@ -187,6 +187,7 @@ void compensate(const CompensateOptions& options) {
   if (options.model != "modes") {
     output::PredictorFile file = from_file(scenario, options.model);
     predictor = std::move(file.predictor);
+    if (predictor->fail_safe) limit(*predictor->fail_safe, scenario.limits.correction);
     judged_as = std::move(file.judged);
   }
   const Cyclogram* cyclogram = nullptr;

@@ -63,6 +63,7 @@ std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, 
                             .fade_s = quantity("--fade", options.fade, "s"),
                             .for_picture = options.serve.has_value(),
                             .watch = options.watch,
+                            .no_watch = options.no_watch,
                             .despite_verdict = options.despite_verdict};
   std::vector<follow::Session::Model> models;
   for (const std::string& path : options.models) {

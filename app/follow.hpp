@@ -26,7 +26,8 @@ struct FollowVerbOptions {
   std::string token;                ///< that it asks for; "@FILE": its first line
   std::string slew, hold, fade;     ///< "0.5 um/s", "5 min", "10 min"; empty: the model's own
   bool despite_verdict = false;     ///< models that `validate` calls unsafe are followed, too
-  std::string watch;                ///< limits of the watch; empty: none
+  std::string watch;                ///< limits of the watch; empty: those of the model's file
+  bool no_watch = false;            ///< nothing is watched
   std::string calibrate_watch;      ///< file that limits are written to, in place of following; empty: none
   std::string top_speed;            ///< with that: "2500 rpm"
 };

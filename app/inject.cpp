@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -184,6 +185,7 @@ class Filter {
                                          .unit = options.unit,
                                          .column = options.column,
                                          .is_strict = options.strict}),
+        most_quarters_(most_quarters(options, rules_.quarters)),
         converter_(rules_.quarters),
         injector_(rules_, options.clocked, options.separation, options.interval) {}
 
@@ -215,6 +217,25 @@ class Filter {
  private:
   static std::string made_by() { return fmt::format("driftwright {} inject", kVersion); }
 
+  /// The largest correction in whole insertions [quarter steps].
+  static double most_quarters(const InjectOptions& options, int quarters_per_insertion) {
+    const double limit_um = positive_quantity("--limit", options.limit, "um");
+    if (limit_um == 0.0) return std::numeric_limits<double>::infinity();
+    const double period_um = positive_quantity("--period", options.period, "um");
+    if (period_um == 0.0) throw InputError("--limit requires --period, the travel of one signal period");
+    const double insertion_um = quarters_per_insertion * period_um / kQuartersPerPeriod;
+    return quarters_per_insertion * std::floor(limit_um / insertion_um * (1.0 + 1e-9));
+  }
+
+  double within_limit(double quarters) {
+    if (!(std::abs(quarters) > most_quarters_)) return quarters;
+    if (!is_limited_)
+      tell(fmt::format("inject: row {}: the correction is larger than --limit {}; it is held at this limit\n", n_rows_ + 1,
+                       options_.limit));
+    is_limited_ = true;
+    return std::copysign(most_quarters_, quarters);
+  }
+
   void begin(Lines first, bool has_index) {
     has_index_ = has_index;
     control_ = QuadratureCounter(first);
@@ -234,7 +255,7 @@ class Filter {
     const std::size_t block = files_.any() ? 1 : rows.size();  // the files need each row
     out_.clear();
     for (std::size_t i = 0; i < rows.size();) {
-      const double told = correction_.quarters_at(n_rows_ + 1), wish = is_withdrawn_ ? 0.0 : told;
+      const double told = correction_.quarters_at(n_rows_ + 1), wish = is_withdrawn_ ? 0.0 : within_limit(told);
       target_ = converter_.insertions(wish) * rules_.quarters;
       injector_.set_target(target_);
       const std::int64_t same = correction_.holds_until() - n_rows_;
@@ -347,6 +368,8 @@ class Filter {
   Counting counting_;
   double row_s_;
   compensation::CorrectionInput correction_;
+  double most_quarters_;
+  bool is_limited_ = false;  // it has been said
   CountConverter converter_;
   RowInjector injector_;
   SideFiles files_;

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "compensation/control/control_files.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "findings/strategy_section.hpp"
+#include "follow/watch_json.hpp"
+#include "follow/watch_trial.hpp"
 #include "output/document_json.hpp"
 #include "output/drift_model_c.hpp"
 #include "output/drift_model_files.hpp"
@@ -28,28 +29,31 @@ std::optional<output::DeployedModel> formula_of(const JudgedStrategy& s) {
                                s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
+/// Limits by which `follow` watches an observer; null for others, and for an observer that no stream can feed.
+Json watch_of(const JudgedStrategy& s, const StrategyMatrix& m, const Listener& listener) {
+  const auto* observer = dynamic_cast<const Observer*>(s.fitted.predictor.get());
+  if (!observer || s.fitted.ambient.empty()) return nullptr;
+  const std::optional<follow::WatchLimits> limits = follow::deployed_limits(*observer, m.training, listener);
+  return limits ? follow::limits_json(*limits) : Json(nullptr);
+}
+
 }  // namespace
 
 void write_models(const compensation::StrategyMatrix& m, const std::vector<effects::Effect>& effects,
-                  output::ResultsFolder& folder) {
+                  output::ResultsFolder& folder, const Listener& listener) {
   const Json conditions = output::section_json(findings::conditions_of(m));
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
-    std::string name;
-    for (char ch : s.fitted.name) {
-      if (std::isalnum(static_cast<unsigned char>(ch))) {
-        name += ch;
-      } else if (!name.empty() && name.back() != '_') {
-        name += '_';
-      }
-    }
+    const std::string name = findings::model_file_name(s.fitted.name);
     Json judged = conditions;
     for (const compensation::JudgedRunOfMachine& r : m.runs)
       judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
     judged["with_failed_sensors"] = m.settings.fails_at.has_value();
     judged.update(output::section_json({.blocks = {findings::strategies_table(m, {&s})}})["strategies"][0]);
-    folder.write_text(fmt::format("models/{}.json", name),
-                      output::predictor_json({s.fitted, std::move(judged)}, effects, folder.made_by()).dump(1) + "\n");
+    folder.write_text(
+        fmt::format("models/{}.json", name),
+        output::predictor_json({s.fitted, std::move(judged), watch_of(s, m, listener)}, effects, folder.made_by()).dump(1) +
+            "\n");
     const std::optional<output::DeployedModel> formula = formula_of(s);
     if (!formula) continue;
     folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));

@@ -40,6 +40,7 @@ void plan_test(const PlanTestOptions& options) {
   if (!options.interval.empty())
     how.interval_s = quantity("--interval", options.interval, "s", finest_s, how.duration_s / 96.0);
   if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+  scenarios::require_speed_within_limits(scenario, how.most_speed_rpm, "--speed-limit");
   if (!options.noise_K.empty()) how.noise.temperature_K = quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
   if (!options.noise_um.empty())
     how.noise.displacement_um = quantity("--noise-displacement", options.noise_um, "um", 1e-3, 1e3);

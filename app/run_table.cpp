@@ -12,8 +12,9 @@ namespace driftwright::app {
 
 namespace {
 
-compensation::FrameProgram frame_program(const scenarios::TableSettings& s, const studies::TableStudy& study,
+compensation::FrameProgram frame_program(const scenarios::Scenario& scenario, const studies::TableStudy& study,
                                          const output::Provenance& made_by) {
+  const scenarios::TableSettings& s = *scenario.table;
   compensation::FrameProgram program{.frame = study.frame, .control = study.control, .against_dk = s.against_dk};
   for (const scenarios::TableRing& ring : s.rings) program.rings.push_back({ring.name, ring.at_m});
   program.temperature_K = study.run.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
@@ -24,6 +25,7 @@ compensation::FrameProgram frame_program(const scenarios::TableSettings& s, cons
   program.slew = s.slew;
   program.low_m = s.low_m[0];
   program.high_m = s.high_m[0];
+  program.most_correction_um = scenario.limits.correction.most_um;
   program.made_by = fmt::format("Driftwright {}, scenario {}", made_by.version, made_by.scenario);
   return program;
 }
@@ -48,7 +50,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   folder.write_text("record.csv", record_csv(study.run.record, comments("cyclogram " + scenario.table->cyclogram)));
   folder.write_text("strategies.csv",
                     findings::strategies_csv(study, comments("largest position error anywhere on the table")));
-  const compensation::FrameProgram program = frame_program(*scenario.table, study, folder.made_by());
+  const compensation::FrameProgram program = frame_program(scenario, study, folder.made_by());
   const std::string why_no_program = compensation::why_no_program(program.rings);
   if (why_no_program.empty()) {
     for (const compensation::ProgramFile& file :

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -63,35 +64,6 @@ std::string between(const ScheduleVerbOptions& options, const scenarios::Schedul
   return settings.between_s > 0.0 ? fmt::format("{} s", settings.between_s) : "";
 }
 
-/// Plans all parts and writes the programs.
-void correct(CorrectedSeries& series, const std::string& bytes) {
-  const scenarios::ScheduleSettings& settings = series.settings;
-  NcOffsetOptions offsets{.dialect = series.program.dialect,
-                          .absolute = settings.absolute,
-                          .work_offset = settings.work_offset,
-                          .base_m = settings.base_offset_m,
-                          .axes = {false, false, false}};
-  for (const scenarios::ScheduleAxis& axis : settings.axes) offsets.axes[axis.axis] = true;
-  const std::vector<scenarios::PartRows>& rows = series.prediction.parts;
-  const std::vector<double> time_s = part_times_s(series.prediction, rows.front(), series.program.duration_s());
-  std::vector<std::vector<compensation::ProgramAxis>> parts;
-  for (const scenarios::PartRows& part : rows) {
-    if (part.last - part.first != rows.front().last - rows.front().first)
-      throw std::logic_error("parts of one program with other rows");
-    parts.push_back(axes_of(series, part));
-  }
-  const compensation::ProgramScheduleOptions how{.policy = studies::policy_of(settings.policy), .split = series.split};
-  for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
-    CorrectedProgram program{
-        .file = studies::corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
-    program.corrected =
-        corrected_nc_program(bytes, series.program.steps, compensation::initial_shift_m(shared.plan, shared.axes),
-                             compensation::offset_changes(shared.plan, shared.axes), offsets);
-    program.shared = std::move(shared);
-    series.programs.push_back(std::move(program));
-  }
-}
-
 /// The highest speed [rpm] that the scenario knows: of its cyclograms, or at which a law states its heat or growth; 0:
 /// none.
 double known_speed_rpm(const scenarios::Scenario& scenario) {
@@ -108,29 +80,114 @@ double known_speed_rpm(const scenarios::Scenario& scenario) {
   return top_rpm;
 }
 
-/// @throws InputError  with the line, for a speed above those that the scenario knows
-void require_known_speeds(const scenarios::Scenario& scenario, const NcProgram& program) {
-  constexpr double kRounding = 1.0 + 1e-9;  // of units: 2000 rpm through 1/s and back
+/// The limits of the scenario, with its own defaults for speed and feed.
+MachineLimits limits_for(const scenarios::Scenario& scenario, const scenarios::ScheduleSettings& settings) {
+  MachineLimits limits = scenario.limits;
   const double top_rpm = known_speed_rpm(scenario);
-  if (top_rpm == 0.0) return;  // no law or cyclogram has a speed
-  double t_s = 0.0;
-  for (const NcMove& move : program.moves) {
-    t_s += move.duration_s;
-    if (!(move.speed_rpm > top_rpm * kRounding)) continue;
-    const auto step = std::find_if(program.steps.begin(), program.steps.end(),
-                                   [&](const NcStep& s) { return s.end_s >= t_s && s.end_s > s.start_s; });
-    const std::string what = fmt::format(
-        "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned there would be "
-        "made up. Give a cyclogram that reaches it, correct the S word, or add --beyond",
-        move.speed_rpm, scenario.path, top_rpm);
-    throw step == program.steps.end() ? InputError(what) : InputError(step->where, what);
+  if (std::isinf(limits.speed_rpm) && top_rpm > 0.0) limits.speed_rpm = top_rpm;  // 0: no law or cyclogram has a speed
+  if (std::isinf(limits.feed_m_s) && settings.nc.rapid_m_s) limits.feed_m_s = *settings.nc.rapid_m_s;
+  return limits;
+}
+
+/// @throws InputError  with the line, for the first block beyond a limit
+void refuse_beyond(const CorrectedSeries& series, const scenarios::Scenario& scenario) {
+  if (series.beyond.empty()) return;
+  using What = compensation::BlockBeyond::What;
+  const compensation::BlockBeyond& block = series.beyond.front();
+  const std::string_view word = block.what == What::kSpeed ? "S word" : block.what == What::kFeed ? "F word" : "position";
+  std::string whose;  // where the limit is written
+  if (block.what == What::kTravel) {
+    whose = "`travel` of `limits`";
+  } else if (block.what == What::kFeed) {
+    whose = std::isfinite(scenario.limits.feed_m_s) ? "`feed` of `limits`" : "as fast as `rapid` of `schedule`";
+  } else if (std::isfinite(scenario.limits.speed_rpm)) {
+    whose = "`speed` of `limits`";
+  }
+  const std::string what =
+      !whose.empty()
+          ? fmt::format("{} ({} in {}). Correct the {}, or add --beyond, which holds the correction there",
+                        compensation::words_of(block), whose, scenario.path, word)
+          : fmt::format(
+                "the spindle turns at {:g} rpm here, and {} says nothing of a speed above {:g} rpm: a drift planned "
+                "there would be made up. Give a cyclogram that reaches it, correct the S word, or add --beyond, "
+                "which holds the correction there",
+                block.value, scenario.path, block.limit);
+  throw InputError(series.program.steps[block.step].where, what);
+}
+
+/// @throws InputError  with the line, for the first correction that a limit does not allow
+void refuse_held(const CorrectedSeries& series, const scenarios::Scenario& scenario) {
+  for (const CorrectedProgram& program : series.programs) {
+    const compensation::ProgramSchedule& plan = program.shared.plan;
+    if (plan.held.empty()) continue;
+    const compensation::HeldCorrection& held = plan.held.front();
+    const std::string axis(1, "XYZ"[series.settings.axes[held.axis].axis]);
+    const CorrectionLimits& limits = series.limits.correction;
+    const std::string what =
+        held.is_step
+            ? fmt::format(
+                  "the correction of {} would change from {:g} to {:g} um here, but `step` of `limits` in {} allows "
+                  "{:g} um at once. Allow a larger step, or add --beyond, which holds the correction",
+                  axis, held.held_um, held.planned_um, scenario.path, limits.most_step_um)
+            : fmt::format(
+                  "the correction of {} would be {:g} um here, but `correction` of `limits` in {} allows {:g} um at "
+                  "most. Allow a larger correction, or add --beyond, which holds the correction",
+                  axis, held.planned_um, scenario.path, limits.most_um);
+    throw InputError(series.program.steps[held.first].where, what);
+  }
+}
+
+/// Comments for the corrected program: the limits that its corrections keep.
+std::vector<std::string> limit_remarks(const CorrectedSeries& series) {
+  const CorrectionLimits& limits = series.limits.correction;
+  std::vector<std::string> remarks;
+  if (std::isfinite(limits.most_um))
+    remarks.push_back(fmt::format("no correction is larger than {:g} um, the limit of the scenario", limits.most_um));
+  if (std::isfinite(limits.most_step_um))
+    remarks.push_back(
+        fmt::format("no correction changes by more than {:g} um at once, the limit of the scenario", limits.most_step_um));
+  if (!series.beyond.empty())
+    remarks.emplace_back("BEYOND THE LIMITS. In blocks beyond the limits of the machine the correction is held");
+  return remarks;
+}
+
+/// Plans all parts and writes the programs.
+void correct(CorrectedSeries& series, const std::string& bytes) {
+  const scenarios::ScheduleSettings& settings = series.settings;
+  NcOffsetOptions offsets{.dialect = series.program.dialect,
+                          .absolute = settings.absolute,
+                          .work_offset = settings.work_offset,
+                          .base_m = settings.base_offset_m,
+                          .axes = {false, false, false},
+                          .remarks = limit_remarks(series)};
+  for (const scenarios::ScheduleAxis& axis : settings.axes) offsets.axes[axis.axis] = true;
+  const std::vector<scenarios::PartRows>& rows = series.prediction.parts;
+  const std::vector<double> time_s = part_times_s(series.prediction, rows.front(), series.program.duration_s());
+  std::vector<std::vector<compensation::ProgramAxis>> parts;
+  for (const scenarios::PartRows& part : rows) {
+    if (part.last - part.first != rows.front().last - rows.front().first)
+      throw std::logic_error("parts of one program with other rows");
+    parts.push_back(axes_of(series, part));
+  }
+  compensation::ProgramScheduleOptions how{
+      .policy = studies::policy_of(settings.policy), .split = series.split, .limits = series.limits.correction};
+  if (!series.beyond.empty()) how.held_steps.assign(series.program.steps.size(), 0);
+  for (const compensation::BlockBeyond& block : series.beyond) how.held_steps[block.step] = 1;
+  for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
+    CorrectedProgram program{
+        .file = studies::corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
+    program.corrected =
+        corrected_nc_program(bytes, series.program.steps, compensation::initial_shift_m(shared.plan, shared.axes),
+                             compensation::offset_changes(shared.plan, shared.axes), offsets);
+    program.shared = std::move(shared);
+    series.programs.push_back(std::move(program));
   }
 }
 
 }  // namespace
 
 void schedule(const ScheduleVerbOptions& options) {
-  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
+  scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "schedule");
   const std::filesystem::path given = options.program;
   CorrectedSeries series{.file = file_name(given.stem().string(), given.extension().string()),
@@ -148,7 +205,10 @@ void schedule(const ScheduleVerbOptions& options) {
   if (!options.between.empty() && parts == 1)
     throw InputError("--between is the time between two parts, and there is one: give --parts, or `parts` in the schedule");
   series.program = read_nc_program(options.program, settings.nc);
-  if (!options.beyond) require_known_speeds(scenario, series.program);
+  series.limits = limits_for(scenario, settings);
+  series.beyond = compensation::blocks_beyond(series.program.steps, series.limits);
+  if (!options.beyond) refuse_beyond(series, scenario);
+  if (options.beyond) scenario.limits.speed_rpm = std::numeric_limits<double>::infinity();  // predicted by extrapolation
   const std::string bytes = read_bytes(options.program);
   series.cyclogram = scenarios::cyclogram_of(series.program, std::filesystem::path(series.file).stem().string(),
                                              settings.resolution_s, settings.cutting_power_W);
@@ -170,6 +230,7 @@ void schedule(const ScheduleVerbOptions& options) {
   series.iso = studies::iso_figures(prediction);
   progress.begin("planning corrections");
   correct(series, bytes);
+  if (!options.beyond) refuse_held(series, scenario);
   const std::string what =
       fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, clean_name(options.program),
                   series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",

@@ -15,9 +15,9 @@ namespace driftwright::app {
 namespace {
 
 void write_strategies(const compensation::StrategyMatrix& matrix, const scenarios::Scenario& scenario,
-                      output::ResultsFolder& folder) {
+                      output::ResultsFolder& folder, const Listener& listener) {
   folder.write_text("strategies.csv", output::table_csv(findings::cases_table(matrix), folder.made_by()));
-  write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder);
+  write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder, listener);
 }
 
 /// What strategies are judged on where the scenario does not say it, in words for the user.
@@ -72,7 +72,7 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
   std::string seconds;
   if (scenario.validation) {
     const compensation::StrategyMatrix matrix = studies::validate_strategies(scenario, model, progress.listener());
-    write_strategies(matrix, scenario, folder);
+    write_strategies(matrix, scenario, folder, progress.listener());
     document.body.sections.push_back(findings::strategy_section(matrix));
     if (!note.empty())
       document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
@@ -129,7 +129,7 @@ void validate(const RecordOptions& options) {
   const compensation::StrategyMatrix matrix =
       studies::validate_on_records(scenario, std::move(records), progress.listener());
   warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
-  write_strategies(matrix, scenario, folder);
+  write_strategies(matrix, scenario, folder, progress.listener());
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + ": strategies judged on records they were not fitted on"};
   document.body.sections.push_back(findings::strategy_section(matrix));

@@ -104,7 +104,7 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string policy;   ///< empty: the scenario's
   std::string dialect;  ///< empty: the scenario's
   bool split = false;   ///< divide blocks that cannot keep the tolerance
-  bool beyond = false;  ///< also plan at speeds above those that the scenario mentions
+  bool beyond = false;  ///< also plan beyond the limits of the machine, where corrections are then held
   std::string start;    ///< `start` to `model`: as in PredictOptions
   std::string after_pause;
   std::string model;
@@ -117,6 +117,7 @@ struct InjectOptions {
   std::string correction;        ///< table, FIFO or /dev/fd/N (compensation/injector/correction_input.hpp)
   std::string unit = "um";       ///< of numbers from a pipe: um or count
   std::string period;            ///< travel of one signal period, "4 um"; empty: corrections are in counts
+  std::string limit;             ///< largest correction by size, "50 um"; empty: none
   std::string row_time;          ///< time of a row, "1 ms"; empty: corrections are by row
   std::string counts = "x4";     ///< how the control counts: x4, x2, x1
   std::string insert = "cycle";  ///< cycle, half, quarter

@@ -54,6 +54,7 @@ void warmup(const WarmUpVerbOptions& options) {
   if (!options.model_error.empty()) how.model_error = quantity("--model-error", options.model_error, "1", 0.001, 1.0);
   if (!options.power_limit.empty()) how.most_power_W = quantity("--power-limit", options.power_limit, "W", 0.1, 1e6);
   if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+  scenarios::require_speed_within_limits(scenario, how.most_speed_rpm, "--speed-limit");
   if (!options.time_limit.empty()) how.most_s = quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);
   const Cyclogram job = job_of(scenario, options.then);
   output::ResultsFolder folder = open_results(options, scenario.name);

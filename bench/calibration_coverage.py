@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""How often the 95 % intervals of `driftwright calibrate` hold where the model is right, and in how many machines `identify --prior` then learns something that is not there:
+"""Counts how often the 95 % intervals of `driftwright calibrate` contain the truth if the model is right, and in how many machines `identify --prior` then learns something that does not exist:
 calibration_coverage.py PROGRAM [MACHINES [SEED]]
 
-Machines of two bodies whose numbers differ from the scenario's by 10 % (exponent 3 %), one sigma; two records of each, 0.05 K and 0.3 um of noise. Standard library only.
+The machines have two bodies, and their numbers differ from the scenario's by 10 % (exponent 3 %), one sigma. Each has two records with 0.05 K and 0.3 um of noise. It needs only the standard library.
 """
 import csv
 import glob

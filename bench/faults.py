@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Every verb under faults of the environment; prints the table of docs/theory/verification_faults.md.
+"""Runs every verb under faults of the environment and prints the table of docs/theory/verification_faults.md.
 
     bench/faults.py [PROGRAM] [--meshed [--cell MM]] [--kills N] [--verbs simulate,diagnose,...]
-    bench/faults.py build/asan/app/driftwright --sanitized      each verb once, undisturbed, by a program with sanitizers in it, and what they report
+    bench/faults.py build/asan/app/driftwright --sanitized      each verb once, without faults, by a program built with sanitizers, and what they report
 
-On a lumped machine; with --meshed on one that `init` makes of a drawing, a box of 100 mm, in cells of `init`'s own size or of another one.
+The machine is lumped; with --meshed `init` makes it from a drawing, a box of 100 mm, with the mesh size of `init` or with --cell.
 
 Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
 that is missing or takes no file, an empty PATH (no gnuplot, no C compiler), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
 random parts of the usual time, and a second run after each.
 
-A verb passes where it ends with 0, 2 or 3 (130 behind Ctrl-C) and words, in time, where its results then are whole or not there, and where 0 and the run
-after a kill give the same bytes as the undisturbed one; exit code 1 where one does not. Full disks want root (a small tmpfs is mounted); without, they
-are left out.
+A verb passes if three things hold. It ends in time with 0, 2 or 3 (130 after Ctrl-C) and a message. Its results are then complete or absent. Runs that end
+with 0, and the run after a kill, give the same bytes as the undisturbed run. Otherwise this script ends with exit code 1. Full disks require root (a small
+tmpfs is mounted); without root they are left out.
 """
 import argparse, os, random, re, resource, shutil, signal, subprocess, sys, tempfile, time
 from pathlib import Path
@@ -32,7 +32,7 @@ schedule: {tolerance: 10 um, rapid: 15 m/min, tool_change: 8 s, axes: {z: {displ
 
 
 def small_scenario(work):
-    """The smallest shipped machine with what `run`, `validate` and `schedule` want of a scenario."""
+    """The smallest shipped machine, with the blocks that `run`, `validate` and `schedule` require."""
     text = (TOP / "scenarios/first_machine.yaml").read_text()
     assert "\ncyclograms:" in text
     path = work / "small.yaml"
@@ -41,7 +41,7 @@ def small_scenario(work):
 
 
 def meshed_scenario(program, work, cell_mm):
-    """The same of a box from a drawing, in which 20 W warm the spindle. @param cell_mm  None: as `init` has it"""
+    """The same for a box from a drawing; 20 W warm its spindle. @param cell_mm  None: the mesh size of `init`"""
     subprocess.run([program, "init", "box", "--from", TOP / "tests/fuzz/corpus/meshes/box.step"], check=True, cwd=work, capture_output=True)
     path = work / "box/box.yaml"
     text = path.read_text().replace("drift_z", "nose_z")
@@ -62,7 +62,7 @@ def meshed_sweep(scenario, work):
 
 
 def verbs(small, first, drawn, sweep, record, others):
-    """Words behind the program: OUT is a folder or file of results; without it, what counts is on standard output."""
+    """Arguments of the program for each verb. OUT is the folder or file of results; a verb without it writes its results to standard output."""
     shift, climb, other = record, *others
     return {
         "list": ["list", "effects"],
@@ -94,7 +94,7 @@ def verbs(small, first, drawn, sweep, record, others):
 
 
 class Trial:
-    """How a run ended: `code`, or "killed" or "hangs"; what it wrote to standard error and, where that is kept, to standard output."""
+    """How a run ended (`code`, "killed" or "hangs"), and what it wrote to standard error and, if kept, to standard output."""
 
     def __init__(self, code, err, time_s, said=None):
         self.code, self.err, self.time_s, self.said = code, err, time_s, said
@@ -132,15 +132,15 @@ def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None
 
 
 def results(out):
-    """Bytes of a folder or file of results by name; None where there is none."""
+    """Bytes of a folder or file of results by name; None if it does not exist."""
     if out.is_file():
         return {out.name: out.read_bytes()}
     return {str(p.relative_to(out)): p.read_bytes() for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
 
 
 def judged(trial, also=()):
-    """'2' where that is what it should be; '**1: ...**' where it is not."""
-    if trial.code == -signal.SIGINT and 130 in also:  # as shells tell it, where there was nothing to put away yet
+    """'2' if that is the right exit code; '**1: ...**' if it is not."""
+    if trial.code == -signal.SIGINT and 130 in also:  # exit code as a shell gives it, if the verb had written nothing yet
         return "130"
     if trial.code in also or trial.code in (0, 2, 3) and (trial.code == 0 or trial.err.strip()):
         return str(trial.code)
@@ -175,7 +175,7 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
     def verdict(trial, where=out, also=(), is_said=True):
         cell = judged(trial, also)
         left = results(where) if writes else None
-        is_said_incomplete = trial.code == 130 and b'"complete": false' in (left or {}).get("diagnosis.json", b"")  # what a diagnosis knows by then
+        is_said_incomplete = trial.code == 130 and b'"complete": false' in (left or {}).get("diagnosis.json", b"")  # the results of a diagnosis so far
         if writes and left is not None and left != right and not is_said_incomplete:
             cell += " **other bytes**" if trial.code == 0 else " **half of it**"
         if writes and trial.code == 0 and left is None:
@@ -212,7 +212,7 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
     cells.append(verdict(run(command, work / ("x" * 300), work, env, stdin=stdin), work / "nowhere") if writes else "-")
 
     def cut_short(how, also):
-        """After random parts of the usual time: the results are there whole or not, nothing stays beside them, and another run gives the same bytes."""
+        """Ends the verb after random parts of its usual time. The results must be complete or absent, no other file may remain, and another run must give the same bytes."""
         worst = ""
         for _ in range(n_kills):
             remove(out)
@@ -233,7 +233,7 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
 
 
 def sanitized_row(verb, command, stdin, work, env):
-    """Exit code, seconds and how many reports sanitizers write, of the program and of all processes that it starts, with the file that keeps them."""
+    """Exit code, seconds and number of sanitizer reports, for the program and all processes that it starts, with the file that contains the reports."""
     logs = work / "reports" / verb
     logs.mkdir(parents=True)
     usual = {name: f"{env.get(name, '')}:log_path={logs}/{name[:4].lower()}" for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS")}

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""How soon `driftwright follow` answers a row, and how much memory it takes over many (docs/how-to/follow.md).
+"""Measures how soon `driftwright follow` answers a row, and how much memory it takes over many rows (docs/how-to/follow.md).
 
-    follow.py PROGRAM latency RECORD.csv [rows] -- MODEL...    each row said when the one before it is answered: quantiles of the time between
-    follow.py PROGRAM memory  RECORD.csv ROWS   -- MODEL...    the record again and again, its time going on: resident memory on the way
+    follow.py PROGRAM latency RECORD.csv [rows] -- MODEL...    sends each row once the last one is answered; quantiles of the answer times
+    follow.py PROGRAM memory  RECORD.csv ROWS   -- MODEL...    sends the record again and again, with times that continue; resident memory
     follow.py PROGRAM trial   RECORD.csv [pace] -- MODEL...    24 h of the record at 1000 times its pace over a mosquitto that is killed 20 times, with rows
                                                                late, doubled, swapped, missing, none; clocks that are set; a thermometer that is pulled
 """
@@ -19,7 +19,7 @@ import tempfile
 import threading
 import time
 
-CHECKED = {factor * 10**power for factor in (1, 2, 5) for power in range(3, 9)}  # rows after which memory is looked at
+CHECKED = {factor * 10**power for factor in (1, 2, 5) for power in range(3, 9)}  # numbers of rows after which memory is measured
 
 
 def rows_of(path):
@@ -35,7 +35,7 @@ def resident_kB(process):
 
 
 KILLS, TRIAL_s, PULLED_s, SLEW_UM_S = 20, 86400.0, 8 * 3600.0, 0.02
-CLOCKS = [(5 * 3600.0, 3000.0), (14 * 3600.0, -7200.0), (20 * 3600.0, 30 * 86400.0)]  # at which hour the source's clock is set, by how much
+CLOCKS = [(5 * 3600.0, 3000.0), (14 * 3600.0, -7200.0), (20 * 3600.0, 30 * 86400.0)]  # hour at which the source's clock is set, and by how much
 
 
 def broker(folder, port):
@@ -51,7 +51,7 @@ def broker(folder, port):
 
 
 class Trial:
-    """One run: rows published through the broker with faults; what was said, and when."""
+    """One run: rows are published through the broker with faults; it keeps each line and its time."""
 
     def __init__(self, program, record, pace, models):
         self.header, rows = rows_of(record)
@@ -71,7 +71,7 @@ class Trial:
             self.lines.append((time.perf_counter(), json.loads(text)))
 
     def speak(self):
-        """A publisher that takes lines; it ends with its broker."""
+        """Starts a publisher of lines, which ends with its broker."""
         return subprocess.Popen(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(self.port), "-t", "row", "-l"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL,
                                 text=True, bufsize=1)
 
@@ -96,7 +96,7 @@ class Trial:
         threading.Thread(target=self.listen, daemon=True).start()
         self.speaker = self.speak()
         first_s, length_s = float(self.rows[0]["time_s"]), float(self.rows[-1]["time_s"]) - float(self.rows[0]["time_s"])
-        for _ in range(200):  # until it hears
+        for _ in range(200):  # until it has subscribed
             self.publish(self.rows[0], first_s)
             time.sleep(0.1)
             if self.lines:
@@ -123,7 +123,7 @@ class Trial:
                 self.count("clock set")
             cells, time_s, kind = dict(cells), run_s + offset_s, self.draw.random()
             if run_s >= PULLED_s:
-                cells[self.pulled] = "22"  # it hangs in the air
+                cells[self.pulled] = "22"  # the thermometer hangs in the air
             if kind < 0.02:
                 self.count("missing")
                 continue
@@ -152,7 +152,7 @@ class Trial:
         return words
 
     def judge(self):
-        """Steps against the slew limit; what is left against no correction, at the row's own place in the run as the guard saw it."""
+        """Compares steps with the slew limit, and the residual with no correction, at the time of each row as `follow` took it."""
         first_s = float(self.rows[0]["time_s"])
         axes = list(self.lines[0][1]["axes"])
         most_step, why = 0.0, {}
@@ -187,7 +187,7 @@ class Trial:
 
     @staticmethod
     def on_record_clock(in_force):
-        """Times of lines without the steps of the source's clock: lines come in their order."""
+        """Times of lines without the steps of the source's clock; lines come in order."""
         at, shift_s, clocks, last_s = [], 0.0, list(CLOCKS), 0.0
         for time_s, corrections in in_force:
             while clocks and abs(time_s - (shift_s + clocks[0][1]) - last_s) < abs(time_s - shift_s - last_s):

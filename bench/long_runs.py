@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs that are long or often cut short: `inject` at constant memory, and a sweep that is killed again and again.
+"""Long runs and runs that are killed often: `inject` at constant memory, and a sweep that is killed again and again.
 
     bench/long_runs.py [PROGRAM] [--rows 100000000] [--members 10000] [--kills 20] [--only inject|sweep]
 
-`inject` reads as many encoder rows as asked from a pipe; its largest resident memory over the whole run is held against that of a thousandth of the rows.
-The sweep is scenarios/lumped_sweep.yaml with as many members as asked: once undisturbed, once killed with SIGKILL after random parts of that time
-and started again. Both folders of results are compared byte by byte. Prints what was measured; exit code 1 where a promise is broken.
+`inject` reads --rows encoder rows from a pipe. Its largest resident memory is compared with that for a thousandth of the rows.
+The sweep is scenarios/lumped_sweep.yaml with --members members. It runs once undisturbed, and once killed with SIGKILL after random parts of that time
+and started again. Both folders of results are compared byte by byte. The script prints the measurements; exit code 1 means that a check failed.
 """
 import argparse, os, random, subprocess, sys, tempfile, threading, time
 from pathlib import Path
@@ -52,7 +52,7 @@ def sweep(program, work, n_members, n_kills):
     began = time.time()
     subprocess.run([*command, work / "undisturbed"], check=True)
     usual_s = time.time() - began
-    # A run that is killed goes on from where it was: its parts last as long together as the undisturbed run, and none ends early.
+    # A killed run continues from where it was. Its parts together last as long as the undisturbed run, and none ends early.
     n_killed = 0
     while n_killed < n_kills:
         process = subprocess.Popen([*command, out])

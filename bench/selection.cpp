@@ -30,7 +30,7 @@ double least_s(int times, const Work& work) {
   return least;
 }
 
-/// Sensors behind lags of a random load, alike as those of a machine are.
+/// Sensors that follow a random load with lags and resemble each other like those of a machine.
 Record record_of(std::uint64_t seed, int n_rows, int n_sensors) {
   Random random(seed, 5);
   Record r{.source = fmt::format("record {}", seed), .time_s = {}, .channels = {}};

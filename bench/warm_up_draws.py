@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""A warm-up that was planned on a scenario, on machines whose numbers are other ones: each power, friction, film, joint and link is multiplied by exp(sigma N(0, 1)), the machine
-is meshed, reduced and run anew by `predict --start warmup.csv`, and its peak counts.
+"""Tests a warm-up that was planned on a scenario on machines with other numbers. Each power, friction, film, joint and link is multiplied by exp(sigma N(0, 1)). The machine
+is meshed, reduced and run again by `predict --start warmup.csv`, and its peak drift is judged.
 
     bench/warm_up_draws.py PROGRAM SCENARIO JOB WARMUP_CSV TOLERANCE_UM [SIGMA=0.2] [MACHINES=100] [FIRST_SEED=1]
 
-Prints a row a machine, then how many stayed within the tolerance, with the 95 % interval of Clopper and Pearson. The reduced machines are kept in a folder of its own.
+It prints one row per machine, then how many stayed within the tolerance, with the 95 % interval of Clopper and Pearson. The reduced machines are kept in a separate folder.
 """
 import csv
 import os
@@ -19,7 +19,7 @@ SCATTERED = ["power", "idle", "f0", "f1", "film", "growth", "conductance", "exch
 
 
 def scattered(text, sigma, seed):
-    """Of each effect one factor for all its scattered numbers."""
+    """Multiplies all scattered numbers of an effect by one random factor."""
     draw = random.Random(seed)
     lines, factor, inside = [], 1.0, False
     for line in text.splitlines():
@@ -35,7 +35,7 @@ def scattered(text, sigma, seed):
 
 
 def within(n, k):
-    """Bounds of a share, by bisection of the binomial sums."""
+    """Bounds of a share, found by bisection of the binomial sums."""
     from math import comb
 
     def below(p, most):

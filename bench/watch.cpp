@@ -4,7 +4,8 @@
 //
 // MODEL.json is an observer of `validate`. Thresholds are simulated as `follow --calibrate-watch` does. Then MACHINES
 // others (100) work for DAYS (16) with nothing wrong, and CASES faults (60) of five sorts begin in machines of their own
-// at unknown hours.
+// at unknown hours. The correction is followed over the same faults: how often it is calm (trust above 0.95) and more than
+// twice its interval off, and what it leaves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,8 @@
 #include <numeric>
 
 #include "base/random.hpp"
+#include "compensation/predictors/deployed_follower.hpp"
+#include "compensation/predictors/score.hpp"
 #include "follow/watch_trial.hpp"
 #include "output/predictor_file.hpp"
 
@@ -41,6 +44,34 @@ std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimit
     if (watch.alarm() && !was_raised) raised.push_back(t_s);
   }
   return raised;
+}
+
+/// What a deployed observer of the machine does over a run.
+struct Followed {
+  int n_rows = 0, n_calm_and_wrong = 0, n_faded = 0;
+  double rms_left_um = 0.0, rms_before_um = 0.0;
+};
+Followed followed(const compensation::DeployedPredictor& judged, const TrialMachine& machine,
+                  const compensation::ObservedRun& run) {
+  compensation::DeployedPredictor d = judged;
+  d.predictor = std::make_shared<compensation::Observer>(machine.observer());
+  compensation::DeployedFollower follower(d);
+  compensation::ObservedRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
+  growing.readings.time_s.clear();
+  const std::vector<double>& drift_um = run.readings.at(d.target).values;
+  Followed f;
+  std::vector<double> left_um;
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    growing.readings.time_s.push_back(run.readings.time_s[i]);
+    const compensation::FollowedCorrection now = follower.next(growing);
+    left_um.push_back(drift_um[i] - now.correction_um);
+    ++f.n_rows;
+    f.n_faded += now.trust < 0.9;
+    f.n_calm_and_wrong += now.trust > 0.95 && std::abs(left_um.back()) > 2.0 * now.interval_um.value_or(INFINITY);
+  }
+  f.rms_left_um = compensation::score(left_um).rmse;
+  f.rms_before_um = compensation::score(drift_um).rmse;
+  return f;
 }
 
 /// 95 % interval of alarms a month: of machines drawn with replacement, since alarms of one machine are no independent ones.
@@ -120,6 +151,7 @@ int main(int argc, char** argv) {
     Kind kind;
     bool is_seen = false, was_early = false, is_drawn = false;
     double after_h = 0.0, tau_h = 0.0, nats = 0.0;
+    Followed followed;
   };
   std::vector<Case> cases(static_cast<std::size_t>(n_cases));
 #pragma omp parallel for schedule(dynamic, 1)
@@ -136,7 +168,9 @@ int main(int argc, char** argv) {
       if (one.nats < 16.0) continue;
       one.is_drawn = true;
       one.tau_h = tau_s / 3600.0;
-      for (double t_s : alarms(machine, limits, machine.work(end_s, fault, 60000 + i), nullptr)) {
+      const compensation::ObservedRun run = machine.work(end_s, fault, 60000 + i, true);
+      one.followed = followed(file.predictor, machine, run);
+      for (double t_s : alarms(machine, limits, run, nullptr)) {
         if (t_s < fault.onset_s) {
           one.was_early = true;
         } else if (!one.is_seen) {
@@ -147,7 +181,7 @@ int main(int argc, char** argv) {
     }
   }
   std::map<std::string, std::array<int, 3>> of_kind;
-  int n_seen = 0, n_drawn = 0;
+  int n_seen = 0, n_drawn = 0, n_rows = 0, n_calm_and_wrong = 0, n_worse = 0;
   for (const Case& c : cases) {
     auto& [n, seen, early] = of_kind[follow::words(c.kind)];
     if (!c.is_drawn) continue;
@@ -156,10 +190,18 @@ int main(int argc, char** argv) {
     seen += c.is_seen;
     n_seen += c.is_seen;
     early += c.was_early;
-    fmt::print("  {:<22} tau {:5.2f} h  {:8.0f} nats  {}\n", follow::words(c.kind), c.tau_h, c.nats,
-               c.is_seen ? fmt::format("seen after {:.2f} h", c.after_h) : "not seen");
+    fmt::print("  {:<22} tau {:5.2f} h  {:8.0f} nats  {}; {:.1f} of {:.1f} um left, calm and wrong in {} of {} rows\n",
+               follow::words(c.kind), c.tau_h, c.nats,
+               c.is_seen ? fmt::format("seen after {:.2f} h", c.after_h) : "not seen", c.followed.rms_left_um,
+               c.followed.rms_before_um, c.followed.n_calm_and_wrong, c.followed.n_rows);
+    n_rows += c.followed.n_rows;
+    n_calm_and_wrong += c.followed.n_calm_and_wrong;
+    n_worse += c.followed.rms_left_um > 1.05 * c.followed.rms_before_um;
   }
   for (const auto& [kind, n] : of_kind)
     fmt::print("{:<24} {} of {} within 3 time constants, {} with an alarm before\n", kind, n[1], n[0], n[2]);
   fmt::print("all {} of {}\n", n_seen, n_drawn);
+  fmt::print(
+      "correction calm and more than twice its interval off: {} of {} rows ({:.2f} %); {} cases left worse than none\n",
+      n_calm_and_wrong, n_rows, 100.0 * n_calm_and_wrong / std::max(1, n_rows), n_worse);
 }

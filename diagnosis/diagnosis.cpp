@@ -171,8 +171,9 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
                .keeps_numbers = true,
                .causes_alone = true,
                .why_nothing =
-                   "of a single record of which more is left only causes of 20 nats are written that tell of no time, are "
-                   "found again without its last third and do no harm there"};
+                   "for a single record with an unexplained rest, a cause is written only if it has 20 nats, has no time of "
+                   "its own, is "
+                   "found again without the last third of the record, and does not worsen the prediction of this third"};
   Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
   numbers_as_written.set_noise(fitter.noise(), fitter.shared_noise());
   d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
@@ -198,7 +199,7 @@ void leave_incomplete(Diagnosis& d, const std::string& stage) {
   if (d.verdict == Verdict::kConsistent) d.verdict = Verdict::kInsufficientData;
   if (d.verdict == Verdict::kNamed || d.verdict == Verdict::kAmbiguous) d.verdict = Verdict::kSuspected;
   d.reason = fmt::format("Ended at \"{}\", before it was complete. {}", stage,
-                         d.causes.empty() ? "Nothing stands up so far." : "So far: " + reason_of(d));
+                         d.causes.empty() ? "No cause was found so far." : "So far: " + reason_of(d));
 }
 
 /// Laws times readings times records times the cost of a prediction: the time of one search without each record.
@@ -272,7 +273,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
       cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
-      leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
+      leave_out(cause.alternatives.back(), "the cause from which it cannot be distinguished is written instead");
       cause.alternatives.back().probability = a.probability;
       cause.alternatives.back().share = a.share;
     }
@@ -316,7 +317,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   if (is_wrong_all_over(d)) doubt_all(d, "too many of the scenario's own numbers had to go beyond what is known of them");
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {
-    doubt_all(d, "the readings are too few to tell causes apart");
+    doubt_all(d, "the readings are too few to distinguish causes");
     if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
   }
   if (d.verdict == Verdict::kUnexplained) doubt_all(d, "more is left than it explains");

@@ -13,16 +13,16 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kMostIterations = 16;  // and one more for each time that slopes are taken anew
-constexpr double kConverged = 0.02;  // in Φ
-constexpr double kFar = 2.0;         // sigmas that a number has gone from where scatter's slopes were taken
-constexpr double kAtBound = 1e-6;    // of a step
-constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
+constexpr int kMostIterations = 16;  // plus one for each time that slopes are recomputed
+constexpr double kConverged = 0.02;  // decrease of Φ below which a fit has converged
+constexpr double kFar = 2.0;         // distance in sigmas after which scatter's slopes are recomputed
+constexpr double kAtBound = 1e-6;    // share of a step
+constexpr double kPromised = 1.0;    // decrease of Φ that the slopes predicted but that did not happen
 constexpr int kMostRetakes = 3;
-constexpr int kPatience = 5;           // steps after which
-constexpr double kOutOfReach = 3.0;    // times the misfit of interest is given up
-constexpr double kOutOfReachBy = 100;  // and so much more,
-constexpr double kFallen = 0.7;        // where it has not fallen to this share of itself in three steps
+constexpr int kPatience = 5;           // after this number of steps a fit is given up if its misfit is
+constexpr double kOutOfReach = 3.0;    // this many times the misfit of interest,
+constexpr double kOutOfReachBy = 100;  // larger by this difference,
+constexpr double kFallen = 0.7;        // and has not fallen to this share in three steps
 constexpr double kTail = 4.0;          // degrees of freedom of a claim's prior
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
@@ -48,12 +48,12 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   return smooth;
 }
 
-/// H s = g, no further than bounds let the first of x go: those that the step would carry beyond end there, and the others are solved for anew.
-/// @param x, most  of the first numbers: where they are, and how far from zero they may be
+/// Solves H s = g within bounds of the first numbers of x: a number whose step would pass its bound ends there, and the others are solved again.
+/// @param x, most  values of the first numbers, and their largest distances from zero
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& most) {
   Eigen::VectorXd step = hessian.llt().solve(gradient);
-  Eigen::VectorXd ends = Eigen::VectorXd::Zero(gradient.size());  // steps of those that end at their bound
+  Eigen::VectorXd ends = Eigen::VectorXd::Zero(gradient.size());  // steps of numbers that end at their bound
   std::vector<Eigen::Index> bound;
   for (Eigen::Index turn = 0; turn < x.size(); ++turn) {
     const std::size_t n_before = bound.size();
@@ -89,7 +89,7 @@ bool acts_alike(const effects::Effect& a, const effects::Effect& b) {
          });
 }
 
-/// Whether a state does in a run what another one does that it was made of by changing numbers and adding effects behind.
+/// Whether two states act equally in a run. The first was made from the second by changing numbers and appending effects.
 bool acts_alike(const TwinState& before, const TwinState& after, const std::string& run) {
   for (std::size_t i = 0; i < after.size(); ++i) {
     const bool is_there = i < before.size();
@@ -175,8 +175,7 @@ Eigen::VectorXd Fitter::prior_width(const Hypothesis& hypothesis, const Eigen::V
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     const Eigen::Index at = n_nuisance() + static_cast<Eigen::Index>(k);
-    if (smooth[k] && !knobs[k]->is_time)
-      width[at] = heavy_tailed_width(width[at], x[at]);  // the prior of the others is flat
+    if (smooth[k] && !knobs[k]->is_time) width[at] = heavy_tailed_width(width[at], x[at]);  // all others have a flat prior
   }
   return width;
 }
@@ -268,8 +267,8 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
     if (std::abs(moved(by)) < kAtBound * std::abs(by)) return p;
     return has_solution([&] { p = predict_beside(here, base, hypothesis, turned, workspace, about); }) ? p : Prediction{};
   };
-  // From both sides: where capacities, conductances and heats change alike nothing does, and the bends of one-sided slopes, which do not cancel, would say that
-  // this is known far better than it is.
+  // Differences from both sides: if capacities, conductances and heats change by the same factor, no reading changes. The curvature errors of one-sided slopes do not cancel
+  // there, so this direction would seem far better known than it is.
   for (double share : {1.0, 0.1}) {  // a machine that is about to run away has a solution on one side only
     const double step = share * knob.step;
     Prediction above = beside(step), below = beside(-step);
@@ -342,7 +341,7 @@ Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) c
   Prediction base;
   const Eigen::VectorXd x = of_machine(at.x);
   {
-    Twin::Workspace workspace(twin_);  // as new as those that are held against it
+    Twin::Workspace workspace(twin_);  // computed at the same place as the slopes they are compared with
     base = predict(hypothesis, x, workspace);
     about = kept_runs(state(hypothesis, x), workspace);
   }
@@ -374,7 +373,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   const Eigen::VectorXd sd = prior_sd(hypothesis);
   const auto into_range = [&](Eigen::VectorXd& x) {
-    const auto to_bound = [](const Knob& knob, double& number) {  // beyond it a number has no slope
+    const auto to_bound = [](const Knob& knob, double& number) {  // beyond its bound a number has no slope
       if (const double value = knob.value(number); value == knob.low || value == knob.high) number = knob.x(value);
     };
     for (std::size_t i = 0; i < scatter_.size(); ++i) {
@@ -412,7 +411,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   look(f, responses, false);
   if (f.prediction.empty() || f.misfit >= 1e300) throw SolveError("the machine has no solution where the fit begins");
 
-  // Scatter's slopes are those of the fitter, taken anew where a fit has gone far from there.
+  // Scatter's slopes are those of the fitter; they are recomputed where a fit has moved far.
   Eigen::MatrixXd own_slopes, own_squares;
   const Eigen::MatrixXd *nuisance_slopes = &slopes_, *nuisance_squares = &squares_;
   Eigen::VectorXd taken_at = nuisance_;
@@ -473,9 +472,9 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
   }
   std::vector<double> passed;  // misfits
-  double searched_at = 1e300;  // misfit where no other time was better
+  double searched_at = 1e300;  // misfit at which no other time was better
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
-  // Times wait for the first step: linear theory chose them with all other numbers moved, and by those that are not moved yet a better time is a worse one.
+  // Times are fixed during the first step: linear theory chose them together with moves of all other numbers, and before these moves the search for better times would be misled.
   for (int iteration = search_times ? -1 : 0; iteration < kMostIterations + n_retakes; ++iteration) {
     const bool times_wait = iteration < 0;
     differentiate(false);
@@ -487,7 +486,8 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     gradient.tail(n_k) = f.slopes.transpose() * f.residual;
     gradient -= f.x.cwiseProduct(known);
     for (Eigen::Index k = 0; k < n_k; ++k) {
-      if (!smooth[static_cast<std::size_t>(k)]) gradient[n_n + k] = 0.0;  // no slope: stays where the search has put it
+      if (!smooth[static_cast<std::size_t>(k)])
+        gradient[n_n + k] = 0.0;  // no slope: the number keeps its value from the search
     }
     const auto hold = [&](Eigen::Index i) {
       hessian.row(i).setZero();

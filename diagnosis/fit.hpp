@@ -70,14 +70,14 @@ class Fitter {
   void add_linear(const std::vector<Prediction>& columns);
   /// How well one of scatter's numbers is known: 1 sigma of its prior.
   void set_prior_sd(std::size_t number, double prior_sd) { scatter_.at(number).prior_sd = prior_sd; }
-  /// No fit takes one of scatter's numbers further than this from what the scenario says: one that is further off is a fault, and a statement says it.
+  /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and statements look for it.
   void hold_within(double sigmas) { most_sigmas_ = sigmas; }
   /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
   void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
-  /// Scatter's slopes as they were taken last; or taken anew where a fit ends far from there.
+  /// Scatter's slopes of the last settle(); or recomputed where a fit has moved far.
   enum class Slopes { kKept, kTakenAnew };
   /// @param start       x of the claims, in order; scatter starts where it was last settled
   /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one that has no solution
@@ -90,7 +90,7 @@ class Fitter {
                                Slopes slopes = Slopes::kTakenAnew) const;
   static constexpr double kAny = 1e300;
 
-  /// Scatter and linear columns where they were settled last.
+  /// Scatter and linear columns of the last settle().
   [[nodiscard]] const Eigen::VectorXd& settled() const { return nuisance_; }
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }

@@ -13,12 +13,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSharper = 0.9;   // noise without what the causes explain, over that with it: it is estimated anew
-constexpr double kLessSlow = 0.5;  // and its slow part: causes that come and go had been taken for noise that follows itself
-constexpr double kSeenSlow = 0.2;  // of the white part: a slow part below changes nothing
+constexpr double kSharper =
+    0.9;  // ratio of the noise without the explained part to that with it; below, the noise is estimated again
+constexpr double kLessSlow = 0.5;        // the same for its slow part: repeated causes had been taken for correlated noise
+constexpr double kSeenSlow = 0.2;        // share of the white part; a smaller slow part is ignored
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
 
-/// What the search leaves; the mesh's error is that of the machine with what was found.
+/// The part that the search leaves unexplained; the mesh's error is computed for the machine with the causes.
 std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Inquiry& of,
                                         Twin::Workspace& workspace) {
   const Fitter& fitter = *of.fitter;
@@ -34,7 +35,7 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   return unexplained_of(again, same, of.noise);
 }
 
-/// Numbers that have gone as far as they may are faults: they get the prior of one. @returns  whether there are any more of them
+/// Numbers that moved to their limit are faults: they get the prior of a fault. @returns  whether there are new ones
 bool widen_moved(Inquiry& of) {
   Fitter& fitter = *of.fitter;
   bool any = false;
@@ -49,8 +50,8 @@ bool widen_moved(Inquiry& of) {
   return any;
 }
 
-/// Numbers that are no further off than is known of them once others are faults, too, are none.
-/// @param known  as the scenario says. @returns  whether any came back
+/// A number that is back within its limit, beside the other faults, is no fault: it gets the scenario's prior again.
+/// @param known  with the scenario's priors. @returns  whether there are any
 bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
   return std::erase_if(of.moved, [&](std::size_t i) {
            const double sd = known[i].prior_sd;
@@ -60,7 +61,7 @@ bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
          }) > 0;
 }
 
-/// Searches, and once more beside numbers that turn out to be faults.
+/// Searches; if some numbers turn out to be faults, searches once more with these numbers free.
 void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
                          const std::vector<Knob>& known, const Listener& listener) {
   of.search = search(*of.fitter, names, how, &of.search, listener);
@@ -73,7 +74,7 @@ void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const
   (void)has_solution([&] { of.search.without = of.fitter->fit({}, Eigen::VectorXd(0), workspace); });
 }
 
-/// Searches again by what the model misses: as heat that comes and goes in its bodies, or as slow noise of its channels.
+/// Searches again with the model's error as process noise (heat in its bodies) or as slow noise of its channels.
 void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
                           const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
                           Twin::Workspace& workspace, const Listener& listener) {
@@ -135,7 +136,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   of.fitter->hold_within(kTooFar);
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   of.fitter->set_noise(of.noise);
-  (void)has_solution([&] {  // what the scenario's own numbers explain is no noise
+  (void)has_solution([&] {  // the part explained by the scenario's own numbers is no noise
     Twin::Workspace workspace(ground.twin);
     const Fit fit = of.fitter->fit({}, Eigen::VectorXd(0), workspace);
     for (const auto& [name, noise] : estimate_noise(runs, fit.prediction, options.floor)) {

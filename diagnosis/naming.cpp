@@ -220,6 +220,12 @@ bool says(const Statement& s, const std::string& effect, const std::string& wher
   }
 }
 
+std::optional<StatedQuantity> quantity_of(const std::string& effect) {
+  const auto of = quantities().find(effect);
+  if (of == quantities().end()) return std::nullopt;
+  return of->second.front();
+}
+
 const Stated* stated_as(const Posterior& posterior, const std::string& effect, const std::string& where) {
   for (const Stated& s : posterior.stated) {
     if (says(s.says, effect, where) || (s.windows && says(s.windows->says, effect, where))) return &s;

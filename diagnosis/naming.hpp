@@ -14,6 +14,10 @@ using StatedPlace = std::pair<StatedQuantity, std::vector<std::string>>;
 /// @param where  names of bodies, channels or the ambient, separated by commas
 [[nodiscard]] bool says(const Statement& statement, const std::string& effect, const std::string& where);
 
+/// What an effect changes: the first of the quantities that its key can mean; none for a key that is not part of the
+/// shipped catalogue.
+[[nodiscard]] std::optional<StatedQuantity> quantity_of(const std::string& effect);
+
 /// The likeliest statement that an effect at a place can name; null if none has a probability of at least 0.01.
 [[nodiscard]] const Stated* stated_as(const Posterior& posterior, const std::string& effect, const std::string& where);
 

@@ -58,7 +58,7 @@ std::vector<std::size_t> open_rivals(const std::vector<Rival>& rivals) {
   if (!is_kind_open && odds.place >= kSure) return {};
   const std::vector<double> shares = shares_of(rivals);
   std::vector<std::size_t> order;
-  double told = 0.0;  // share of the claim, and of those with the same meaning
+  double told = 0.0;  // share of the claim and of claims with the same meaning
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     if (i == 0 || rivals[i].says_the_same) {
       told += shares[i];

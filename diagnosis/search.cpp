@@ -34,8 +34,8 @@ constexpr std::size_t kMostKnown = 64;
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 constexpr double kEvenOdds = 0.5;     // that nothing is wrong
 
-/// Fits some hypotheses side by side.
-/// @param numbers  where scatter begins. @param of_interest, slopes  as Fitter::fit()
+/// Fits several hypotheses in parallel.
+/// @param numbers  start of scatter. @param of_interest, slopes  as Fitter::fit_others()
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
                          const Eigen::VectorXd& numbers, double of_interest = Fitter::kAny,
                          Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew) {
@@ -52,26 +52,26 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
   return fits;
 }
 
-/// Fits one from where scatter was settled.
+/// Fits one hypothesis from the last settled scatter.
 Fit fit_one(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims) {
   return fit_all(fitter, {{hypothesis, claims}}, fitter.settled()).front();
 }
 
-/// What a search has to look at, which grows while it goes on.
+/// Inputs of a search; the list of names grows during the search.
 struct Ground {
   const Fitter& fitter;
   std::vector<Candidate> candidates;
-  std::vector<StatedPlace> names;      ///< of each candidate, what its statement is about
-  std::map<StatedPlace, Stated> said;  ///< that statement, when it was first named
-  /// What the last statements say of each place.
+  std::vector<StatedPlace> names;      ///< quantity and place of each candidate's statement
+  std::map<StatedPlace, Stated> said;  ///< the statement when it was first named
+  /// The last statements about each place.
   struct OfPlace {
     double probability = 0.0;
     double evidence = 0.0;  ///< [nats]
   };
   std::map<StatedPlace, OfPlace> of_place = {};
-  double power = 1.0;  ///< that evidence counts with between them
+  double power = 1.0;  ///< exponent of evidence when statements are compared
   std::vector<Signature> columns;
-  /// Whether a claim names the same statement: what is missing at one place is claimed once.
+  /// Whether a claim names the same statement: a missing quantity at one place is claimed only once.
   [[nodiscard]] bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) const {
     return std::any_of(hypothesis.begin(), hypothesis.end(),
                        [&](const Claim& c) { return names[c.candidate] == names[candidate]; });
@@ -81,7 +81,7 @@ struct Ground {
       return names[c.candidate] == StatedPlace{s.quantity, s.place};
     });
   }
-  /// What is not claimed is about what is stated now, whatever it was first a name of.
+  /// Unclaimed candidates belong to the present statements, whichever statement they named first.
   void name_anew(const Posterior& now, const Hypothesis& claimed) {
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       if (std::any_of(claimed.begin(), claimed.end(), [&](const Claim& claim) { return claim.candidate == c; })) continue;
@@ -91,7 +91,7 @@ struct Ground {
       said.try_emplace(names[c], *s);
     }
   }
-  /// Adds names, and laws of those that are there. @returns  the laws added
+  /// Adds names, and further laws of existing names. @returns  the added laws
   std::vector<Law> add(const Posterior& stated, const std::vector<Candidate>& list) {
     std::vector<Law> added;
     for (const Candidate& c : list) {
@@ -117,7 +117,7 @@ struct Ground {
   }
 };
 
-/// The bodies that a place names.
+/// The bodies named by a place.
 std::set<std::string> bodies_in(const std::string& where) {
   std::set<std::string> names;
   std::istringstream list(where);
@@ -127,14 +127,14 @@ std::set<std::string> bodies_in(const std::string& where) {
   return names;
 }
 
-/// Whether two claims say of the same bodies, in other words, what no reading could tell apart: a window that lasts to the end, heat from a time on.
+/// Whether two claims about the same bodies mean the same, so that no reading could distinguish them, such as a window that lasts to the end and heat from a time on.
 bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
   if (bodies_in(a.where) != bodies_in(b.where) || are_apart(a.effect, b.effect)) return false;
   const Comparison& c = fitter.comparison();
   return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
 }
 
-/// Whether one of a fit's last claims is a factor so near to one that nobody would mend it.
+/// Whether one of a fit's last claims is a factor so close to one that it changes nothing in practice.
 bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
   Eigen::Index at = fit.x.size();
   for (auto claim = last.rbegin(); claim != last.rend() && fit.x.size() > 0; ++claim) {
@@ -147,11 +147,11 @@ bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
 struct FittedClaim {
   Claim claim;
   Fit fit;
-  double hoped = 0.0;     ///< what linear theory said that it brings [nats]
-  bool is_rough = false;  ///< with scatter's slopes as they were taken elsewhere
+  double hoped = 0.0;     ///< its gain by linear theory [nats]
+  bool is_rough = false;  ///< fitted with scatter's slopes of another fit
 };
 
-/// Fits of hypotheses, the last one of their claims added last. What was fitted once need not be fitted again where the search comes by once more.
+/// Keeps fits of hypotheses, with their last claim added last, so that the search need not fit a hypothesis twice.
 class KnownFits {
  public:
   using Laws = std::vector<std::pair<std::size_t, std::size_t>>;  ///< candidate and variant of each claim, in order
@@ -173,9 +173,9 @@ class KnownFits {
   std::map<Laws, FittedClaim> fits_;
 };
 
-/// Labels on the wrong cables: linear theory sees such a law at numbers that were fitted to the body on the label, and little of what its own body's numbers would mend. It tells which
-/// label is the likeliest, not what that brings; so the best law of each such kind is always fitted, before all others.
-/// @param list  all scores, best first. @param chosen  those to be fitted, no labels among them  @returns  how many labels it begins with
+/// Labels on the wrong cables. Linear theory evaluates such a law at numbers that were fitted to the body on the label, so it underestimates its gain. It shows which label is the
+/// likeliest, but not its gain; so the best law of each such kind is always fitted first.
+/// @param list  all scores, best first. @param chosen  laws to fit, without labels  @returns  number of labels at its beginning
 std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
                              std::vector<Score>& chosen) {
   std::vector<Score> labels;
@@ -189,7 +189,7 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
   return labels.size();
 }
 
-/// Whether a fit's numbers have left what is known of them by more than a sigma.
+/// Whether a fit has moved the scenario's numbers by more than a sigma of their priors.
 bool have_moved(const Fitter& fitter, const Fit& fit) {
   const Eigen::Index n = fitter.n_nuisance();
   return n > 0 && (fit.x.head(n).array() / fitter.nuisance_sd().array()).abs().maxCoeff() > 1.0;
@@ -200,23 +200,23 @@ struct Trials {
   const Ground& ground;
   const Hypothesis& base;
   const Fit& base_fit;
-  KnownFits* known;  ///< null: all are fitted anew, from where scatter was settled last
+  KnownFits* known;  ///< null: all are fitted again
   std::vector<FittedClaim> fitted = {};
   [[nodiscard]] double gain(const FittedClaim& f) const { return f.fit.log_evidence - base_fit.log_evidence; }
-  /// Laws that may stand beside the hypothesis, by what linear theory says that they bring.
+  /// Laws that may be added to the hypothesis, ordered by their gain in linear theory.
   [[nodiscard]] std::vector<Score> list() const {
     std::vector<Score> all = scores(ground.fitter, ground.candidates, ground.columns, base, base_fit);
     std::erase_if(all, [&](const Score& s) { return !(s.gain > -1e200) || ground.overlaps(base, s.candidate); });
     return all;
   }
-  /// What a law must bring to be what is stated [nats].
+  /// The gain that a law must have to be the stated one [nats].
   [[nodiscard]] double must_bring(std::size_t candidate) const {
     const auto stated = ground.of_place.find(ground.names[candidate]);
     return stated == ground.of_place.end() ? 0.0 : stated->second.evidence - kBetter / ground.power;
   }
   void fit(std::span<const Score> laws) {
     const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - ground.fitter.n_nuisance());
-    // Numbers that were fitted without the claim have taken up what it does, and no slope may lead from there to where they are right beside it: then they begin at the scenario's.
+    // Numbers that were fitted without the claim have absorbed its effect, and from there no slope may lead to their right values; then they start at the scenario's values.
     Eigen::VectorXd start = base_fit.x.head(ground.fitter.n_nuisance());
     if (have_moved(ground.fitter, base_fit)) start.setZero();
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
@@ -235,7 +235,7 @@ struct Trials {
       fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();
   }
-  /// Those that may come near the best are fitted on with scatter's slopes taken where they ended.
+  /// Continues fits that may come near the best, with scatter's slopes recomputed at their ends.
   void refine() {
     double best = 0.0;
     for (const FittedClaim& f : fitted) best = std::max(best, gain(f));
@@ -260,7 +260,7 @@ struct Trials {
       if (known && !f.fit.prediction.empty()) known->keep(with(base, f.claim), f);
     }
   }
-  /// Best first, one law a candidate.
+  /// Best first, one law per candidate.
   [[nodiscard]] std::vector<FittedClaim> best_first() && {
     std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
     const auto value = [&](const FittedClaim& f) {
@@ -277,7 +277,7 @@ struct Trials {
   }
 };
 
-/// The names of one place that are still to be fitted.
+/// The names of one place that are not fitted yet.
 class NamesOfPlace {
  public:
   NamesOfPlace(const Ground::OfPlace& stated, const std::vector<Candidate>& candidates)
@@ -293,7 +293,7 @@ class NamesOfPlace {
     ++let_down_[family_of(taken.candidate, taken.variant)];  // until it is fitted
     return taken;
   }
-  /// @param hoped  what linear theory said that the law would bring. @param gain  that it brought. @param must_bring  from which on it is what is stated
+  /// @param hoped  the law's score in linear theory. @param gain  of its full fit. @param must_bring  gain above which the law is the stated one
   void learn(const Score& hoped, double gain, double must_bring) {
     best_ = std::max(best_, gain);
     answered_ = answered_ || gain > must_bring;
@@ -301,12 +301,12 @@ class NamesOfPlace {
   }
 
  private:
-  /// Laws of a candidate that add the same to the machine, whenever and in whichever records.
+  /// Laws of a candidate that add the same effect to the machine, at any time and in any record.
   using Family = std::pair<std::size_t, std::string>;
   [[nodiscard]] Family family_of(std::size_t candidate, std::size_t variant) const {
     return {candidate, candidates_[candidate].variants[variant].adds};
   }
-  /// The likeliest by linear theory, of those of which that was wrong least often.
+  /// The likeliest law by linear theory, among the families in which linear theory was wrong least often.
   [[nodiscard]] std::vector<Score>::const_iterator next() const {
     const auto n_let_down = [&](const Score& law) {
       const auto n = let_down_.find(family_of(law.candidate, law.variant));
@@ -330,8 +330,8 @@ class NamesOfPlace {
   bool answered_ = false;
 };
 
-/// Names of statements on top of a hypothesis, fitted in full, best first. Fits are shared out over the places of statements in proportion to their probabilities (D'Hondt), until one
-/// brings what the statement does, and as long as others may bring as much.
+/// Names of statements added to a hypothesis, fitted in full, best first. Fits are distributed over the places of statements in proportion to their probabilities (D'Hondt), until one
+/// gains as much as the statement, and as long as others may gain as much.
 std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
                                    KnownFits* known, const Listener& listener) {
   Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known};
@@ -372,11 +372,11 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
   return std::move(trials).best_first();
 }
 
-/// What may stand in a claim's place, fitted in full, best first: the best laws by linear theory, and the best of each effect, though the first n be of others: which kind it is must not hang
-/// on linear theory.
+/// Possible replacements of a claim, fitted in full, best first: the best laws by linear theory, and the best law of each effect, even if it is not among the first n, because the kind
+/// must not depend on linear theory.
 std::vector<FittedClaim> fit_instead(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
                                      KnownFits* known, const Listener& listener) {
-  if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
+  if (base_fit.prediction.empty()) return {};  // no solution without the removed claim, so nothing can be added
   const std::vector<Candidate>& candidates = ground.candidates;
   Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known};
   const std::vector<Score> list = trials.list();
@@ -413,19 +413,19 @@ std::pair<Hypothesis, Eigen::VectorXd> without_claim(const Hypothesis& hypothesi
   return {std::move(left.hypothesis), x.tail(x.size() - n_nuisance)};
 }
 
-/// Takes scatter's slopes where a fit stands and fits again, until nothing is gained by it: what a fit has left to gain, the next claim would be thanked for.
+/// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be credited to the next claim.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   for (int turn = 0; turn < kMostRounds; ++turn) {
     fitter.settle(hypothesis, fit);
     Fit again = fit_one(fitter, hypothesis, fit.claim_x(fitter.n_nuisance()));
-    if (again.prediction.empty()) return;  // the last one stands
+    if (again.prediction.empty()) return;  // the last fit is kept
     const double gained = fit.misfit - again.misfit;
     fit = std::move(again);
     if (gained < kSettled) return;
   }
 }
 
-/// Fits a rival on from where its fit ended, as settle_well() does the hypothesis it is held against: slopes that were taken elsewhere must not cost it anything.
+/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes computed elsewhere must be no disadvantage.
 void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   Twin::Workspace workspace(fitter.twin());
   for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
@@ -438,25 +438,25 @@ void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   }
 }
 
-/// What hypotheses are worth, their prices paid.
+/// Evidence of hypotheses after their prices are subtracted.
 struct Worth {
   const SearchOptions& options;
   const Fit& without;           ///< the scenario's own numbers alone
-  std::size_t n_catalogue = 1;  ///< what each claim was chosen from
+  std::size_t n_catalogue = 1;  ///< number of laws from which each claim was chosen
   [[nodiscard]] double evidence(const std::vector<Candidate>& candidates, const Fit& fit, const Hypothesis& h) const {
     double laws = 0.0;
     for (const Claim& c : h) laws += law_price(candidates[c.candidate]);
     return fit.log_evidence - std::log(static_cast<double>(n_catalogue)) * static_cast<double>(h.size()) - laws;
   }
   [[nodiscard]] double explained(const Fit& fit) const { return without.misfit - fit.misfit; }
-  /// Whether a claim more is: evidence counts as that of statements does, and a further claim has the odds of a further statement.
+  /// Whether one more claim is worth its price: its evidence counts like that of statements, and it has the odds of one more statement.
   [[nodiscard]] bool is_worth_it(double gain, const Fit& with, std::size_t n_beside) const {
     const double odds = n_beside == 0 ? 1.0 : options.prior.one_more / (1.0 - options.prior.one_more);
     return temper(explained(with), options.prior.law_error) * gain + std::log(odds) > 0.0;
   }
 };
 
-/// That something is wrong at one of some places, of statements that exclude each other.
+/// The probability that something is wrong at one of these places, for statements that exclude each other.
 double probability_of(const Posterior& stated, const std::set<StatedPlace>& places) {
   double sum = 0.0;
   for (const Stated& s : stated.stated) sum += places.contains({s.says.quantity, s.says.place}) ? s.probability : 0.0;
@@ -466,9 +466,9 @@ double probability_of(const Posterior& stated, const std::set<StatedPlace>& plac
 using EvidenceOfPlace = std::map<StatedPlace, double>;  ///< over nothing in its place [nats]
 using EvidenceOfName = std::map<std::size_t, double>;   ///< the same, by candidate
 
-/// Statements whose names were fitted in full are as likely as these fits make them: linear theory says less of them where a law is not linear in its size. The best of them counts
-/// with what it has over linear theory, in its own place or, where that is not listed, over the best that is; the others by what their fits are behind it.
-/// @param power  that evidence counts with between statements
+/// Statements whose names were fitted in full get the probability of these fits, because linear theory is less exact if a law is not linear in its size. The best one counts with its
+/// gain over linear theory, at its own place or, if that is not listed, over the best listed place. The others count with the difference of their fits from the best one.
+/// @param power  exponent of evidence when statements are compared
 void take_fits(const EvidenceOfPlace& full, const std::map<StatedPlace, Stated>& said, double power, Posterior& stated) {
   if (full.empty() || stated.stated.empty()) return;
   const auto best =
@@ -481,7 +481,7 @@ void take_fits(const EvidenceOfPlace& full, const std::map<StatedPlace, Stated>&
   const Stated& held_against = own != stated.stated.end() ? *own : stated.stated.front();
   const double of_best =
       std::log(held_against.probability) + power * std::max(0.0, best->second - held_against.log_evidence);
-  std::vector<double> logarithm;  // of what each weighs
+  std::vector<double> logarithm;  // of each statement's weight
   for (const Stated& s : stated.stated) logarithm.push_back(std::log(s.probability));
   for (const auto& [place, evidence] : full) {
     const double weighs = of_best - power * (best->second - evidence);
@@ -510,7 +510,7 @@ void take_fits(const EvidenceOfPlace& full, const std::map<StatedPlace, Stated>&
                    [](const Stated& a, const Stated& b) { return a.probability > b.probability; });
 }
 
-/// The odds of one statement beside some claims.
+/// The odds of one statement in addition to some claims.
 StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_claims, double explained) {
   StatementOptions one = prior;
   one.most = 1;
@@ -546,11 +546,11 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   }
   KnownFits known;
   double best_value = best_fit.log_evidence;
-  const auto settle = [&] {  // what comes next starts from here
+  const auto settle = [&] {  // the next steps start from here
     settle_well(fitter, best, best_fit);
     best_value = worth.evidence(ground.candidates, best_fit, best);
   };
-  const auto exchange = [&] {  // each for a better one, until none is; true where something changed
+  const auto exchange = [&] {  // exchanges each claim for a better one, until there is none; true if something changed
     bool any = false;
     for (int turn = 0; turn < 3 && !listener.wants_end(); ++turn) {
       bool changed = false;
@@ -577,7 +577,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
     const StatedBeside beside(fitter, best, best_fit);
     Posterior stated = beside.posterior(of_one_beside(options.prior, best.size(), worth.explained(best_fit)));
     if (best.empty() && !(stated.nothing < kEvenOdds))
-      stated = beside.posterior(options.prior);  // several may hide one another
+      stated = beside.posterior(options.prior);  // several claims may hide one another
     double missing = 1.0 - stated.nothing;
     for (const Stated& s : stated.stated) missing -= ground.is_claimed(best, s.says) ? s.probability : 0.0;
     if (best.empty()) result.statements = stated;
@@ -615,7 +615,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   for (std::size_t i = 0; i < best.size();) {  // prune
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     Fit fit = fit_one(fitter, others, x);
-    // a fit that starts where the cause was may stay far from its best
+    // a fit that starts at the removed cause may end far from its best
     if (others.empty() && result.without.log_evidence > fit.log_evidence) fit = result.without;
     const double gain = best_value - worth.evidence(ground.candidates, fit, others);
     if (worth.is_worth_it(gain, best_fit, best.size() - 1)) {
@@ -639,14 +639,14 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
 
 namespace {
 
-/// What was fitted in a claim's place; the claim itself first.
+/// The fits in place of a claim; the claim itself first.
 struct InItsPlace {
   std::vector<Rival> rivals;
   std::vector<Finding::Alternative> fitted;
-  EvidenceOfName full;  ///< what each of these brings
+  EvidenceOfName full;  ///< gain of each
 };
 
-/// Looks for others in a claim's place, each as well fitted as the claim itself.
+/// Searches for alternatives to a claim, each fitted as well as the claim itself.
 InItsPlace find_rivals(const Ground& ground, const Worth& worth, const SearchResult& result, std::size_t i,
                        const Hypothesis& others, const Fit& fit, const Listener& listener) {
   const std::vector<Candidate>& candidates = ground.candidates;
@@ -707,7 +707,7 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
     const auto& [others, fit] = without_one[i];
     if (fit.prediction.empty()) continue;
     slots.push_back(stated_beside(others, fit, of_one_beside(options.prior, others.size(), worth.explained(fit))));
-    const auto place_of = [&](std::size_t candidate) {  // as it is stated here, where it is
+    const auto place_of = [&](std::size_t candidate) {  // by its present statement, if there is one
       const Candidate& c = result.candidates[candidate];
       const Stated* s = stated_as(slots.back(), c.effect, c.where);
       return s ? StatedPlace{s->says.quantity, s->says.place} : result.names[candidate];
@@ -733,7 +733,7 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
     }
     finding.odds = odds_of(rivals);
     finding.odds.kind =
-        std::min(finding.odds.kind, probability_of(stated, of_kind));  // no kind is surer than its statements
+        std::min(finding.odds.kind, probability_of(stated, of_kind));  // a kind is never more certain than its statements
     std::vector<std::size_t> open = open_rivals(rivals);
     for (std::size_t r : open) said.insert(place_of_rival(r));
     while (probability_of(stated, said) < kSure) {  // the statement's own rivals

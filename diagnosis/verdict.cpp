@@ -124,11 +124,10 @@ std::string reason_of(const Diagnosis& d) {
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
       for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, place_words(a.where)));
-      text +=
-          fmt::format(fmt::runtime(c.odds.kind < kSure
-                                       ? "; the data cannot tell it from {} (odds of its kind {:.0f} %)"
-                                       : "; which place it has the data do not tell: or {} (odds of its place {:.0f} %)"),
-                      fmt::join(others, " or "), 100.0 * (c.odds.kind < kSure ? c.odds.kind : c.odds.place));
+      text += fmt::format(
+          fmt::runtime(c.odds.kind < kSure ? "; the data cannot distinguish it from {} (odds of its kind {:.0f} %)"
+                                           : "; the data do not determine its place: or {} (odds of its place {:.0f} %)"),
+          fmt::join(others, " or "), 100.0 * (c.odds.kind < kSure ? c.odds.kind : c.odds.place));
     }
     parts.push_back(text);
   }
@@ -146,7 +145,7 @@ std::string reason_of(const Diagnosis& d) {
     case Verdict::kConsistent:
       return fmt::format(
           "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is "
-          "wanted.{}",
+          "needed.{}",
           d.n_candidates, moved_words(d));
     case Verdict::kUnexplained:
       if (d.causes.empty() && d.unexplained->statement)
@@ -200,7 +199,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     }
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
-      cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
+      cause.doubt = "it was found only together with a stronger cause, and no search without a part of the rows found it";
     if (cause.doubt.empty() && is_size_open(cause))
       cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;

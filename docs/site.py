@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes a static site with search of the pages in docs/: site.py FOLDER   (needs Debian's python3-markdown; works from disk, without a server)"""
+"""Makes a static site with search from the pages in docs/: site.py FOLDER   (it needs Debian's python3-markdown; the site works from disk, without a server)"""
 import json, os, re, shutil, sys
 from html import escape, unescape
 from pathlib import Path
@@ -16,7 +16,7 @@ for(const p of PAGES.map(p=>[score(p),p]).filter(p=>p[0]).sort((a,b)=>b[0]-a[0])
 
 
 def slug(heading, _separator=""):
-    """as GitHub makes it, and tests/links_test.py"""
+    """The anchor of a heading, as GitHub and tests/links_test.py make it."""
     return re.sub(r"[^\w\- ]", "", unescape(heading).strip().lower()).replace(" ", "-")
 
 
@@ -25,7 +25,7 @@ def address(page):
 
 
 def linked(html, page):
-    """Links to pages lead to pages of the site; links to files that the site lacks become text."""
+    """Makes links to pages lead to pages of the site; links to files that the site lacks become text."""
     def link(match):
         path, hash_, anchor = match[1].partition("#")
         to = (page.parent / path).resolve() if path else page

@@ -9,6 +9,9 @@
 #include <set>
 
 #include "effects/where_in_files.hpp"
+#include "findings/cause_section.hpp"
+#include "findings/cause_words.hpp"
+#include "findings/diagnosis_answer.hpp"
 #include "findings/diagnosis_data.hpp"
 #include "findings/diagnosis_words.hpp"
 #include "findings/measured_iso230_3.hpp"
@@ -27,43 +30,20 @@ using output::Value;
 
 constexpr output::Digits kThree = output::significant(3);
 
-/// @param compared  if at most half of the channels were compared, no verdict is shown as good
-output::Verdict verdict_box(const diagnosis::Diagnosis& d, const Compared& compared) {
-  using diagnosis::Verdict;
-  using Kind = output::Verdict::Kind;
-  const bool is_of_few = 2 * compared.n <= compared.of;
-  const Kind kind = d.verdict == Verdict::kConsistent    ? is_of_few ? Kind::kNeutral : Kind::kGood
-                    : d.verdict == Verdict::kUnexplained ? Kind::kBad
-                                                         : Kind::kNeutral;
-  static const std::map<Verdict, const char*> titles = {{Verdict::kConsistent, "Consistent with the scenario"},
-                                                        {Verdict::kSuspected, "A cause is suspected"},
-                                                        {Verdict::kNamed, "Causes named"},
-                                                        {Verdict::kAmbiguous, "Ambiguous: several causes would do"},
-                                                        {Verdict::kUnexplained, "Something is left unexplained"},
-                                                        {Verdict::kInsufficientData, "Too few data for a verdict"}};
-  std::string text = compared_text(compared);
-  if (!text.empty()) text += " ";
-  return {.key = "", .kind = kind, .title = titles.at(d.verdict), .text = text + d.reason};
-}
-
+/// All causes, one row each.
 Table causes_table(const diagnosis::Diagnosis& d) {
-  Table table{
-      .title = "Causes",
-      .caption =
-          "Gain: logarithm of how much more probable the data are with it than without, after the price of having looked "
-          "for it among all candidates. Listed under a cause: what it cannot be distinguished from: claims that hold more "
-          "than a "
-          "tenth of the odds with "
-          "others of their kind, or of its own kind at other places.",
-      .columns = {{.title = "effect"},
-                  {.title = "standing"},
-                  {.title = "gain", .unit = "nats"},
-                  {.title = "numbers (95 % interval)"}}};
-  for (const diagnosis::Cause& c : d.causes) {
-    table.rows.push_back(
-        {fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing), c.log_evidence_gain, parameters_text(c)});
-    for (const diagnosis::Cause& a : c.alternatives)
-      table.rows.push_back({fmt::format("or {} at {}", a.effect, a.where), "", a.log_evidence_gain, parameters_text(a)});
+  constexpr std::size_t kMostBeside = 1;
+  Table table{.title = "Causes",
+              .columns = {{.title = "cause"},
+                          {.title = "standing"},
+                          {.title = "probability", .digits = output::percent(0)},
+                          {.title = "numbers (95 % interval)"},
+                          {.title = "or"}}};
+  for (std::size_t i = 0; i < d.causes.size(); ++i) {
+    const diagnosis::Cause& c = d.causes[i];
+    table.rows.push_back({fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing),
+                          is_moved_number(d, i) ? Datum() : Datum(c.probability), parameters_text(c),
+                          alternatives_text(c, kMostBeside)});
   }
   return table;
 }
@@ -93,88 +73,67 @@ Section courses_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// What the scenario lacks, in the words of the statements' grammar.
-Section statements_section(const diagnosis::Diagnosis& d) {
-  constexpr std::size_t kMost = 5;
-  Section section{.title = "What is missing, and how sure that is"};
-  Table table{.caption =
-                  "Each row is a quantity that may be wrong at a place, by the evidence of all that it might follow, "
-                  "everything else marginalised. It need not "
-                  "be in the catalogue. Sizes are of linear theory.",
-              .columns = {{.title = "what"},
-                          {.title = "size (95 % interval)"},
-                          {.title = "records"},
-                          {.title = "probability", .digits = output::percent(0)}}};
+/// What the scenario lacks, in the words of the statements' grammar. @param least  probability of a row
+Table statements_table(const diagnosis::Diagnosis& d, double least) {
+  Table table{
+      .caption =
+          "Each row is a quantity that may be wrong at a place; its probability is the sum over all laws that it may "
+          "follow there, of which the likeliest is shown. It need not be in the catalogue. Sizes are of linear "
+          "theory.",
+      .columns = {{.title = "what"},
+                  {.title = "size (95 % interval)"},
+                  {.title = "records"},
+                  {.title = "probability", .digits = output::percent(0)}}};
   for (const diagnosis::Stated& s : d.statements.stated) {
-    if (table.rows.size() == kMost) break;
+    if (s.probability < least) continue;
     table.rows.push_back({diagnosis::words(s.says), size_text(s), diagnosis::records_text(s.says), s.probability});
   }
   table.rows.push_back({"nothing", "", "", d.statements.nothing});
-  add(section, std::move(table));
+  return table;
+}
+
+/// The probable statements.
+Section statements_section(const diagnosis::Diagnosis& d) {
+  constexpr double kLeast = 0.05;  // less likely ones are in the folded list
+  Section section{.title = "What is missing, and how sure that is"};
+  add(section, statements_table(d, kLeast));
   if (d.causes.empty() && d.ended_at.empty() && d.statements.nothing < 0.5)
     add(section, Text{"No law of the catalogue, fitted in full, is confirmed as a cause: the statements come from linear "
                       "theory alone."});
   return section;
 }
 
-/// Causes that were found and are not in the written file, with the reason.
-void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
-  for (const diagnosis::Cause& c : d.causes) {
-    if (!c.is_written)
-      add(body, Text{fmt::format("{} at {} is not written into extended.yaml: {}.", c.effect, c.where, c.why_not_written)});
-  }
-}
-
-/// The text about one cause in addition to its numbers.
-Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
-  const diagnosis::Cause& c = d.causes[i];
-  Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where),
+/// All statements, folded.
+Section all_statements(const diagnosis::Diagnosis& d) {
+  Section section{.title = fmt::format("All that might be missing: {}",
+                                       counted(d.statements.stated.size(), "possibility", "possibilities")),
                   .detail = true};
-  if (!c.doubt.empty() || !c.is_written)
-    add(section, Text{fmt::format("{}{}", c.doubt.empty() ? "" : "Only suspected, since " + c.doubt + ". ",
-                                  c.is_written ? "" : "It is not written into extended.yaml: " + c.why_not_written + ".")});
-  const bool is_moved = i >= d.search.findings.size();
-  if (!is_moved && d.ended_at.empty())
-    add(section,
-        Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
-                         std::abs(c.kept_out_nats), c.kept_out_nats < 0.0 ? "less" : "more")});
-  if (c.n_searched > 0)
-    add(section,
-        Text{fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
-                         c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
-                         c.n_again == 0              ? "in none of them"
-                         : c.n_again == c.n_searched ? "each time"
-                                                     : fmt::format("{} of them", c.n_again))});
-  Table table{
-      .title =
-          c.alternatives.empty()
-              ? "Nine tenths of the odds are with this effect at this place; those in the row are of this law of it alone"
-          : c.odds.kind < diagnosis::kSure
-              ? fmt::format("The data cannot distinguish it from the others; its kind has {:.0f} % of the odds",
-                            100.0 * c.odds.kind)
-              : fmt::format("Its kind has {:.0f} % of the odds; the data do not show where it is", 100.0 * c.odds.kind),
-      .columns = {{.title = "effect"},
-                  {.title = "where"},
-                  {.title = "law"},
-                  {.title = "numbers (95 % interval)"},
-                  {.title = "gain", .unit = "nats"},
-                  {.title = "odds", .unit = "%"}}};
-  const auto add_row = [&](const diagnosis::Cause& x) {
-    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain, std::round(100.0 * x.share)});
-  };
-  add_row(c);
-  for (const diagnosis::Cause& a : c.alternatives) add_row(a);
-  add(section, std::move(table));
+  add(section, statements_table(d, 0.0));
   return section;
 }
 
+/// Causes that were found and are not in the written file, one sentence a reason.
+void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason;  // in the order of the causes
+  for (const diagnosis::Cause& c : d.causes) {
+    if (c.is_written) continue;
+    auto known =
+        std::find_if(by_reason.begin(), by_reason.end(), [&](const auto& r) { return r.first == c.why_not_written; });
+    if (known == by_reason.end()) known = by_reason.insert(by_reason.end(), {c.why_not_written, {}});
+    known->second.push_back(fmt::format("{} at {}", c.effect, c.where));
+  }
+  for (const auto& [why, causes] : by_reason)
+    add(body, Text{fmt::format("{} {} not written into extended.yaml: {}.", fmt::join(causes, ", "),
+                               causes.size() == 1 ? "is" : "are", why)});
+}
+
 Section experiment_section(const diagnosis::Experiment& e) {
-  Section section{.key = "discriminating_experiment", .title = "Experiment that would distinguish them"};
+  Section section{.key = "discriminating_experiment", .title = "The test that would distinguish them"};
   add(section, Text{.words = e.why, .key = "why"});
-  add(section,
-      Text{fmt::format("Cyclogram {}: {}. Any two of the explanations would then differ by {:.1f} sigmas or more, what is "
-                       "not known of their numbers taken off.",
-                       e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
+  add(section, Text{fmt::format(
+                   "Cyclogram {}: {}. After it any two of the explanations differ by {:.1f} standard deviations or more, "
+                   "with the uncertainty of their numbers included.",
+                   e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
   add(section, Value{.key = "proposes", .datum = e.by_sensor ? "extra_sensor" : "cyclogram"});
   add(section, Value{.key = "discrimination", .datum = e.discrimination});
   add(section, Value{.key = "simulated.records", .datum = e.n_simulated});
@@ -209,7 +168,7 @@ Section experiment_section(const diagnosis::Experiment& e) {
 
 Section unexplained_section(const diagnosis::Diagnosis& d) {
   const diagnosis::Unexplained& u = *d.unexplained;
-  Section section{.key = "unexplained", .title = "What no candidate explains, more than noise"};
+  Section section{.key = "unexplained", .title = "What is left and is more than noise"};
   const auto put = [&](const char* key, Datum datum) { add(section, Value{.key = key, .datum = std::move(datum)}); };
   put("rms", u.channels.front().rms);
   put("unit", u.channels.front().unit);
@@ -237,7 +196,7 @@ const char* words(diagnosis::HeatWander::Limit limit) {
 }
 
 Section wander_section(const diagnosis::HeatWander& wander) {
-  Section section{.key = "process_noise", .title = "Where the model errs"};
+  Section section{.key = "process_noise", .title = "Where the model errs", .detail = true};
   add(section,
       Text{fmt::format("Heat that comes and goes in its bodies, alike for {} {:.0f} min{}, would explain what the first "
                        "search left. Causes are weighed beside this process noise.",
@@ -257,20 +216,27 @@ Section wander_section(const diagnosis::HeatWander& wander) {
   return section;
 }
 
-Section gain_section(const diagnosis::Diagnosis& d) {
-  Section section{.key = "gain", .title = "What mending it gains: measured minus simulated, root mean square and peak"};
+/// @param file  that was written
+Section gain_section(const diagnosis::Diagnosis& d, const std::string& file) {
+  Section section{.key = "gain", .title = fmt::format("What {} gains: measured minus simulated", file)};
   add(section, Value{.key = "holdout", .words = "held out:", .datum = d.holdout});
-  Table table{
-      .key = "channels",
+  Table table{.key = "channels",
+              .caption =
+                  "Root mean squares and peaks on rows that were kept out of the fit. Noise floor: the scatter of the "
+                  "readings alone.",
+              .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
+  Table full{
+      .title = "The same with other models on these rows, and over all rows",
       .caption =
-          "Noise floor: the scatter of the readings alone. Regression: ridge on memories of speed, ambient and "
-          "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. Named causes: "
-          "these alone beside the scenario's numbers; found: what the searches without these rows found, whatever of it is "
-          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written; "
-          "how much rows weigh in a calibration was chosen by them. "
-          "The "
-          "file: what the written scenario gives over the whole of all records, to which its numbers were fitted.",
-      .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
+          "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
+          "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers; "
+          "found: what the searches without these rows found, whatever of it is written. Extended is no worse than as "
+          "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
+          "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
+          "to which its numbers were fitted.",
+      .columns = {{.title = "channel"}, {.key = "unit", .title = "unit"}},
+      .detail = true};
+  const std::set<std::string> of_first_table = {"rmse_before", "rmse_after", "noise_floor", "peak_before", "peak_after"};
   for (const auto& [key, title] : {std::pair{"rmse_before", "as written"},
                                    {"rmse_calibrated", "scatter alone"},
                                    {"rmse_named", "named causes"},
@@ -282,13 +248,17 @@ Section gain_section(const diagnosis::Diagnosis& d) {
                                    {"peak_before", "peak before"},
                                    {"peak_after", "peak after"},
                                    {"rmse_all_before", "all rows, as written"},
-                                   {"rmse_written", "all rows, the file"}})
-    table.columns.push_back({.key = key, .title = title, .digits = kThree});
+                                   {"rmse_written", "all rows, the file"}}) {
+    table.columns.push_back({.key = key, .title = of_first_table.contains(key) ? title : "", .digits = kThree});
+    full.columns.push_back({.title = title, .digits = kThree});
+  }
   for (const auto& g : d.gain)
     table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_found,
                           g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
                           g.rmse_written});
+  full.rows = table.rows;
   add(section, std::move(table));
+  add(section, std::move(full));
   add(section, Text{shares_of_gain_text(d)});
   for (const auto& [key, over_noise] : {std::pair{"over_noise.as_written", d.misses.as_written},
                                         {"over_noise.calibrated", d.misses.calibrated},
@@ -319,9 +289,28 @@ Section data_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
-/// @param detail  not on the terminal
-Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
-  Section section{.title = "The scenario's own numbers", .detail = detail};
+/// The numbers that the fit moved most, for people.
+Table moved_most(const diagnosis::Diagnosis& d) {
+  constexpr std::size_t kMost = 6;
+  std::vector<const diagnosis::Estimate*> list;
+  for (const diagnosis::Estimate& e : d.calibrated) list.push_back(&e);
+  std::stable_sort(list.begin(), list.end(),
+                   [](const auto* a, const auto* b) { return std::abs(a->deviation) > std::abs(b->deviation); });
+  if (list.size() > kMost) list.resize(kMost);
+  Table table{.title = fmt::format("The numbers that moved most, of {}", d.calibrated.size()),
+              .caption = "In standard deviations of what is known of them; beyond 3.5 a number is in doubt.",
+              .columns = {{.title = "number"},
+                          {.title = "fitted", .digits = output::significant(4)},
+                          {.title = "95 % interval"},
+                          {.key = "unit", .title = "unit"},
+                          {.title = "moved [sigmas]", .digits = output::signed_decimals(2)}}};
+  for (const auto* e : list) table.rows.push_back({e->name, e->value, interval_text(*e), e->unit, e->deviation});
+  return table;
+}
+
+/// All of them, folded.
+Section numbers_section(const diagnosis::Diagnosis& d) {
+  Section section{.title = "The scenario's own numbers", .detail = true};
   Table table{
       .key = "calibrated",
       .caption =
@@ -352,10 +341,16 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
 
 /// @param key  of the JSON object that describes what was written
 Section written_section(const DiagnosisFindings& found, const std::string& key) {
-  Section section{.key = key, .title = "What was written: " + found.file};
+  Section section{.key = key};
   add(section,
       output::Notes{.key = "not_written", .sort = "NOT WRITTEN to " + found.file, .lines = found.extended.not_written});
   add(section, Value{.key = "written", .datum = found.extended.written});
+  return section;
+}
+
+/// The changes of the scenario's text, folded.
+Section difference_section(const DiagnosisFindings& found) {
+  Section section{.title = "What was written: " + found.file, .detail = true};
   add(section, output::Preformatted{.text = !found.extended.not_written.empty() ? "Nothing."
                                             : found.difference.empty()          ? "No difference to the scenario."
                                                                                 : found.difference});
@@ -382,82 +377,137 @@ output::Document begin(const std::string& what, const DiagnosisFindings& found, 
           .subtitle = fmt::format("measured: {}", fmt::join(names, ", "))};
 }
 
-/// The common part of both documents, after their own findings. @param after  name of Diagnosis::extended
-void add_evidence(Section& body, const DiagnosisFindings& found, const std::string& after) {
+/// What was compared and the numbers that both documents have. @param verdict  whether to show the word of the verdict
+Section common_numbers(const DiagnosisFindings& found, bool verdict) {
   const diagnosis::Diagnosis& d = found.diagnosis;
-  body.sections.push_back(compared_data(found.measured.runs));
-  if (d.unexplained)
-    body.sections.push_back(unexplained_section(d));
-  else
-    add(body, Value{.key = "unexplained"});
-  if (d.wander)
-    body.sections.push_back(wander_section(*d.wander));
-  else
-    add(body, Value{.key = "process_noise"});
-  body.sections.push_back(data_section(d));
-  body.sections.push_back(gain_section(d));
-  for (Section& record : residual_sections(found.measured, d, after)) body.sections.push_back(std::move(record));
+  const Compared compared = compared_of(found.measured.runs);
+  Section section;
+  if (verdict) add(section, Value{.words = "verdict", .datum = diagnosis::word(d.verdict)});
+  add(section,
+      Value{.words = "compared",
+            .datum = compared.left_out.empty()
+                         ? fmt::format("all of {}", counted(static_cast<std::size_t>(compared.n), "channel", "channels"))
+                         : compared_text(compared)});
+  if (const std::string one_mesh = studies::one_mesh_text(found.measured); !one_mesh.empty())
+    add(section, output::Notes{.sort = "note", .lines = {one_mesh}});
+  return section;
+}
+
+/// What is left, the data, and the gain.
+void add_judgement(Section& numbers, const DiagnosisFindings& found) {
+  const diagnosis::Diagnosis& d = found.diagnosis;
+  numbers.sections.push_back(compared_data(found.measured.runs));
+  numbers.sections.push_back(d.unexplained ? unexplained_section(d) : Section{.blocks = {Value{.key = "unexplained"}}});
+  numbers.sections.push_back(data_section(d));
+  numbers.sections.push_back(gain_section(d, found.file));
+}
+
+/// What only an expert needs, folded: where the model errs, every channel of every record, ISO 230-3.
+/// @param after  name of Diagnosis::extended
+void add_evidence(Section& experts, const DiagnosisFindings& found, const std::string& after) {
+  const diagnosis::Diagnosis& d = found.diagnosis;
+  experts.sections.push_back(d.wander ? wander_section(*d.wander) : Section{.blocks = {Value{.key = "process_noise"}}});
+  for (Section& record : residual_sections(found.measured, d, after)) experts.sections.push_back(std::move(record));
   const std::vector<Iso230Run> iso = measured_iso230_3(found.measured);
   Table figures = iso230_3_table(iso);
   figures.key.clear();  // programs use the items
   for (output::Column& column : figures.columns) {
     if (column.key != "unit") column.key.clear();
   }
-  body.sections.push_back({.blocks = {std::move(figures)}});
-  for (Section& item : iso230_3_items(iso)) body.sections.push_back(for_programs(std::move(item)));
-  body.sections.push_back(search_data(d));
-  if (const std::string one_mesh = studies::one_mesh_text(found.measured); !one_mesh.empty())
-    add(body, output::Notes{.sort = "note", .lines = {one_mesh}});
+  experts.sections.push_back({.blocks = {std::move(figures)}});
+  for (Section& item : iso230_3_items(iso)) experts.sections.push_back(for_programs(std::move(item)));
+  experts.sections.push_back(search_data(d));
+  experts.sections.push_back(difference_section(found));
+}
+
+/// The figure at the top of the page.
+Section picture_section(const DiagnosisFindings& found, const std::optional<ShownChannel>& shown,
+                        const diagnosis::Prediction* after, const std::string& words) {
+  Section section;
+  if (shown) add(section, channel_figure(found.measured, found.diagnosis, *shown, after, words));
+  return section;
 }
 
 }  // namespace
 
 output::Document diagnosis_document(const DiagnosisFindings& found, const output::Provenance& made_by) {
   const diagnosis::Diagnosis& d = found.diagnosis;
+  const studies::MeasuredTwin& m = found.measured;
+  const Compared compared = compared_of(m.runs);
   output::Document document = begin("diagnosis", found, made_by);
   Section& body = document.body;
-  add(body, verdict_box(d, compared_of(found.measured.runs)));
-  add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
+  add(body, answer_of(d, compared));
+  add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
-  if (!std::isnan(d.statements.nothing)) {
-    body.sections.push_back(statements_section(d));
-    body.sections.push_back(courses_section(d));
-  }
-  add_statements_data(body, d);
-  add(body, causes_table(d));
-  add_beside_causes(body, d);
-  for (std::size_t i = 0; i < d.causes.size(); ++i) body.sections.push_back(cause_section(d, i));
-  add_causes_data(body, d.causes);
+
+  const diagnosis::Prediction* after = with_causes(m, d);
+  const std::optional<ShownChannel> shown =
+      d.causes.empty() ? clearest_channel(m, d, nullptr) : channel_of_cause(m, d, lead_cause(d));
+  body.sections.push_back(picture_section(found, shown, after, with_causes_text(d)));
+  body.sections.push_back(output::next_section(next_steps(m, d, compared)));
+  if (!d.causes.empty()) body.sections.push_back(causes_section(m, d, shown));
   if (d.experiment)
     body.sections.push_back(experiment_section(*d.experiment));
   else
     add(body, Value{.key = "discriminating_experiment"});
-  add_evidence(body, found, "extended");
-  body.sections.push_back(numbers_section(d, true));
-  body.sections.push_back(written_section(found, "extended"));
+
+  Section numbers{.title = "The numbers"};
+  numbers.sections.push_back(common_numbers(found, true));
+  numbers.sections.push_back({.blocks = {causes_table(d)}});
+  add_beside_causes(numbers.sections.back(), d);
+  const bool has_statements = !std::isnan(d.statements.nothing);
+  if (has_statements) numbers.sections.push_back(statements_section(d));
+  add_statements_data(body, d);
+  add_causes_data(body, d.causes);
+  add_judgement(numbers, found);
+  numbers.sections.push_back(written_section(found, "extended"));
+  body.sections.push_back(std::move(numbers));
+
+  Section experts{.title = "For experts"};
+  Section reason{.title = "The reason, as diagnosis.json has it", .detail = true};
+  add(reason, Text{d.reason});
+  experts.sections.push_back(std::move(reason));
+  experts.sections.push_back(cause_statistics(d));
+  if (has_statements) {
+    experts.sections.push_back(all_statements(d));
+    experts.sections.push_back(courses_section(d));
+  }
+  add_evidence(experts, found, "extended");
+  experts.sections.push_back(numbers_section(d));
+  body.sections.push_back(std::move(experts));
   return document;
 }
 
 output::Document calibration_document(const DiagnosisFindings& found, const output::Provenance& made_by) {
   const diagnosis::Diagnosis& d = found.diagnosis;
+  const studies::MeasuredTwin& m = found.measured;
   output::Document document = begin("calibration", found, made_by);
   Section& body = document.body;
   const std::string warning = calibration_warning(d);
-  const bool fits = warning.empty();
-  add(body, output::Verdict{.key = "",
-                            .kind = fits ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
-                            .title = fits ? "The scenario's numbers explain the measurement"
-                                          : "The numbers alone do not explain the measurement",
-                            .text = warning});
+  add(body, calibration_answer(d, warning));
   add(body, Value{.key = "warning", .datum = warning});
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
-  add_causes_data(body, d.causes);
   add(body, Value{.key = "discriminating_experiment"});
-  body.sections.push_back(numbers_section(d, false));
-  add_evidence(body, found, "calibrated");
-  if (!fits && !d.statements.stated.empty()) body.sections.push_back(statements_section(d));
-  body.sections.push_back(written_section(found, "calibrated_scenario"));
+
+  const diagnosis::Prediction* after = d.written.keeps_numbers ? &d.extended : nullptr;
+  body.sections.push_back(picture_section(found, clearest_channel(m, d, after), after, "simulated with its numbers fitted"));
+  body.sections.push_back(output::next_section(steps_after_calibration(m, d, warning)));
+  add_causes_data(body, d.causes);
+
+  Section numbers{.title = "The numbers"};
+  numbers.sections.push_back(common_numbers(found, false));
+  if (!warning.empty()) add(numbers.sections.back(), Text{"Why: " + warning});
+  add(numbers.sections.back(), moved_most(d));
+  add_judgement(numbers, found);
+  if (!warning.empty() && !d.statements.stated.empty()) numbers.sections.push_back(statements_section(d));
+  numbers.sections.push_back(written_section(found, "calibrated_scenario"));
+  body.sections.push_back(std::move(numbers));
+
+  Section experts{.title = "For experts"};
+  experts.sections.push_back(numbers_section(d));
+  add_evidence(experts, found, "calibrated");
+  body.sections.push_back(std::move(experts));
   return document;
 }
 

@@ -83,16 +83,36 @@ Verdict verdict_of(const Placement& p) {
   const auto n = static_cast<std::size_t>(p.options.n);
   const Residual& left = p.chosen.left[n - 1];
   std::string text = fmt::format(
-      "On cyclograms and machines that they were not chosen on, {} {} {:.2f} µm of {:.1f} µm (RMS) to the observer and "
-      "{:.2f} µm to a regression. ",
-      n_words(n), n == 1 ? "leaves" : "leave", left.observer_um, p.drift_um, left.regression_um);
+      "With {} a regression leaves {:.2f} µm and the observer {:.2f} µm of a drift of {:.1f} µm (RMS, on cyclograms and "
+      "machines that the places were not chosen on).",
+      n_words(n), left.regression_um, left.observer_um, p.drift_um);
   const std::size_t n_enough = enough(p);
-  if (n_enough < p.chosen.left.size()) {
-    text += fmt::format("After {} no more of them take off a tenth each: stop there.", n_words(n_enough));
+  if (n_enough < n) {
+    text += fmt::format(" {} would be enough: after that, no further one takes off a tenth.", n_words(n_enough));
+  } else if (n_enough < p.chosen.left.size()) {
+    text += fmt::format(" After {} no further one takes off a tenth: stop there.", n_words(n_enough));
   } else if (n_enough > 1) {
-    text += fmt::format("Even the last of {} takes off a tenth.", n_enough);
+    text += fmt::format(" Even the last of {} takes off a tenth.", n_enough);
   }
   return {.kind = Verdict::Kind::kGood, .title = fmt::format("{} placed", n_words(n)), .text = text};
+}
+
+/// Where to mount them, which test to run, and with which commands.
+std::vector<std::string> steps_after_placement(const Placement& p, const scenarios::Scenario& scenario) {
+  const std::size_t n_new = p.names.size();
+  std::vector<std::string> steps;
+  if (n_new > 0)
+    steps.push_back(
+        fmt::format("Mount {} at the points of the table below; placed.yaml is the scenario with {}, sensors.yaml "
+                    "holds {} alone.",
+                    n_words(n_new), n_new == 1 ? "it" : "them", n_new == 1 ? "its entry" : "the entries"));
+  const int least = studies::least_test(
+      p.tests, p.options.placed_for == PlacedFor::kObserver ? &Residual::observer_um : &Residual::regression_um);
+  if (least >= 0) steps.push_back(fmt::format("Record a test: {}.", p.tests[static_cast<std::size_t>(least)].programme));
+  const std::string target = scenario.study || p.channels.empty() ? "" : " --target " + p.channels.front();
+  steps.push_back(fmt::format(
+      "Then judge strategies on it: `driftwright validate placed.yaml --train TEST.csv --test ANOTHER_DAY.csv{}`.", target));
+  return steps;
 }
 
 Table places_table(const Placement& p, const std::vector<std::string>& entries) {
@@ -119,7 +139,7 @@ Table places_table(const Placement& p, const std::vector<std::string>& entries) 
 Table curve_table(const Placement& p) {
   Table table{
       .key = "curve",
-      .title = "How many",
+      .title = "How many: all figures",
       .caption =
           "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of "
           "the same places; with the loss of the worst one "
@@ -145,6 +165,16 @@ Table curve_table(const Placement& p) {
                           p.chosen_lost[n].regression_um, p.observer_um[n], p.regression_um[n], p.objective_um[n], places});
   }
   return table;
+}
+
+/// Some columns of the curve, for people.
+Table short_curve(Table curve) {
+  constexpr std::size_t kShown = 5;  // n, both predictors, and both with the worst one lost
+  curve.key.clear();
+  curve.title = "How many";
+  for (std::size_t c = kShown; c < curve.columns.size(); ++c) curve.columns[c].title.clear();
+  curve.caption = "RMS of the drift left on cyclograms and machines that were not chosen on.";
+  return curve;
 }
 
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
@@ -277,77 +307,92 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
           fmt::format("{}{}", p.model, p.is_linearised ? "; laws of temperature frozen where the machine is at work" : "")};
   output::Section& body = document.body;
   add(body, verdict_of(p));
-  if (p.mesh.n_nodes() > 0) add(body, told_picture(p, *scenario.machine));
-  add(body, places_table(p, entries));
-  add(body, Value{.key = "channels", .words = "drift of", .datum = p.channels});
-  add(body, Value{.key = "placed_for", .words = "chosen for", .datum = for_words(p.options.placed_for)});
-  add(body, Value{.key = "any_may_fail", .words = "any one may fail", .datum = p.options.any_may_fail});
-  add(body, Value{.key = "regions", .words = "may sit on", .datum = p.regions});
-  if (!p.left_out.empty())
-    add(body, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
-  if (!p.options.mounted.empty()) add(body, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
-  add(body,
-      Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
-  add(body, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
-  add(body, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
-  if (!p.made.empty()) add(body, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
-  add(body, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
-  add(body, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
-  add(body, Value{.key = "noise_K",
-                  .words = "noise of a reading",
-                  .datum = p.options.noise_K,
-                  .unit = "K",
-                  .digits = output::significant(2)});
-  add(body, Value{.key = "drift_um",
-                  .words = "drift without correction, RMS",
-                  .datum = p.drift_um,
-                  .unit = "um",
-                  .digits = output::decimals(2)});
-  add(body, Value{.key = "model_alone_um",
-                  .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted",
-                  .datum = p.without.observer_um,
-                  .unit = "um",
-                  .digits = output::decimals(2)});
-  add(body, Value{.key = "enough", .words = "thermometers after which no more take off a tenth each", .datum = enough(p)});
-  add(body, curve_table(p));
-  add(body, curve_plot(p, &Residual::observer_um, "observer"));
-  add(body, curve_plot(p, &Residual::regression_um, "regression"));
-  add(body, ways_table(p, &Residual::observer_um, "observer"));
-  add(body, ways_table(p, &Residual::regression_um, "regression"));
+
+  output::Section picture;
+  if (p.mesh.n_nodes() > 0) add(picture, told_picture(p, *scenario.machine));
+  add(picture, curve_plot(p, &Residual::observer_um, "observer"));
+  add(picture, curve_plot(p, &Residual::regression_um, "regression"));
+  body.sections.push_back(std::move(picture));
+  body.sections.push_back(output::next_section(steps_after_placement(p, scenario)));
+
+  output::Section numbers{.title = "The numbers"};
+  add(numbers, places_table(p, entries));
+  add(numbers, Value{.key = "drift_um",
+                     .words = "drift without correction, RMS",
+                     .datum = p.drift_um,
+                     .unit = "um",
+                     .digits = output::decimals(2)});
+  add(numbers, Value{.key = "model_alone_um",
+                     .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted",
+                     .datum = p.without.observer_um,
+                     .unit = "um",
+                     .digits = output::decimals(2)});
+  add(numbers,
+      Value{.key = "enough", .words = "thermometers after which no more take off a tenth each", .datum = enough(p)});
   if (p.own) {
-    add(body,
+    add(numbers,
         Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
-    add(body, Value{.key = "own.observer_um",
-                    .words = "these leave to the observer",
-                    .datum = p.own->left.front().observer_um,
-                    .unit = "um",
-                    .digits = output::decimals(2)});
-    add(body, Value{.key = "own.regression_um",
-                    .words = "to the regression",
-                    .datum = p.own->left.front().regression_um,
-                    .unit = "um",
-                    .digits = output::decimals(2)});
+    add(numbers, Value{.key = "own.observer_um",
+                       .words = "these leave to the observer",
+                       .datum = p.own->left.front().observer_um,
+                       .unit = "um",
+                       .digits = output::decimals(2)});
+    add(numbers, Value{.key = "own.regression_um",
+                       .words = "to the regression",
+                       .datum = p.own->left.front().regression_um,
+                       .unit = "um",
+                       .digits = output::decimals(2)});
   }
-  add(body, losses_table(p));
+  add(numbers, short_curve(curve_table(p)));
   if (const int least = studies::least_test(p.tests, &Residual::regression_um); least >= 0) {
     const studies::TriedTest& test = p.tests[static_cast<std::size_t>(least)];
-    add(body, Verdict{.key = "test_for_regression",
-                      .title = fmt::format("Test for a regression: {}", test.programme),
-                      .text = fmt::format("Fitted to it alone, a regression on these places leaves {:.2f} µm, within a "
-                                          "tenth of the best test that was tried.",
-                                          test.left.regression_um)});
+    add(numbers, Verdict{.key = "test_for_regression",
+                         .title = fmt::format("Test for a regression: {}", test.programme),
+                         .text = fmt::format("Fitted to it alone, a regression on these places leaves {:.2f} µm, within a "
+                                             "tenth of the best test that was tried.",
+                                             test.left.regression_um)});
     const studies::TriedTest& other =
         p.tests[static_cast<std::size_t>(studies::least_test(p.tests, &Residual::observer_um))];
-    add(body, Verdict{.key = "test_for_observer",
-                      .title = fmt::format("Test for the observer: {}", other.programme),
-                      .text = fmt::format("Having learned from it, the observer leaves {:.2f} µm, within a tenth of the "
-                                          "best test; without a test {:.2f} µm.",
-                                          other.left.observer_um,
-                                          p.chosen.left[static_cast<std::size_t>(p.options.n) - 1].observer_um)});
+    add(numbers, Verdict{.key = "test_for_observer",
+                         .title = fmt::format("Test for the observer: {}", other.programme),
+                         .text = fmt::format("Having learned from it, the observer leaves {:.2f} µm, within a tenth of the "
+                                             "best test; without a test {:.2f} µm.",
+                                             other.left.observer_um,
+                                             p.chosen.left[static_cast<std::size_t>(p.options.n) - 1].observer_um)});
   }
-  add(body, tests_table(p));
-  add(body, output::Preformatted{.title = "To paste under `sensors:`",
-                                 .text = fmt::format("  - {}\n", fmt::join(entries, "\n  - "))});
+  body.sections.push_back(std::move(numbers));
+
+  output::Section experts{.title = "For experts"};
+  output::Section how{.title = "How the places were chosen", .detail = true};
+  add(how, Value{.key = "channels", .words = "drift of", .datum = p.channels});
+  add(how, Value{.key = "placed_for", .words = "chosen for", .datum = for_words(p.options.placed_for)});
+  add(how, Value{.key = "any_may_fail", .words = "any one may fail", .datum = p.options.any_may_fail});
+  add(how, Value{.key = "regions", .words = "may sit on", .datum = p.regions});
+  if (!p.left_out.empty())
+    add(how, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
+  if (!p.options.mounted.empty()) add(how, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
+  add(how,
+      Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
+  add(how, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
+  add(how, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
+  if (!p.made.empty()) add(how, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
+  add(how, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
+  add(how, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
+  add(how, Value{.key = "noise_K",
+                 .words = "noise of a reading",
+                 .datum = p.options.noise_K,
+                 .unit = "K",
+                 .digits = output::significant(2)});
+  output::Section compared{.title = "Other numbers and ways to choose, the loss of one, tests", .detail = true};
+  add(compared, curve_table(p));
+  add(compared, ways_table(p, &Residual::observer_um, "observer"));
+  add(compared, ways_table(p, &Residual::regression_um, "regression"));
+  add(compared, losses_table(p));
+  add(compared, tests_table(p));
+  output::Section entries_text{.title = "The entries, to paste under `sensors:`", .detail = true};
+  add(entries_text, output::Preformatted{.text = fmt::format("  - {}\n", fmt::join(entries, "\n  - "))});
+  for (output::Section* part : {&how, &compared, &entries_text}) experts.sections.push_back(std::move(*part));
+  body.sections.push_back(std::move(experts));
   return document;
 }
 

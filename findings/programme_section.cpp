@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace driftwright::findings {
 namespace {
@@ -45,6 +46,25 @@ Table overview_table(const studies::ProgrammeStudy& study) {
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+/// The answer: the predictor with the smallest largest error, if there are predictors.
+std::optional<output::Verdict> best_predictor(const studies::ProgrammeStudy& study) {
+  const auto all = [](const studies::JudgedCyclogram&) { return true; };
+  const auto largest_percent = [&](const studies::JudgedPredictor& p) {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < study.channels.name.size(); ++c)
+      largest = std::max(largest, studies::summary(study, p, c, all).largest_percent);
+    return largest;
+  };
+  if (study.predictors.empty()) return std::nullopt;
+  const auto best = std::min_element(study.predictors.begin(), study.predictors.end(),
+                                     [&](const auto& a, const auto& b) { return largest_percent(a) < largest_percent(b); });
+  return output::Verdict{
+      .key = "",
+      .title = fmt::format("Best predictor: {}", best->name()),
+      .text = fmt::format("It errs by {:.2f} % at most over {} cyclograms that it was not fitted on, in every channel.",
+                          largest_percent(*best), study.judged.size())};
 }
 
 /// A predictor's errors by kinds of cyclograms, an item of the list `predictors`.
@@ -147,6 +167,7 @@ output::Plot course(const studies::ProgrammeStudy& study, std::size_t cyclogram,
 
 Section programme_section(const studies::ProgrammeStudy& study, const scenarios::Scenario& scenario) {
   Section section{.title = "Predictors of drift side by side"};
+  if (const auto answer = best_predictor(study)) add(section, *answer);
   add(section, overview_table(study));
   if (!study.error_by_modes.empty()) {
     add(section,

@@ -6,6 +6,7 @@
 
 #include "base/quantity.hpp"
 #include "diagnosis/residual_structure.hpp"
+#include "findings/residual_figure.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -32,16 +33,10 @@ struct Curves {
 };
 
 Curves curves_of(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, std::size_t r, const MeasuredChannel& c) {
-  const bool is_temperature = c.unit == "K";
-  const double scale = is_temperature ? 1.0 : 1e6;
-  const double zero = is_temperature ? m.twin->reference_K() - kZeroCelsius_K : 0.0;
+  const auto [unit, difference_unit, scale, zero] = shown_scale(m, c);
   Curves k{.name = c.name,
-           .unit = is_temperature  ? "degC"
-                   : c.unit == "m" ? "um"
-                                   : "urad",
-           .difference_unit = is_temperature  ? "K"
-                              : c.unit == "m" ? "um"
-                                              : "urad",
+           .unit = unit,
+           .difference_unit = difference_unit,
            .time_min = {},
            .measured = {},
            .written = {},
@@ -148,7 +143,7 @@ Section record_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosi
   const MeasuredRun& run = m.runs[r];
   Section section{.title = "Record " + run.name, .detail = true};
   add(section, drive_plot(run));
-  add(section, ambient_plot(run, m.twin->reference_K()));
+  add(section, ambient_plot(run, m.twin ? m.twin->reference_K() : kZeroCelsius_K));
   constexpr output::Digits kThreeDigits = output::significant(3), kCorrelation = output::signed_decimals(2);
   Table structure{
       .title = "Residuals against noise",

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "findings/iso230_3_section.hpp"
 #include "findings/prediction_document.hpp"
@@ -260,6 +262,67 @@ output::Verdict overwrites(const CorrectedSeries& series) {
                               values)};
 }
 
+/// Blocks beyond a limit of the machine, neighbours with the same in one row, and corrections that are held at a limit.
+Table beyond_table(const CorrectedSeries& series) {
+  constexpr std::size_t kMostPlaces = 100;
+  Table table{.key = "beyond_limits",
+              .title = "Where the correction is held, beyond a limit of the machine",
+              .columns = {{.key = "parts", .title = series.is_series() ? "parts" : ""},
+                          {.key = "where", .title = "where"},
+                          {.key = "limit", .title = "limit"},
+                          {.key = "what", .title = "what"}}};
+  const auto where = [&](std::size_t first, std::size_t last) {
+    return lines_of(series, LongStretch{.first = first, .last = last});
+  };
+  const auto parts = [&](const SharedPlan& shared) { return series.is_series() ? Datum(parts_of(shared)) : Datum(""); };
+  static constexpr std::array<const char*, 3> kKeys = {"speed", "feed", "travel"};
+  std::vector<compensation::BlockBeyond> blocks = series.beyond;
+  const auto limit_of = [](const compensation::BlockBeyond& b) { return std::tuple(b.what, b.axis, b.limit); };
+  std::stable_sort(blocks.begin(), blocks.end(), [&](const auto& x, const auto& y) { return limit_of(x) < limit_of(y); });
+  for (std::size_t i = 0; i < blocks.size();) {
+    compensation::BlockBeyond worst = blocks[i];
+    std::size_t end = i + 1;
+    for (; end < blocks.size() && limit_of(blocks[end]) == limit_of(worst) && blocks[end].step == blocks[end - 1].step + 1;
+         ++end) {
+      if (std::abs(blocks[end].value - worst.limit) > std::abs(worst.value - worst.limit)) worst.value = blocks[end].value;
+    }
+    table.rows.push_back({series.is_series() ? "all" : "", where(blocks[i].step, blocks[end - 1].step),
+                          kKeys[static_cast<std::size_t>(worst.what)], words_of(worst)});
+    i = end;
+  }
+  const CorrectionLimits& limits = series.limits.correction;
+  for (const CorrectedProgram& program : series.programs) {
+    for (const compensation::HeldCorrection& held : program.shared.plan.held) {
+      const std::string axis = letter(series.settings.axes[held.axis].axis);
+      table.rows.push_back({parts(program.shared), where(held.first, held.last), held.is_step ? "step" : "correction",
+                            held.is_step
+                                ? fmt::format("{} would change from {:g} to {:g} um; at most {:g} um at once is allowed",
+                                              axis, held.held_um, held.planned_um, limits.most_step_um)
+                                : fmt::format("{} would be {:g} um; at most {:g} um is allowed, and {:g} um is held", axis,
+                                              held.planned_um, limits.most_um, held.held_um)});
+    }
+  }
+  if (const std::size_t n = table.rows.size(); n > kMostPlaces) {
+    table.rows.resize(kMostPlaces);
+    table.rows.push_back({"", fmt::format("{} more places", n - kMostPlaces), "", ""});
+  }
+  return table;
+}
+
+output::Verdict beyond_verdict(const CorrectedSeries& series) {
+  const bool has_speed = std::any_of(series.beyond.begin(), series.beyond.end(), [](const compensation::BlockBeyond& b) {
+    return b.what == compensation::BlockBeyond::What::kSpeed;
+  });
+  return {.key = "beyond",
+          .kind = output::Verdict::Kind::kBad,
+          .title = "The program goes beyond the limits of the machine",
+          .text = fmt::format("--beyond plans it nevertheless. In these blocks nothing is corrected: the correction before "
+                              "them is held.{}",
+                              has_speed ? " The drift at and after a speed beyond the limit is extrapolated, and later "
+                                          "corrections with it."
+                                        : "")};
+}
+
 output::Verdict verdict_of(const CorrectedSeries& series) {
   bool inside = true;
   for (const CorrectedProgram& program : series.programs) {
@@ -299,6 +362,9 @@ output::Document document_of(const CorrectedSeries& series, const std::string& s
   put("language", language_of(series.program.dialect));
   put("offset", series.settings.absolute ? "absolute" : "add");
   if (series.settings.absolute) add(body, overwrites(series));
+  Table beyond = beyond_table(series);
+  if (!beyond.rows.empty()) add(body, beyond_verdict(series));
+  add(body, std::move(beyond));
   add(body, output::Text{.words = proven_words(series), .key = "proven"});
   int n_divided = 0;
   for (const CorrectedProgram& program : series.programs) n_divided += program.shared.plan.n_divided;

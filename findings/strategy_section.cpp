@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,12 @@ bool is_intact(const Case& c) {
 
 bool has_failures(const StrategyMatrix& m) {
   return m.settings.fails_at.has_value();
+}
+
+/// What the model of the strategies with physics lost when it was made linear; null if nothing.
+const LinearisedModel* linearised_of(const StrategyMatrix& m) {
+  const std::optional<Physics>& physics = m.settings.strategies.physics;
+  return physics && physics->linearised ? &*physics->linearised : nullptr;
 }
 
 /// One column of the matrix, with the cases whose worst it shows.
@@ -321,32 +328,102 @@ std::optional<output::Picture> failed_map(const StrategyMatrix& m) {
                 columns);
 }
 
+/// The answer: whether the chosen strategy may go on the machine, and what it leaves.
 output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen) {
   const Worst intact = worst_of(chosen, is_intact), failed = worst_of(chosen, has_failed);
-  const JudgedStrategy& best = best_in_hindsight(m);
   using Kind = output::Verdict::Kind;
+  std::string text;
+  if (intact.peak)
+    text = fmt::format(
+        "At worst it leaves {:.1f} µm of {} where {:.1f} µm are without correction ({}); the tolerance is "
+        "{:g} µm.",
+        intact.peak->after.peak_abs, m.settings.strategies.target, intact.peak->before.peak_abs,
+        name_of(m.runs[intact.peak->run]), m.settings.tolerance_um);
+  if (chosen.safety == Safety::kUnsafe)
+    text += fmt::format(" Why it is not safe: {}.", chosen.why);
+  else if (chosen.safety == Safety::kWithinLimits)
+    text += fmt::format(" It keeps the tolerance in: {}.", fmt::join(chosen.limits, ", "));
+  else if (failed.peak)
+    text += fmt::format(" With one failed sensor it leaves {:.1f} µm at most.", failed.peak->after.peak_abs);
   return {.kind = chosen.safety == Safety::kUnsafe ? Kind::kBad
                   : chosen.safety == Safety::kSafe ? Kind::kGood
                                                    : Kind::kNeutral,
-          .title = fmt::format("chosen: {}, {}", chosen.fitted.name, word(chosen.safety)),
-          .text = fmt::format("Chosen by the training runs alone: {}. On the runs it is judged by it leaves {:.3g} µm RMS, "
-                              "{:.0f} % of the peak in its "
-                              "worst run{}{}. Why: {}.",
-                              m.choice.why, overall_rms(chosen), 100.0 * intact.left,
-                              failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "",
-                              &best == &chosen ? "; no other leaves less"
-                                               : fmt::format("; in hindsight '{}' leaves {:.3g} µm RMS", best.fitted.name,
-                                                             overall_rms(best)),
-                              chosen.why)};
+          .title = fmt::format("{}: {}{}",
+                               chosen.safety == Safety::kUnsafe ? "Not safe to use on the machine"
+                               : chosen.safety == Safety::kSafe ? "Safe to use on the machine"
+                                                                : "Safe to use within limits",
+                               chosen.fitted.name,
+                               chosen.safety == Safety::kWithinLimits
+                                   ? fmt::format(" ({} of {} cells)", chosen.cells.n_kept(), chosen.cells.n())
+                                   : ""),
+          .text = text};
 }
 
-void add_pictures(Section& section, const StrategyMatrix& m) {
+/// Why this strategy was chosen, and how good the choice was.
+std::string choice_text(const StrategyMatrix& m, const JudgedStrategy& chosen) {
+  const JudgedStrategy& best = best_in_hindsight(m);
+  return fmt::format(
+      "{} was chosen by the training runs alone: {}. On the runs it is judged by it leaves {:.3g} µm RMS{}. "
+      "{}: {}.",
+      chosen.fitted.name, m.choice.why, overall_rms(chosen),
+      &best == &chosen ? "; no other leaves less"
+                       : fmt::format("; in hindsight '{}' leaves {:.3g} µm RMS", best.fitted.name, overall_rms(best)),
+      word(chosen.safety), chosen.why);
+}
+
+/// What to do with the chosen strategy. @param chosen  null: none
+std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrategy* chosen) {
+  if (!chosen)
+    return {
+        "Add training runs, at least two with different cyclograms (`--train`, or `train` under `validation`): parts of "
+        "them are left out in turn to choose a strategy."};
+  const std::string file = "models/" + model_file_name(chosen->fitted.name) + ".json";
+  if (chosen->safety == Safety::kUnsafe)
+    return {
+        "Do not use it on the machine. The orange cells of the picture show in which cyclograms and seasons it fails: add "
+        "such runs to the training runs and run `driftwright validate` again.",
+        "`driftwright plan-test SCENARIO` plans the test that is still missing, `driftwright place SCENARIO` the "
+        "thermometers."};
+  const bool is_of_records =
+      std::any_of(m.training.begin(), m.training.end(), [](const ObservedRun& r) { return !r.rows.file.empty(); });
+  return {
+      fmt::format("{} holds it. `driftwright compensate SCENARIO --model {} --through {}` shows its correction on another "
+                  "{} before it goes on the machine.",
+                  file, file, is_of_records ? "none --measured ANOTHER_DAY.csv" : "injector",
+                  is_of_records ? "record" : "cyclogram"),
+      fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
+                  chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
+}
+
+/// The matrix in few columns, for people.
+Table short_table(const StrategyMatrix& m) {
+  Table table{.title = fmt::format("What strategies leave of {}, fitted on {} runs, judged on {} others",
+                                   m.settings.strategies.target, m.training.size(), m.runs.size()),
+              .columns = {{.title = "strategy"}, um_column("", "largest residual")}};
+  for (output::Column column : {um_column("", "with a failed sensor"), um_column("", "RMS", 2)})
+    table.columns.push_back(column);
+  if (!has_failures(m)) table.columns[2].title.clear();
+  table.columns.push_back({.title = "verdict"});
+  for (const JudgedStrategy& s : m.strategies) {
+    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, has_failed);
+    table.rows.push_back({s.fitted.name, intact.peak ? Datum(intact.peak->after.peak_abs) : Datum(),
+                          failed.peak ? Datum(failed.peak->after.peak_abs) : Datum(), overall_rms(s),
+                          s.fitted.is_baseline ? "baseline" : word(s.safety)});
+  }
+  return table;
+}
+
+output::Bars left_bars(const StrategyMatrix& m) {
   output::Bars bars{.caption = "Largest share of the peak that is left in any run, sensors intact [%].", .bars = {}};
   for (const JudgedStrategy& s : m.strategies) {
     const double left = 100.0 * worst_of(s, is_intact).left;
     bars.bars.push_back({s.fitted.name, std::min(left, 200.0), fmt::format("{:.0f} %", left)});
   }
-  add(section, std::move(bars));
+  return bars;
+}
+
+/// The drift of the run that is hardest for few sensors, and what strategies take it for.
+void add_course(Section& section, const StrategyMatrix& m) {
   const Contrast c = contrast(m);
   if (!c.simple || !c.chosen) return;
   std::vector<const JudgedStrategy*> shown = {c.simple, c.chosen};
@@ -359,12 +436,14 @@ void add_pictures(Section& section, const StrategyMatrix& m) {
 /// The formula in readable form, if there is one.
 void add_formula(Section& section, const StrategyMatrix& m) {
   for (const JudgedStrategy& s : m.strategies) {
+    if (s.fitted.name != "regression, forward" || !s.fitted.fail_safe) continue;
     const DriftModel* model = as_formula(*s.fitted.predictor);
-    if (!model || !s.fitted.fail_safe || s.fitted.name != "regression, forward") continue;
+    if (!model) continue;
     const double interval_um = s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN());
     section.sections.push_back(
         {.title = "The formula of '" + s.fitted.name + "'",
-         .blocks = {output::Preformatted{.text = output::formula_text({*model, *s.fitted.fail_safe, interval_um})}}});
+         .blocks = {output::Preformatted{.text = output::formula_text({*model, *s.fitted.fail_safe, interval_um})}},
+         .detail = true});
   }
 }
 
@@ -381,6 +460,13 @@ Section conditions_of(const StrategyMatrix& m) {
   put("sensors_fail_at", m.settings.fails_at);
   put("reading_K", how.reading_K);
   put("drift_um", how.drift_um);
+  const LinearisedModel* linearised = linearised_of(m);
+  put("linearised_error_um", linearised ? Datum(linearised->error_um) : Datum());
+  if (linearised) {
+    Table laws{.key = "linearised_laws", .columns = {{.key = "law"}, {.key = "at_degC"}, {.key = "spread_K"}}};
+    for (const solver::LinearisedLaw& l : linearised->laws) laws.rows.push_back({l.name, l.at_K - 273.15, l.spread_K});
+    add(section, std::move(laws));
+  }
   std::vector<std::string> simulated;
   Table records{.key = "trained_on", .columns = {{.key = "file"}, {.key = "from_s"}, {.key = "until_s"}}};
   for (const ObservedRun& r : m.training) {
@@ -411,12 +497,19 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                           um_column("interval_95_um", "95 %"),
                           percent_column("covered_percent", "covered"),
                           {.key = "verdict", .title = "verdict"},
+                          {.key = "cells_kept", .title = "cells kept"},
+                          {.key = "cells", .title = "of cells"},
+                          {.key = "model", .title = linearised_of(m) ? "model" : ""},
                           {.key = "beaten_by", .title = "beaten by"},
                           um_column("largest_rms_um", ""),
                           {.key = "baseline"},
                           {.key = "worse_than_nothing"},
                           {.key = "why"},
                           {.key = "keeps_tolerance_in"},
+                          {.key = "cells_kept_intact"},
+                          {.key = "cells_intact"},
+                          {.key = "not_kept"},
+                          {.key = "n_not_kept"},
                           {.key = "sensors"},
                           {.key = "decided"}}};
   for (const JudgedStrategy* judged : strategies) {
@@ -433,12 +526,19 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
                               s.fitted.interval_um,
                               covers ? Datum(100.0 * intact.mean_covered) : Datum(),
                               base ? Datum("baseline") : Datum(word(s.safety)),
+                              s.cells.n_kept(),
+                              s.cells.n(),
+                              s.fitted.model,
                               base ? Datum("") : Datum(s.beaten_by),
                               intact.rms_um,
                               base,
                               base ? Datum() : Datum(s.is_worse_than_nothing),
                               base ? Datum() : Datum(s.why),
                               base ? Datum() : Datum(s.limits),
+                              s.cells.n_kept_intact,
+                              s.cells.n_intact,
+                              s.cells.not_kept,
+                              s.cells.n_not_kept,
                               s.fitted.sensors,
                               s.fitted.reason};
     table.rows.push_back(std::move(row));
@@ -446,38 +546,32 @@ Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedSt
   return table;
 }
 
-Section strategy_section(const StrategyMatrix& m) {
-  Section section = conditions_of(m);
-  section.key = "validation";
-  if (const JudgedStrategy* chosen = chosen_strategy(m)) {
-    add(section, Value{.key = "chosen", .datum = chosen->fitted.name});
-    add(section, Value{.key = "why_chosen", .datum = m.choice.why});
-    add(section, verdict_of(m, *chosen));
+std::string model_file_name(const std::string& strategy) {
+  std::string name;
+  for (char ch : strategy) {
+    if (std::isalnum(static_cast<unsigned char>(ch))) {
+      name += ch;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
   }
-  add(section, intact_map(m));
-  if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
+  return name;
+}
+
+namespace {
+
+Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) {
+  Section section{.title = "The numbers"};
+  if (chosen) add(section, output::Text{choice_text(m, *chosen)});
   if (const std::string axis = axis_text(m); !axis.empty()) add(section, output::Text{axis});
-  add(section,
-      output::Text{
-          .words = fmt::format(
-              "Residual: drift less the correction in force, that is the prediction times trust, clamped and slewed. Of "
-              "each family the "
-              "worst run in any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. "
-              "Left out: RMS on "
-              "parts of the training runs that it was not fitted to, which is what the choice is made by. 95 "
-              "%: half width "
-              "of the prediction interval, from parts left out, and the share of rows that it covers. Fitted on {} "
-              "training runs "
-              "that are none of these.",
-              has_failures(m)
-                  ? ", then with each sensor of the strategy failed half-way in the first season: stuck, open, fallen "
-                    "off, drifting by 2 K/h either way, exchanged with the one least like it"
-                  : "",
-              m.training.size()),
-          .detail = true});
-  std::vector<const JudgedStrategy*> all;
-  for (const JudgedStrategy& s : m.strategies) all.push_back(&s);
-  add(section, strategies_table(m, all));
+  if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
+  add(section, short_table(m));
+  if (const LinearisedModel* linearised = linearised_of(m))
+    add(section, output::Text{fmt::format(
+                     "Films or heat of this machine follow temperatures. Strategies with physics use a model that is {}, "
+                     "about the training runs. In these its drift differs from that of the nonlinear model by at most "
+                     "{:.2g} µm; the largest drift is {:.3g} µm.",
+                     words_of(*linearised), linearised->error_um, linearised->drift_um)});
   std::vector<std::string> harmful;
   for (const JudgedStrategy& s : m.strategies) {
     if (s.is_worse_than_nothing && !s.fitted.is_baseline) harmful.push_back(s.fitted.name);
@@ -495,12 +589,59 @@ Section strategy_section(const StrategyMatrix& m) {
                .columns = {{.key = "family", .title = "family"}, {.key = "enough", .title = "enough"}}};
   for (const std::string& family : families_of(m)) enough.rows.push_back({family, enough_text(m, family)});
   add(section, std::move(enough));
+  return section;
+}
+
+Section strategy_details(const StrategyMatrix& m) {
+  Section section{.title = "For experts"};
+  std::vector<const JudgedStrategy*> all;
+  for (const JudgedStrategy& s : m.strategies) all.push_back(&s);
+  Table strategies = strategies_table(m, all);
+  strategies.detail = true;
+  strategies.title = "All figures of each strategy";
+  strategies.caption = fmt::format(
+      "Residual: drift less the correction in force, that is the prediction times trust, clamped and slewed. Of each family "
+      "the worst run in any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. Left "
+      "out: "
+      "RMS on parts of the training runs that it was not fitted to, which is what the choice is made by. 95 %: half width "
+      "of "
+      "the prediction interval, from parts left out, and the share of rows that it covers. Fitted on {} training runs that "
+      "are none of these.",
+      has_failures(m) ? ", then with each sensor of the strategy failed half-way in the first season: stuck, open, fallen "
+                        "off, drifting by 2 K/h either way, exchanged with the one least like it"
+                      : "",
+      m.training.size());
+  add(section, std::move(strategies));
   for (Table table : {folds_table(m), matrix_table(m), verdicts_table(m), worst_table(m), false_alarms_table(m)})
     add(section, std::move(table));
-  add_pictures(section, m);
   add(section, iso230_3_table(judged_iso230_3(m)));
   add(section, fits_table(m));
+  section.sections.push_back({.title = "Shares of the peak that are left", .blocks = {left_bars(m)}, .detail = true});
   add_formula(section, m);
+  return section;
+}
+
+}  // namespace
+
+Section strategy_section(const StrategyMatrix& m) {
+  Section section = conditions_of(m);
+  section.key = "validation";
+  const JudgedStrategy* chosen = chosen_strategy(m);
+  if (chosen) {
+    add(section, Value{.key = "chosen", .datum = chosen->fitted.name});
+    add(section, Value{.key = "why_chosen", .datum = m.choice.why});
+    add(section, verdict_of(m, *chosen));
+  } else {
+    add(section, output::Verdict{.key = "",
+                                 .title = "No strategy is chosen",
+                                 .text = "Too little can be left out of the training runs to choose one. The picture shows "
+                                         "what each strategy leaves on the judged runs."});
+  }
+  add(section, intact_map(m));
+  add_course(section, m);
+  section.sections.push_back(output::next_section(steps_with(m, chosen)));
+  section.sections.push_back(strategy_numbers(m, chosen));
+  section.sections.push_back(strategy_details(m));
   return section;
 }
 

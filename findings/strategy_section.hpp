@@ -6,8 +6,8 @@
 
 namespace driftwright::findings {
 
-/// Section `validation`: verdicts, the remaining error of each strategy by family and season and in its worst case, and what
-/// was left out.
+/// Section `validation`: whether the chosen strategy may go on the machine, the remaining error of each strategy by family and
+/// season as a picture, what to do next, the numbers; folded what only an expert needs.
 [[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix);
 
 /// The conditions that all strategies were judged under: target, tolerance, training runs.
@@ -15,6 +15,9 @@ namespace driftwright::findings {
 /// The verdicts on these strategies, one row each, with the key `strategies`.
 [[nodiscard]] output::Table strategies_table(const compensation::StrategyMatrix& matrix,
                                              const std::vector<const compensation::JudgedStrategy*>& strategies);
+
+/// The name of a strategy's files in models/, without extension: "ridge_all_sensors".
+[[nodiscard]] std::string model_file_name(const std::string& strategy);
 
 /// One row per strategy, run and failed sensor: too long for a document.
 [[nodiscard]] output::Table cases_table(const compensation::StrategyMatrix& matrix);

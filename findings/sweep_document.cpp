@@ -16,7 +16,7 @@ using scenarios::SweepPlan;
 using scenarios::Variation;
 using studies::SweepColumns;
 
-constexpr std::size_t kMostSweepPlots = 24, kMostPoints = 2000, kMostFailures = 50;
+constexpr std::size_t kMostSweepPlots = 24, kMostSweepPoints = 2000, kMostFailures = 50;
 
 std::string axis_label(const Variation& v) {
   if (v.is_number) return v.unit.empty() ? v.name : fmt::format("{} [{}]", v.name, v.unit);
@@ -35,7 +35,7 @@ Plot scatter(const Variation& v, const std::vector<double>& x, const std::string
             .marks = {},
             .half_width = true};
   output::Series series{.label = result, .x = {}, .y = {}, .style = output::Series::Style::kPoints};
-  for (std::size_t i = 0; i < x.size() && series.x.size() < kMostPoints; ++i) {
+  for (std::size_t i = 0; i < x.size() && series.x.size() < kMostSweepPoints; ++i) {
     if (std::isnan(x[i]) || std::isnan(y[i])) continue;
     series.x.push_back(x[i]);
     series.y.push_back(y[i]);
@@ -131,7 +131,7 @@ output::Document sweep_document(const SweepPlan& plan, const std::map<std::size_
   const auto remark = [&](const std::string& words) { add(plots, output::Text{.words = words, .detail = true}); };
   if (n_all > kMostSweepPlots)
     remark(fmt::format("The first {} of {} pairs; all are in sweep.csv.", kMostSweepPlots, n_all));
-  if (rows.size() > kMostPoints) remark(fmt::format("Plots show the first {} members.", kMostPoints));
+  if (rows.size() > kMostSweepPoints) remark(fmt::format("Plots show the first {} members.", kMostSweepPoints));
   body.sections.push_back(std::move(plots));
   return document;
 }

@@ -178,9 +178,9 @@ std::string corrected_words(const studies::CorrectedWarmUps& corrected, const Wa
   return fmt::format(
       "Warm-up of {} min at {:.0f} rpm, then the job, {} corrected by strategies that were fitted on the scenario's "
       "training runs, with a "
-      "model that is off by {:.0f} % where they have one, and readings with noise. Enough: within {}.",
+      "model that is off by {:.0f} %{} where they have one, and readings with noise. Enough: within {}.",
       fmt::format("0 to {:.0f}", corrected.times_s.back() / 60.0), corrected.speed_rpm, corrected.target,
-      100.0 * corrected.model_scatter, tolerance_words(plan));
+      100.0 * corrected.model_scatter, corrected.model.empty() ? "" : " and " + corrected.model, tolerance_words(plan));
 }
 
 Plot corrected_plot(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {

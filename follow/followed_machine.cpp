@@ -37,7 +37,10 @@ void require_streamable(const MachineModel& machine) {
 class FollowedMachine final : public Followed {
  public:
   FollowedMachine(const scenarios::Scenario& scenario, const FollowOptions& options, const Listener& listener)
-      : path_(scenario.path), machine_(*scenario.machine), tolerances_(scenario.solver.transient) {
+      : path_(scenario.path),
+        machine_(*scenario.machine),
+        most_speed_rpm_(scenario.limits.speed_rpm),
+        tolerances_(scenario.solver.transient) {
     require_streamable(machine_);
     scenarios::Scenario asked = scenario;
     asked.solver.model = studies::predicting_model(scenario);
@@ -57,6 +60,7 @@ class FollowedMachine final : public Followed {
     settings.most_rate_um_s = options.most_rate_um_s.value_or(settings.most_rate_um_s);
     settings.hold_s = options.hold_s.value_or(settings.hold_s);
     settings.fade_s = options.fade_s.value_or(settings.fade_s);
+    settings.limits = scenario.limits.correction;
     for (const scenarios::DisplacementOutput& d : machine_.displacements) {
       const auto at = std::find(outputs.name.begin(), outputs.name.end(), d.name);
       if (at == outputs.name.end()) throw std::logic_error("a displacement is no output of the model");
@@ -85,7 +89,11 @@ class FollowedMachine final : public Followed {
     const Eigen::VectorXd outputs = observed();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       axes_[a].predicted_um = 1e6 * outputs[output_[a]];
-      stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
+      if (is_too_fast()) {
+        stages_[a].wait(step_s);  // the correction is held, and fades if that lasts
+      } else {
+        stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
+      }
     }
     return true;
   }
@@ -106,6 +114,9 @@ class FollowedMachine final : public Followed {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
       if (has_begun()) axes[a].doubted = run_->older_than(stages_[a].most_age_s());
+      if (has_begun() && is_too_fast() &&
+          std::find(axes[a].doubted.begin(), axes[a].doubted.end(), "speed") == axes[a].doubted.end())
+        axes[a].doubted.emplace_back("speed");
     }
     return axes;
   }
@@ -132,6 +143,9 @@ class FollowedMachine final : public Followed {
   }
 
  private:
+  /// True while the spindle turns faster than `limits` of the scenario allows.
+  [[nodiscard]] bool is_too_fast() const { return run_->drive().speed_rpm > most_speed_rpm_; }
+
   /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
     MachineModel here = machine_;
@@ -172,6 +186,7 @@ class FollowedMachine final : public Followed {
 
   std::string path_, ambient_;
   MachineModel machine_;
+  double most_speed_rpm_;  // of `limits`
   solver::TransientOptions tolerances_;
   std::optional<scenarios::Model> model_;
   std::optional<solver::Propagator> exact_;  // for a linear reduced model

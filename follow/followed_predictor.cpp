@@ -84,6 +84,12 @@ class FollowedPredictor final : public Followed {
     if (!options.watch.empty()) {
       if (!observer_) throw InputError(fmt::format("--watch: {} holds no observer, whose residuals could be watched", path));
       watch_.emplace(*observer_, read_watch(options.watch, content_hash(read_bytes(path))));
+    } else if (observer_ && !options.no_watch && !file_.watch.is_null()) {
+      try {
+        watch_.emplace(*observer_, limits_of(file_.watch));
+      } catch (const std::exception& e) {
+        throw InputError(fmt::format("{}: key `watch`: {}", path, e.what()));
+      }
     }
     axis_.name = d().target;
   }
@@ -162,7 +168,8 @@ class FollowedPredictor final : public Followed {
     run_->recall(live_run_of(run));
     follower_.recall(numbers_of(j, "memory"));
     if (watch_) {
-      if (output::value<Json>(j, "watch").is_null()) throw InputError("it was kept without a watch");
+      if (output::value<Json>(j, "watch").is_null())
+        throw InputError("it was saved without a watch; add --no-watch, or begin a new state");
       watch_->recall(numbers_of(j, "watch"));
     }
     trust_ = output::finite(j, "trust");

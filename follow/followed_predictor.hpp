@@ -12,7 +12,8 @@ struct FollowOptions {
   std::optional<double> hold_s = {};          ///< none: the model's own, or 300 s
   std::optional<double> fade_s = {};          ///< none: the model's own, or 600 s
   bool for_picture = false;                   ///< the machine's displacements everywhere are asked for
-  std::string watch = {};                     ///< file of a watch's limits; empty: nothing is watched
+  std::string watch = {};                     ///< file of a watch's limits; empty: those in the model's file
+  bool no_watch = false;                      ///< nothing is watched
   bool despite_verdict = false;               ///< false: what `validate` calls unsafe is refused
 };
 

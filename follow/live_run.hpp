@@ -28,6 +28,7 @@ class LiveRun {
   [[nodiscard]] std::vector<std::string> older_than(double age_s) const;
   /// The drive between the last row but one and the last row.
   [[nodiscard]] const Drive& drive_before() const { return before_; }
+  [[nodiscard]] const Drive& drive() const { return drive_; }    ///< from the last row on
   [[nodiscard]] double ambient_K() const { return ambient_K_; }  ///< at the last row, minus the reference temperature
 
   /// The last row and what it continues from, for the state file.

@@ -6,8 +6,10 @@
 namespace driftwright::follow {
 
 double OutputStage::move(double step_s) {
-  const double most_um = settings_.most_rate_um_s * step_s;
-  const double way_um = state_.authority * state_.wanted_um - state_.correction_um;
+  const CorrectionLimits& limits = settings_.limits;
+  const double most_um = std::min(settings_.most_rate_um_s * step_s, limits.most_step_um);
+  const double allowed_um = std::clamp(state_.authority * state_.wanted_um, -limits.most_um, limits.most_um);
+  const double way_um = allowed_um - state_.correction_um;
   state_.correction_um += std::clamp(way_um, -most_um, most_um);
   return state_.correction_um;
 }

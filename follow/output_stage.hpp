@@ -2,14 +2,16 @@
 // The last stage before an axis: while rows arrive, it passes the predictor's correction on; without rows it holds the
 // correction, then fades it; it never changes faster than the slew limit.
 
+#include "base/machine_limits.hpp"
 #include "follow/stream_row.hpp"
 
 namespace driftwright::follow {
 
 struct OutputSettings {
-  double most_rate_um_s = 1.0;  ///< slew limit
-  double hold_s = 300.0;        ///< the correction holds this long without rows, or without speed or ambient
-  double fade_s = 600.0;        ///< time constant with which authority is then lost, and regained later
+  double most_rate_um_s = 1.0;   ///< slew limit
+  double hold_s = 300.0;         ///< the correction holds this long without rows, or without speed or ambient
+  double fade_s = 600.0;         ///< time constant with which authority is then lost, and regained later
+  CorrectionLimits limits = {};  ///< of the machine: of the correction, and of its change in one step
 };
 
 class OutputStage {

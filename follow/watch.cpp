@@ -56,18 +56,22 @@ double Watch::next(const compensation::ObservedRun& run) {
   has_row_ = true;
   last_s_ = now_s;
   means_.take(follower_->innovation_K(), step_s);
-  level_ = 0.0;
-  std::size_t largest = 0;
+  const auto [scale, level] = largest();
+  level_ = level;
+  calm_s_ = level_ < kCalm ? calm_s_ + step_s : 0.0;
+  if (level_ > 1.0 && !alarm_) alarm_ = Alarm{now_s, ""};
+  if (alarm_ && calm_s_ >= kCalmFor_s) alarm_.reset();
+  if (alarm_) alarm_->words = words(scale);
+  return level_;
+}
+
+std::pair<std::size_t, double> Watch::largest() const {
+  std::pair<std::size_t, double> most = {0, 0.0};
   for (std::size_t j = 0; j < inverse_.size(); ++j) {
     const double level = size_of(inverse_[j], means_.mean(j)) / limits_.scales[j].threshold;
-    if (level <= level_) continue;
-    level_ = level;
-    largest = j;
+    if (level > most.second) most = {j, level};
   }
-  calm_s_ = level_ < kCalm ? calm_s_ + step_s : 0.0;
-  if (level_ > 1.0 && !alarm_) alarm_ = Alarm{now_s, words(largest)};
-  if (alarm_ && calm_s_ >= kCalmFor_s) alarm_.reset();
-  return level_;
+  return most;
 }
 
 std::string Watch::words(std::size_t scale) const {
@@ -107,7 +111,7 @@ void Watch::recall(std::span<const double> memory) {
   has_row_ = memory[3] != 0.0;
   for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j)
     means_.recall(j, Eigen::Map<const Eigen::VectorXd>(memory.data() + 5 + j * n, static_cast<Eigen::Index>(n)));
-  if (memory[4] >= 0.0) alarm_ = Alarm{memory[4], "raised before the restart"};
+  if (memory[4] >= 0.0) alarm_ = Alarm{memory[4], words(largest().first)};
   follower_->recall(memory.subspan(own));
 }
 

@@ -60,7 +60,7 @@ class Watch {
  public:
   struct Alarm {
     double since_s = 0.0;  ///< time in the run
-    std::string words;     ///< "t06 is 0.8 K warmer than the model says, t01 0.5 K warmer; mean over 40 min"
+    std::string words;     ///< of the last row: "t06 is 0.8 K warmer than the model expects (mean over 40 min)"
   };
   /// @throws InputError  for limits of sensors that the model does not have
   Watch(const compensation::Observer& observer, WatchLimits limits);
@@ -75,6 +75,8 @@ class Watch {
   void recall(std::span<const double> memory);
 
  private:
+  /// The scale with the largest T² over its threshold, and that ratio.
+  [[nodiscard]] std::pair<std::size_t, double> largest() const;
   [[nodiscard]] std::string words(std::size_t scale) const;
 
   WatchLimits limits_;

@@ -11,7 +11,7 @@ using output::Json;
 
 constexpr const char* kFormat = "driftwright watch 1";
 
-WatchLimits limits_of(const Json& j, const std::string& model_hash) {
+WatchLimits limits_of_file(const Json& j, const std::string& model_hash) {
   if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
     throw InputError(fmt::format(
         "this file holds no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them",
@@ -22,6 +22,12 @@ WatchLimits limits_of(const Json& j, const std::string& model_hash) {
         "`follow --calibrate-watch` writes it anew");
   if (output::value<std::string>(j, "model_hash") != model_hash)
     throw InputError("they are those of another model file; `follow --calibrate-watch` writes them anew");
+  return limits_of(j);
+}
+
+}  // namespace
+
+WatchLimits limits_of(const Json& j) {
   WatchLimits limits{.sensors = output::value<std::vector<std::string>>(j, "sensors"),
                      .scales = {},
                      .machine_days = output::finite(j, "machine_days"),
@@ -42,9 +48,7 @@ WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   return limits;
 }
 
-}  // namespace
-
-Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
+Json limits_json(const WatchLimits& limits) {
   Json scales = Json::array();
   for (std::size_t k = 0; k < limits.scales.size(); ++k) {
     const Eigen::MatrixXd& c = limits.scales[k].covariance;
@@ -52,17 +56,21 @@ Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
                       {"threshold", limits.scales[k].threshold},
                       {"covariance_K2", std::vector<double>(c.data(), c.data() + c.size())}});
   }
-  return with_hash({{"format", kFormat},
-                    {"model_hash", model_hash},
-                    {"machine_days", limits.machine_days},
-                    {"alarms_simulated", limits.n_alarms},
-                    {"sensors", limits.sensors},
-                    {"scales", std::move(scales)}});
+  return {{"machine_days", limits.machine_days},
+          {"alarms_simulated", limits.n_alarms},
+          {"sensors", limits.sensors},
+          {"scales", std::move(scales)}};
+}
+
+Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
+  Json j = {{"format", kFormat}, {"model_hash", model_hash}};
+  j.update(limits_json(limits));
+  return with_hash(std::move(j));
 }
 
 WatchLimits read_watch(const std::string& path, const std::string& model_hash) {
   try {
-    return limits_of(parse_json(read_bytes(path)), model_hash);
+    return limits_of_file(parse_json(read_bytes(path)), model_hash);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("--watch {}: {}", path, e.what()));
   } catch (const InputError& e) {

@@ -30,6 +30,8 @@ constexpr double kBlock_s = 1800.0;
 constexpr double kAlarmsADay = 1.0 / 300.0;  // for one scale
 constexpr double kTail = 0.1;                // upper share of daily maxima that the exponential tail is fitted to
 constexpr int kMachinesOfCovariance = 30;    // for the covariance, besides those for the thresholds
+constexpr double kRow_s = 300.0;             // of the simulation for deployed limits: half of the shortest mean
+constexpr double kOfTraining = 2.0;          // least threshold, over what the training runs reach
 
 /// Sections of work and rest, starting at 6 in the morning.
 Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
@@ -127,6 +129,7 @@ TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> senso
     tests.push_back(read(test, {{0.0}, {model_.start_ambient_K}}, {}, 100 * seed + tests.size(), true));
   }
   observer_.learn(tests);
+  observer_ = observer_.calibrated(tests);
 }
 
 Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeSeries& ambient,
@@ -189,10 +192,10 @@ ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& amb
   return run;
 }
 
-ObservedRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
+ObservedRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed, bool with_drift) const {
   Random random(seed, 8);
   const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
-  return read(days, shop_ambient(duration_s, model_.start_ambient_K, random), fault, seed, false);
+  return read(days, shop_ambient(duration_s, model_.start_ambient_K, random), fault, seed, with_drift);
 }
 
 double TrialMachine::nats(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
@@ -318,6 +321,60 @@ WatchLimits simulated_limits(const Observer& model, const std::vector<std::strin
     double& threshold = limits.scales[j].threshold = tail_level(maxima[j], kAlarmsADay);
     limits.n_alarms +=
         static_cast<int>(std::count_if(maxima[j].begin(), maxima[j].end(), [&](double x) { return x > threshold; }));
+  }
+  return limits;
+}
+
+namespace {
+
+/// An observer whose readings are means of all rows within `row_s`: less noise, and longer steps of its filter.
+Observer of_longer_rows(const Observer& observer, double row_s) {
+  Observer::State s = observer.state();
+  if (s.settings.period_s >= row_s) return observer;
+  s.settings.reading_K *= std::sqrt(s.settings.period_s / row_s);
+  s.settings.drift_um *= std::sqrt(s.settings.period_s / row_s);
+  s.settings.longest_step_s = std::max(s.settings.longest_step_s, row_s);
+  return Observer::of_state(std::move(s));
+}
+
+double top_rpm(std::span<const ObservedRun> runs) {
+  double rpm = 0.0;
+  for (const ObservedRun& run : runs) {
+    for (const auto& section : run.cyclogram.sections) rpm = std::max(rpm, section.drive.speed_rpm);
+  }
+  return rpm;
+}
+
+/// Largest T² of a scale in the rows of a run.
+std::array<double, kWatchedOver_s.size()> largest_in(const ObservedRun& run, const Observer& observer,
+                                                     const WatchLimits& limits) {
+  std::array<double, kWatchedOver_s.size()> most{};
+  OfScales inverse;
+  for (std::size_t j = 0; j < most.size(); ++j) inverse[j] = inverse_of(limits.scales[j].covariance);
+  const std::unique_ptr<compensation::ObserverFollower> follower = observer.watch();
+  ResidualMeans means(limits.sensors.size());
+  const std::vector<double>& t = run.readings.time_s;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    (void)follower->next(run);
+    means.take(follower->innovation_K(), i > 0 ? t[i] - t[i - 1] : 0.0);
+    for (std::size_t j = 0; j < most.size(); ++j) most[j] = std::max(most[j], size_of(inverse[j], means.mean(j)));
+  }
+  return most;
+}
+
+}  // namespace
+
+std::optional<WatchLimits> deployed_limits(const Observer& observer, std::span<const ObservedRun> training,
+                                           const Listener& listener) {
+  const TrialSettings settings{.top_rpm = top_rpm(training),
+                               .period_s = std::max(kRow_s, observer.state().settings.period_s)};
+  if (observer.sensors().empty() || !(settings.top_rpm > 0.0)) return std::nullopt;
+  WatchLimits limits = simulated_limits(of_longer_rows(observer, settings.period_s), observer.sensors(), settings,
+                                        kTrialMachines, kTrialDays, listener);
+  for (const ObservedRun& run : training) {
+    const auto most = largest_in(run, observer, limits);
+    for (std::size_t j = 0; j < most.size(); ++j)
+      limits.scales[j].threshold = std::max(limits.scales[j].threshold, kOfTraining * most[j]);
   }
   return limits;
 }

@@ -11,7 +11,7 @@ struct TrialSettings {
   double top_rpm = 0.0;
   double scatter =
       0.1;  ///< standard deviation of the logarithm of each source, film, joint and link, all conduction and all rates
-  double period_s = 60.0;
+  double period_s = 60.0;  ///< of the rows
 };
 
 /// A fault that begins in a trial.
@@ -35,7 +35,9 @@ class TrialMachine {
 
   /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top speed between 6 and 22 h, rest at night and
   /// at week-ends, and an ambient with a daily wave and a random part. Thermometers read with the model's noise.
-  [[nodiscard]] compensation::ObservedRun work(double duration_s, const TrialFault& fault, std::uint64_t seed) const;
+  /// @param with_drift  the readings include the displacement that the observer predicts, with its noise
+  [[nodiscard]] compensation::ObservedRun work(double duration_s, const TrialFault& fault, std::uint64_t seed,
+                                               bool with_drift = false) const;
 
   /// Time constant [s] of the part with the fault: of the heat that the fault adds, b'K⁻²b / b'K⁻¹b with M = 1, at half
   /// the top speed.
@@ -77,5 +79,13 @@ inline constexpr double kTrialDays = 7.0;   ///< for each machine; includes a we
 [[nodiscard]] WatchLimits simulated_limits(const compensation::Observer& model, const std::vector<std::string>& sensors,
                                            const TrialSettings& settings, int n_machines, double days_each,
                                            const Listener& listener);
+
+/// The limits that an observer is deployed with: those of simulated machines that work up to the top speed of its training
+/// runs, but none below twice what the training runs themselves reach, as the observer's own bound of trust (`most_apart`).
+/// Rows of the simulation are means over 5 min: noise is less by the root of the rows in one.
+/// @return none for an observer without thermometers, and for training runs in which the spindle never turns
+[[nodiscard]] std::optional<WatchLimits> deployed_limits(const compensation::Observer& observer,
+                                                         std::span<const compensation::ObservedRun> training,
+                                                         const Listener& listener);
 
 }  // namespace driftwright::follow

@@ -26,7 +26,12 @@ Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorX
 }
 
 Json law_json(const std::string& name, const BoundLaw& law) {
-  return {{"name", name}, {"probes", law.probes}, {"thermostat", law.thermostat}, {"frozen_K", law.frozen_K}};
+  Json json = {{"name", name}, {"probes", law.probes}, {"thermostat", law.thermostat}, {"frozen_K", law.frozen_K}};
+  if (!law.spread_K.empty()) {
+    json["spread_K"] = law.spread_K;
+    json["slope_over_K"] = law.slope_over_K;
+  }
+  return json;
 }
 
 BoundLaw law_from(const Json& json) {
@@ -34,6 +39,13 @@ BoundLaw law_from(const Json& json) {
   law.probes = json.at("probes").get<std::vector<int>>();
   law.thermostat = json.at("thermostat");
   law.frozen_K = json.at("frozen_K").get<std::vector<double>>();
+  if (json.contains("spread_K")) {
+    law.spread_K = json.at("spread_K").get<std::vector<double>>();
+    law.slope_over_K = json.at("slope_over_K");
+    if (law.spread_K.size() != law.frozen_K.size())
+      throw InputError(fmt::format("a law has {} temperatures in `frozen_K` and {} in `spread_K`; both must be equally many",
+                                   law.frozen_K.size(), law.spread_K.size()));
+  }
   return law;
 }
 
@@ -117,6 +129,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
     entry["offset_sum"] = e.offset_sum;
     entry["has_offset"] = e.offset.size() > 0;
     entry["prescribes"] = e.prescribes;
+    if (e.slope_of >= 0) entry["slope_of"] = e.slope_of;
     json["exchanges"].push_back(std::move(entry));
   }
   for (const auto& p : system.probes) {
@@ -193,7 +206,8 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
          .offset_sum = e.at("offset_sum"),
          .medium = e.at("has_medium").get<bool>() ? Eigen::VectorXd(medium.col(i)) : Eigen::VectorXd(),
          .medium_sum = e.at("medium_sum"),
-         .prescribes = e.at("prescribes")});
+         .prescribes = e.at("prescribes"),
+         .slope_of = e.value("slope_of", -1)});
     ++i;
   }
   i = 0;

@@ -63,6 +63,18 @@ ArcPath arc_path(const std::array<double, 3>& start, const std::array<double, 3>
   path.travel_m[u] = per_angle_m * (integral_of_abs_sin(high) - integral_of_abs_sin(low));
   path.travel_m[v] = per_angle_m * (integral_of_abs_sin(high + kPi / 2) - integral_of_abs_sin(low + kPi / 2));
   path.travel_m[normal] = std::abs(rise_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    path.low_m[axis] = std::min(start[axis], end[axis]);
+    path.high_m[axis] = std::max(start[axis], end[axis]);
+  }
+  const double first = std::min(from, from + sense * sweep), last = first + std::min(sweep, 2.0 * kPi);
+  for (long quarter = std::lround(std::ceil(first / (kPi / 2))); static_cast<double>(quarter) * kPi / 2 <= last; ++quarter) {
+    const int axis = quarter % 2 == 0 ? u : v;  // which is at an extreme there
+    const bool is_high = ((quarter % 4) + 4) % 4 < 2;
+    double& extreme_m = is_high ? path.high_m[axis] : path.low_m[axis];
+    const double there_m = centre[axis] + (is_high ? path.radius_m : -path.radius_m);
+    extreme_m = is_high ? std::max(extreme_m, there_m) : std::min(extreme_m, there_m);
+  }
   const auto direction = [&](double angle, double radius_m) {
     std::array<double, 3> way_m = {0, 0, 0};  // per radian
     way_m[u] = growth_m * std::cos(angle) - sense * radius_m * std::sin(angle);

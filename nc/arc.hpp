@@ -9,8 +9,10 @@ struct ArcPath {
   double length_m = 0.0;                       ///< along the circle, helix or spiral
   double radius_m = 0.0;                       ///< mean of the radii at start and end
   std::array<double, 3> travel_m = {0, 0, 0};  ///< integral of |dx|, |dy|, |dz|
-  std::array<double, 3> begins = {0, 0, 0};    ///< direction of motion at the start, of length one
-  std::array<double, 3> ends = {0, 0, 0};      ///< direction of motion at the end
+  /// Lowest and highest position; a growing radius counts with its mean.
+  std::array<double, 3> low_m = {0, 0, 0}, high_m = {0, 0, 0};
+  std::array<double, 3> begins = {0, 0, 0};  ///< direction of motion at the start, of length one
+  std::array<double, 3> ends = {0, 0, 0};    ///< direction of motion at the end
 };
 
 /// Axes (u, v) of the plane across axis `normal` (0, 1, 2 = x, y, z), right-handed: G17 x y, G18 z x, G19 y z.

@@ -400,6 +400,7 @@ CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vec
   check_own_shifts(steps, first, options);
   std::vector<Writer::Mark> marks;
   writer.put(first, {remark_line(options.dialect, remark(options))});
+  for (const std::string& text : options.remarks) writer.put(first, {remark_line(options.dialect, "driftwright: " + text)});
   writer.put(first, guard_lines(options));
   writer.set_all(first, initial_m);
   std::size_t next = first;

@@ -27,22 +27,41 @@ double length(const std::array<double, 3>& v) {
 
 }  // namespace
 
+void NcDemand::take_position(int axis, double x_m) {
+  low_m[axis] = std::min(low_m[axis], x_m);
+  high_m[axis] = std::max(high_m[axis], x_m);
+}
+
 void NcMotion::rapid_to(const std::array<double, 3>& target_m) {
   const std::array<double, 3> travel_m = travel_between(position_m, target_m);
   const double length_m = length(travel_m);
   PathPiece piece = straight(position_m, target_m);
   piece.rapid = true;
-  position_m = target_m;
+  begin_move();
+  end_move(target_m, travel_m);
   if (length_m == 0.0) return;
   if (!rapid_m_s_) throw InputError(where, "the speed of rapid moves is missing; state `rapid`, such as 15 m/min");
   piece.length_m = length_m;
   note({length_m / *rapid_m_s_, speed_rpm(), travel_m, false}, piece);
 }
 
+void NcMotion::begin_move() {
+  for (int axis = 0; axis < 3; ++axis) shift_m_[axis] += position_m[axis] - last_m_[axis];
+}
+
+void NcMotion::end_move(const std::array<double, 3>& target_m, const std::array<double, 3>& travel_m) {
+  position_m = last_m_ = target_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (travel_m[axis] > 0.0) demand.take_position(axis, reached_m(axis));
+  }
+}
+
 void NcMotion::note(const NcMove& move, PathPiece piece) {
   piece.blend_m = blend_m;
+  demand.speed_rpm = std::max(demand.speed_rpm, move.speed_rpm);
   if (piece.length_m > 0.0) {
     piece.wanted_m_s = piece.length_m / move.duration_s;
+    if (!piece.rapid) demand.feed_m_s = std::max(demand.feed_m_s, piece.wanted_m_s);
   } else {
     piece.standing_s = move.duration_s;
     stop();
@@ -78,7 +97,8 @@ void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m
 void NcMotion::feed_to(const std::array<double, 3>& target_m) {
   const std::array<double, 3> travel_m = travel_between(position_m, target_m);
   feed_along(length(travel_m), travel_m, straight(position_m, target_m));
-  position_m = target_m;
+  begin_move();
+  end_move(target_m, travel_m);
 }
 
 void NcMotion::arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, int normal,
@@ -95,7 +115,13 @@ void NcMotion::arc_to(const std::array<double, 3>& target_m, const std::array<do
   const double level = 1.0 - path.begins[normal] * path.begins[normal];  // share in the plane, squared
   piece.radius_m = path.radius_m / std::max(level, 1e-12);
   feed_along(path.length_m, path.travel_m, piece);
-  position_m = target_m;
+  begin_move();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(path.travel_m[axis] > 0.0)) continue;
+    demand.take_position(axis, path.low_m[axis] - shift_m_[axis]);
+    demand.take_position(axis, path.high_m[axis] - shift_m_[axis]);
+  }
+  end_move(target_m, path.travel_m);
 }
 
 void NcMotion::wait(double duration_s) {

@@ -4,6 +4,7 @@
 // not modelled.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,20 @@ struct NcMove {
   double speed_rpm = 0.0;                      ///< of the spindle in either sense, >= 0
   std::array<double, 3> travel_m = {0, 0, 0};  ///< integral of |velocity| of x, y, z
   bool cutting = false;                        ///< a feed move while the spindle turns
+};
+
+/// What moves ask of the machine.
+struct NcDemand {
+  double speed_rpm = 0.0;  ///< highest of the spindle
+  double feed_m_s = 0.0;   ///< highest programmed feed along the path; rapids do not count
+  /// Lowest and highest position, in the work offset that the program starts in: shifts of the origin by the program do not
+  /// count. low > high: the axis is not commanded.
+  std::array<double, 3> low_m = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::infinity()};
+  std::array<double, 3> high_m = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                                  -std::numeric_limits<double>::infinity()};
+
+  void take_position(int axis, double x_m);
 };
 
 enum class NcFeedMode { PerMinute, InverseTime, PerRevolution };
@@ -45,6 +60,11 @@ class NcMotion {
               int turns, double rounding_m);
   void wait(double duration_s);
 
+  /// Of the moves since it was last reset, which is done at each block. An axis that does not move is not in it.
+  NcDemand demand;
+  /// Position of an axis as in NcDemand.
+  [[nodiscard]] double reached_m(int axis) const { return last_m_[axis] - shift_m_[axis]; }
+
   /// How far corners may be rounded from here on: < 0 as far as speed requires (G64), 0 not at all (G61), else the tolerance
   /// (G64 P).
   double blend_m = -1.0;
@@ -56,9 +76,15 @@ class NcMotion {
   [[nodiscard]] const std::vector<PathPiece>& path() const { return path_; }
 
  private:
+  /// Notes by how much the origin has been shifted since the last move.
+  void begin_move();
+  /// Ends a move. Adds the position of the axes that have travelled to the demand.
+  void end_move(const std::array<double, 3>& target_m, const std::array<double, 3>& travel_m);
   void feed_along(double length_m, const std::array<double, 3>& travel_m, PathPiece piece);
   void note(const NcMove& move, PathPiece piece);
   std::optional<double> rapid_m_s_;
+  std::array<double, 3> last_m_ = {0, 0, 0};   // position at the end of the last move
+  std::array<double, 3> shift_m_ = {0, 0, 0};  // of the origin
   std::vector<NcMove> moves_;
   std::vector<PathPiece> path_;
 };

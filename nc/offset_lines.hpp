@@ -19,6 +19,7 @@ struct NcOffsetOptions {
   int work_offset = 540;                     ///< LinuxCNC, absolute: 540 ... 590, 591, 592, 593 for G54 ... G59.3
   std::array<double, 3> base_m = {0, 0, 0};  ///< absolute: the offset (base frame, datum shift) without corrections
   std::array<bool, 3> axes = {false, false, false};  ///< the axes that are corrected
+  std::vector<std::string> remarks = {};             ///< for the program's user, after the first comment
 };
 
 /// The value of an offset after rounding to 1e-6 mm or 1e-7 inch, as it is written.

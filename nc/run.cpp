@@ -17,6 +17,7 @@ void NcRun::count(const Where& where) {
 
 void NcRun::begin(const Where& where, bool deletable) {
   motion.where = where;
+  motion.demand = {};
   forgets_ = false;
   knows_ = {false, false, false};
   NcStep step{.where = where, .start_s = time_s_, .end_s = time_s_, .start_m = motion.position_m};
@@ -39,6 +40,10 @@ void NcRun::end() {
   NcStep& step = steps_.back();
   step.end_s = time_s_;
   step.end_m = motion.position_m;
+  step.demand = motion.demand;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (step.named[axis] && step.kind != NcStepKind::kNone) step.demand.take_position(axis, motion.reached_m(axis));
+  }
   step.absolute = step.absolute && absolute;
   step.compensated = compensated;
   step.no_place = step.no_place || transformed || modal_cycle;

@@ -62,6 +62,7 @@ struct NcStep {
   std::array<bool, 3> own_shift = {
       false, false, false};  ///< axes of a G52 or G92 in the program itself (LinuxCNC); corrections share this offset
   bool sets_offset = false;  ///< G10 L2, L20 (LinuxCNC)
+  NcDemand demand = {};      ///< speed, feed and positions of the block
   bool certain = true;       ///< false: its end is known only at the machine (a probe, an offset read there)
 
   [[nodiscard]] double duration_s() const { return end_s - start_s; }

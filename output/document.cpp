@@ -50,6 +50,16 @@ Datum& Datum::operator=(const Datum& other) = default;
 Datum& Datum::operator=(Datum&& other) noexcept = default;
 Datum::~Datum() = default;
 
+Section next_section(const std::vector<std::string>& sentences) {
+  Section section{.title = sentences.empty() ? "" : "What to do next"};
+  for (const std::string& sentence : sentences) add(section, Text{.words = sentence});
+  return section;
+}
+
+Section folded(const std::string& title, std::vector<Section> sections) {
+  return {.title = title, .sections = std::move(sections), .detail = true};
+}
+
 std::string shown(const Datum& datum, const Digits& column) {
   const Digits& digits = datum.digits ? *datum.digits : column;
   return std::visit(

@@ -3,7 +3,11 @@
 // of it (document_text, document_json, document_csv, document_html), so that all four show the same numbers.
 //
 // Content with a key is also for programs; content without one (explanations, pictures) is for people only. A `detail`
-// appears in files, and on the terminal only on request. Numbers are kept in the unit that they are shown in.
+// appears in files, and on the terminal only on request; a table or a titled section that is one is folded on the page:
+// only its title is shown until the reader opens it. Numbers are kept in the unit that they are shown in.
+//
+// A report is read from the top: the answer (a Verdict), the picture that shows it, what to do next, the numbers, and
+// folded what only an expert needs.
 
 #include <concepts>
 #include <cstdint>
@@ -101,7 +105,7 @@ struct Table {
   std::string file = {};  ///< name of its CSV; "": tables/<keys>.csv
 };
 
-/// The main conclusion for the reader.
+/// The answer: the main conclusion for the reader.
 struct Verdict {
   enum class Kind { kGood, kBad, kNeutral };
   std::string key = "verdict";
@@ -149,7 +153,7 @@ struct Section {
   std::optional<Item> item = {};
   std::vector<Block> blocks = {};
   std::vector<Section> sections = {};  ///< after the blocks
-  bool detail = false;                 ///< the whole section
+  bool detail = false;                 ///< the whole section: off the terminal, folded on the page if it has a title
 };
 
 struct Document {
@@ -158,6 +162,11 @@ struct Document {
   std::string subtitle = {};  ///< what to know before all numbers; may be empty
   Section body = {};
 };
+
+/// What the reader should do: sentences under the heading "What to do next". No sentences: an empty section.
+[[nodiscard]] Section next_section(const std::vector<std::string>& sentences);
+/// The same sections under one title, folded: for experts.
+[[nodiscard]] Section folded(const std::string& title, std::vector<Section> sections);
 
 /// A short way to add a block to a section: `add(s, Value{...})`.
 inline void add(Section& section, Block block) {

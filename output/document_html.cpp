@@ -10,7 +10,12 @@ namespace {
 
 html::Table page_table(const Table& table) {
   html::Table page{.caption = table.title, .folded = table.detail};
-  if (!table.caption.empty()) page.caption += (page.caption.empty() ? "" : ". ") + table.caption;
+  if (table.detail && !table.title.empty()) {
+    page.title = table.title;  // the explanation is inside
+    page.caption = table.caption;
+  } else if (!table.caption.empty()) {
+    page.caption += (page.caption.empty() ? "" : ". ") + table.caption;
+  }
   for (const Column& column : table.columns) {
     if (!column.title.empty()) page.headers.push_back(heading_of(column));
   }
@@ -33,9 +38,18 @@ html::Table page_table(const Table& table) {
 class Page {
  public:
   void add_section(const Section& section, int level) {
-    if (!section.title.empty()) blocks_.emplace_back(html::Heading{section.title, std::min(level, 3)});
+    const bool has_title = !section.title.empty(), folds = section.detail && has_title;
+    if (folds)
+      blocks_.emplace_back(html::FoldBegin{section.title});
+    else if (has_title)
+      blocks_.emplace_back(html::Heading{section.title, std::min(level, 3)});
+    const std::size_t n_before = blocks_.size();
     for (const Block& block : section.blocks) std::visit([&](const auto& b) { add(b); }, block);
-    for (const Section& part : section.sections) add_section(part, section.title.empty() ? level : level + 1);
+    for (const Section& part : section.sections) add_section(part, has_title ? level + 1 : level);
+    if (has_title && blocks_.size() == n_before)
+      blocks_.pop_back();  // a heading over nothing
+    else if (folds)
+      blocks_.emplace_back(html::FoldEnd{});
   }
   [[nodiscard]] std::vector<html::ReportBlock> blocks() && { return std::move(blocks_); }
 

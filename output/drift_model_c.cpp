@@ -228,6 +228,7 @@ pin out float model_trust "0 to 1, that the prediction was multiplied by";
 pin out bit heartbeat_is_late "the watchdog has bitten";
 pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
 {doubts}param rw float most_rate_um_s = {rate} "slew limit of the offset, um/s; 0 or more";
+param rw float most_um = {most} "largest offset by size, um; 0: no limit";
 param rw float sign = -1.0 "-1: the axis moves against the drift; +1: with it. A new one waits until the offset is 0";
 param rw float count_um = 0.1 "um per count, above 0. A new one waits until the offset is 0";
 param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
@@ -245,7 +246,7 @@ license "GPL";
 ;;
 FUNCTION(_) {{
   static const {state} at_start;
-  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s}};
+  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
   const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
   waited_s += fperiod;
   if (restart) {{
@@ -271,7 +272,8 @@ FUNCTION(_) {{
       fmt::arg("made_by", quoted(made_by)), fmt::arg("c_file", c_file), fmt::arg("pins", pins), fmt::arg("doubts", doubts),
       fmt::arg("values", values), fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
       fmt::arg("function", target + "_correction_um"), fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
-      fmt::arg("age", c_number(d.safe.stale_s)), fmt::arg("period", c_number(d.safe.period_s)));
+      fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))), fmt::arg("age", c_number(d.safe.stale_s)),
+      fmt::arg("period", c_number(d.safe.period_s)));
 }
 
 }  // namespace driftwright::output

@@ -39,10 +39,9 @@ th { border-bottom: 2px solid var(--soft); vertical-align: bottom; }
 td.number { white-space: nowrap; }
 .wide table { font-size: 13px; } .wide th, .wide td { padding: 5px 7px; }
 .wide th, .wide td:not(.number) { overflow-wrap: anywhere; min-width: 5em; }
-.fold { margin: 14px 0; } .fold > input { position: absolute; opacity: 0; } .fold > .table { margin-top: 4px; }
-.fold > label { cursor: pointer; color: var(--neutral); } .fold > label::before { content: "▸ "; } .fold > input:checked + label::before { content: "▾ "; }
-.fold > input:focus-visible + label { outline: 2px solid var(--neutral); }
-@media screen { .fold > input:not(:checked) ~ .table { display: none; } }
+details { margin: 14px 0; } details > summary { cursor: pointer; color: var(--neutral); } details > .table { margin-top: 4px; }
+details.part { border-top: 1px solid var(--line); padding-top: 10px; } details.part > summary { font-size: 17px; font-weight: 600; }
+details.part[open] > summary { margin-bottom: 12px; } details.part details.part { border-top: 0; padding: 0 0 0 12px; }
 .plots { display: grid; grid-template-columns: 1fr 1fr; gap: 20px 16px; margin: 20px 0; }
 figure { margin: 0; padding: 12px 0 10px; background: #ffffff; color: #1d2329; border: 1px solid #d9dee3;
   border-radius: 4px; grid-column: 1 / -1; min-width: 0; break-inside: avoid; }
@@ -64,8 +63,8 @@ pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px
   font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 @media (max-width: 640px) { figure.half { grid-column: 1 / -1; } }
 @media print { .table { overflow: visible; } .table table { max-width: 100%; } .table:not(.wide) td:not(.number), .table:not(.wide) th { overflow-wrap: break-word; }
-  .wide table { font-size: 7pt; } .wide th, .wide td { padding: 3px 4px; min-width: 0; } .fold > input { display: none; } .fold > label { color: var(--soft); cursor: auto; }
-  .fold > label::before, .fold > input:checked + label::before { content: ""; }
+  .wide table { font-size: 7pt; } .wide th, .wide td { padding: 3px 4px; min-width: 0; } details > summary { color: var(--soft); list-style: none; }
+  details::details-content { content-visibility: visible; height: auto; }
   body { padding: 0; max-width: none; font-size: 11pt; } table { font-size: 9pt; } th, td { padding: 4px 6px; } h2, h3 { break-after: avoid; }
   tr, .verdict { break-inside: avoid; } pre { white-space: pre-wrap; } * { print-color-adjust: exact; } }
 )css";
@@ -109,6 +108,13 @@ std::string html(const Preformatted& text) {
   return fmt::format("<pre>{}</pre>\n", escaped(text.text));
 }
 
+std::string html(const FoldBegin& fold) {
+  return fmt::format("<details class=\"part\"><summary>{}</summary>\n", escaped(fold.title));
+}
+std::string html(const FoldEnd&) {
+  return "</details>\n";
+}
+
 std::string html(const Verdict& verdict) {
   const char* kind = verdict.kind == Verdict::Kind::kGood ? "good" : verdict.kind == Verdict::Kind::kBad ? "bad" : "neutral";
   return fmt::format("<div class=\"verdict {}\"><strong>{}</strong>{}</div>\n", kind, escaped(verdict.title),
@@ -117,7 +123,7 @@ std::string html(const Verdict& verdict) {
 
 constexpr std::size_t kWide = 8;  // most columns that fit a page at normal size
 
-std::string html(const Table& table, std::size_t& n_folded) {
+std::string html(const Table& table) {
   const bool has_headers = !table.headers.empty();
   const std::size_t n_columns = has_headers ? table.headers.size() : table.rows.empty() ? 0 : table.rows.front().size();
   for (const auto& row : table.rows) {
@@ -130,14 +136,11 @@ std::string html(const Table& table, std::size_t& n_folded) {
     attribute.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
   }
   std::string out;
-  const bool folds = table.folded && !table.caption.empty();
-  if (folds) {
-    ++n_folded;
-    out += fmt::format("<div class=\"fold\"><input type=\"checkbox\" id=\"fold{0}\"><label for=\"fold{0}\">{1}</label>\n",
-                       n_folded, escaped(table.caption));
-  }
+  const std::string& fold = table.title.empty() ? table.caption : table.title;
+  const bool folds = table.folded && !fold.empty(), has_caption = !table.caption.empty() && !(folds && table.title.empty());
+  if (folds) out += fmt::format("<details><summary>{}</summary>\n", escaped(fold));
   out += fmt::format("<div class=\"table{}\"><table>\n", n_columns > kWide ? " wide" : "");
-  if (!table.caption.empty() && !folds) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
+  if (has_caption) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
   if (has_headers) out += "<thead><tr>";
   for (std::size_t c = 0; c < table.headers.size(); ++c) {
     out += fmt::format("<th{}>{}</th>", attribute[c], escaped(table.headers[c]));
@@ -148,7 +151,7 @@ std::string html(const Table& table, std::size_t& n_folded) {
     for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
     out += "</tr>\n";
   }
-  return out + (folds ? "</tbody></table></div></div>\n" : "</tbody></table></div>\n");
+  return out + (folds ? "</tbody></table></div></details>\n" : "</tbody></table></div>\n");
 }
 
 std::string html(const Bars& bars) {
@@ -202,7 +205,7 @@ Rendered render_html(const Report& report) {
   const std::vector<std::string> svgs = draw_svgs(plots);
 
   std::string body;
-  std::size_t n_drawn = 0, n_folded = 0;
+  std::size_t n_drawn = 0;
   FigureFiles figures;
   bool in_plots = false;  // consecutive plots share a grid, so that half-width plots pair up
   for (const ReportBlock& block : report.blocks) {
@@ -217,11 +220,7 @@ Rendered render_html(const Report& report) {
           [&](const auto& other) {
             using Kind = std::decay_t<decltype(other)>;
             if constexpr (std::is_same_v<Kind, Picture>) figures.add(other.title, svg_file(other.svg));
-            if constexpr (std::is_same_v<Kind, Table>) {
-              body += html(other, n_folded);
-            } else if constexpr (!std::is_same_v<Kind, Plot>) {
-              body += html(other);
-            }
+            if constexpr (!std::is_same_v<Kind, Plot>) body += html(other);
           },
           block);
     }

@@ -34,7 +34,8 @@ struct Table {
   std::string caption = {};
   std::vector<std::string> headers = {};            ///< none: the first cells are the headings of the others
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
-  bool folded = false;  ///< on the screen only the caption is shown until the reader opens it; on paper the whole table
+  bool folded = false;     ///< only its title is shown until the reader opens it; browsers since 2025 print the whole table
+  std::string title = {};  ///< of a folded table; "": its caption
 };
 
 /// An <svg> element, used as it is.
@@ -43,7 +44,13 @@ struct Picture {
   std::string svg = {};
 };
 
-using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars, Picture>;
+/// Folds all blocks until the matching FoldEnd: only the title is shown until the reader opens it.
+struct FoldBegin {
+  std::string title = {};
+};
+struct FoldEnd {};
+
+using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars, Picture, FoldBegin, FoldEnd>;
 
 /// A figure of a report as a separate file.
 struct Figure {

@@ -118,6 +118,7 @@ PredictorFile file_of(const Json& j) {
   if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
   require_guards(d);
   file.judged = value<Json>(j, "judged");
+  if (j.contains("watch")) file.watch = j["watch"];
   require_whole(j);
   return file;
 }
@@ -141,6 +142,7 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
             {"decided", d.reason},
             {"interval_95_um", d.interval_um ? Json(*d.interval_um) : Json(nullptr)},
             {"judged", file.judged},
+            {"watch", file.watch},
             {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
             {"predictor", kind}};
   j[kind] = std::move(made);

@@ -15,6 +15,8 @@ struct PredictorFile {
   /// The conditions under which it was judged, and the verdict, as `validate` wrote them (docs/how-to/validation.md);
   /// null if nothing has judged it.
   nlohmann::ordered_json judged;
+  /// Limits of the watch of an observer (follow/watch_json.hpp); null: none.
+  nlohmann::ordered_json watch = nullptr;
 };
 
 /// @param effects  effects of the machine whose model it uses; empty for a predictor without a model

@@ -126,11 +126,16 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
   const auto of_heat =
       entries_of(system.sources, balance.heats, [](const HeatSource& s, const auto& h) { return s.body == h.body; });
   for (std::size_t h = 0; h < balance.heats.size(); ++h) laws[of_heat[h]].push_back(&balance.heats[h].power_W);
-  for (std::size_t s = 0; s < system.sources.size(); ++s) find.bind(system.sources[s].power_W, sum_of(laws[s]), "");
+  std::vector<Law> powers;
+  for (std::size_t s = 0; s < system.sources.size(); ++s) {
+    powers.push_back(sum_of(laws[s]));
+    find.bind(system.sources[s].power_W, powers.back(), "");
+  }
 
   laws.assign(system.exchanges.size(), {});
   const auto of_exchange = entries_of(system.exchanges, balance.exchanges, [](const auto& e, const auto& asked) {
-    return !e.prescribes && e.place == place_of(asked) && (e.medium.size() > 0) == asked.medium_K.has_value();
+    return !e.prescribes && e.slope_of < 0 && e.place == place_of(asked) &&
+           (e.medium.size() > 0) == asked.medium_K.has_value();
   });
   for (std::size_t x = 0; x < balance.exchanges.size(); ++x) {
     const effects::Exchange& asked = balance.exchanges[x];
@@ -148,6 +153,10 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
     auto& entry = system.exchanges[e];
     if (entry.prescribes) {
       entry.coefficient.law = one;
+      continue;
+    }
+    if (entry.slope_of >= 0) {
+      entry.coefficient.law = powers.at(static_cast<std::size_t>(entry.slope_of));
       continue;
     }
     const bool has_air = entry.place.body.kind == effects::BodyKind::kSurface && entry.place.per == effects::Per::kArea;

@@ -25,7 +25,12 @@ double BoundLaw::operator()(const effects::Inputs& u) const {
   if (frozen_K.empty()) return law(u);
   effects::Inputs inputs = u;
   inputs.probe_K = frozen_K;
-  return law(inputs);
+  if (spread_K.empty()) return law(inputs);
+  for (std::size_t p = 0; p < frozen_K.size(); ++p) inputs.probe_K[p] = frozen_K[p] + spread_K[p];
+  const double above = law(inputs);
+  for (std::size_t p = 0; p < frozen_K.size(); ++p) inputs.probe_K[p] = frozen_K[p] - spread_K[p];
+  const double below = law(inputs);
+  return slope_over_K > 0.0 ? (below - above) / slope_over_K : 0.5 * (above + below);
 }
 
 HeatRate::Sparse::Sparse(const Eigen::VectorXd& dense) {

@@ -68,7 +68,8 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
          .offset_sum = e.offset_sum,
          .medium = e.medium.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.medium) : Eigen::VectorXd(),
          .medium_sum = e.medium_sum,
-         .prescribes = e.prescribes});
+         .prescribes = e.prescribes,
+         .slope_of = e.slope_of});
   }
   for (const auto& p : system.parts) {
     reduced.parts.push_back({p.body, reduce(p.conduction), reduce(p.mass), basis.transpose() * p.outputs});

@@ -27,6 +27,11 @@ struct BoundLaw {
   std::vector<int> probes;
   int thermostat = -1;
   std::vector<double> frozen_K = {};  ///< temperatures given to a law in place of its probes (freeze_laws())
+  /// Of linearise(): the law is evaluated at frozen_K + spread_K and at frozen_K - spread_K; empty: at frozen_K alone.
+  std::vector<double> spread_K = {};
+  /// 0: the value is the mean of both. Otherwise it is their difference, the lower minus the upper, over this change of
+  /// temperature [K]: the conductance that a power has because it falls with temperature.
+  double slope_over_K = 0.0;
 
   BoundLaw() = default;
   BoundLaw(effects::Law free_law) : law(std::move(free_law)) {}  // NOLINT: a law without probes is bound as it is
@@ -72,6 +77,7 @@ struct Exchange {
   Eigen::VectorXd medium = {};  ///< of an exchange with a medium: G 1; o is this times the medium's temperature. Else empty
   double medium_sum = 0.0;      ///< 1'G 1
   bool prescribes = false;      ///< it replaces a prescribed temperature (hold_by_exchanges())
+  int slope_of = -1;            ///< index of the source whose power over temperature it contains (linearise()); -1: none
 
   [[nodiscard]] bool reaches_ambient() const { return ambient_sum != 0.0; }
   /// True for an exchange with the ambient or with a medium of fixed temperature.

@@ -5,7 +5,9 @@
 #include <array>
 #include <optional>
 
+#include "base/machine_limits.hpp"
 #include "compensation/judging/iso230_3.hpp"
+#include "compensation/schedule/program_limits.hpp"
 #include "compensation/schedule/program_series.hpp"
 #include "nc/program.hpp"
 #include "scenarios/reader/read_schedule.hpp"
@@ -24,8 +26,10 @@ struct CorrectedSeries {
   std::string file;  ///< name of the program
   scenarios::ScheduleSettings settings;
   bool split = false;
+  MachineLimits limits = {};  ///< with the defaults that the scenario gives
   NcProgram program = {};
-  Cyclogram cyclogram = {};  ///< of one part
+  std::vector<compensation::BlockBeyond> beyond = {};  ///< blocks beyond the limits, in which the correction is held
+  Cyclogram cyclogram = {};                            ///< of one part
   Prediction prediction = {};
   double between_s = 0.0;
   std::vector<CorrectedProgram> programs = {};  ///< in the order of their parts

@@ -97,7 +97,7 @@ CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredict
   const double tolerance_um = scenario.study->tolerance_um,
                margin_um = std::min(d.interval_um.value_or(0.0), 0.5 * tolerance_um);
   const CorrectedRun corrected = correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, tolerance_um}, ahead_um,
-                                                     margin_um, planner_of(scenario));
+                                                     margin_um, planner_of(scenario), scenario.limits.correction);
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = ahead_um,

@@ -12,6 +12,7 @@
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
+#include "studies/linear_physics.hpp"
 #include "studies/table_strategy.hpp"
 #include "studies/validation_study.hpp"
 

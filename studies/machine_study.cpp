@@ -108,9 +108,9 @@ void correct(MachineStudy& study, const Scenario& scenario) {
     const JudgedRun run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
                         settings.tolerance_um};
     const double margin_um = largest_miss_um(d, training);
-    for (CorrectedRun corrected :
-         {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
-          correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario))}) {
+    for (CorrectedRun corrected : {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
+                                   correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario),
+                                                       scenario.limits.correction)}) {
       corrected.predictor = d.name;
       corrected.channel = d.target;
       study.corrections.push_back(std::move(corrected));
@@ -118,13 +118,15 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   }
 }
 
-void run_axis(MachineStudy& study, const scenarios::AxisLoopSettings& settings) {
+void run_axis(MachineStudy& study, const scenarios::AxisLoopSettings& settings, double most_um) {
   const auto d =
       std::find_if(study.predictors.begin(), study.predictors.end(), [&](const compensation::DeployedPredictor& p) {
         return p.name == kByRegression && p.target == settings.displacement;
       });
   study.axis_loop = run_axis_loop(settings.loop, study.judged.record, settings.displacement, [&](const Record& readings) {
-    return live(*d->predictor, {.cyclogram = {}, .ambient = {}, .readings = readings});
+    std::vector<double> correction_um = live(*d->predictor, {.cyclogram = {}, .ambient = {}, .readings = readings});
+    for (double& c_um : correction_um) c_um = std::isnan(c_um) ? c_um : std::clamp(c_um, -most_um, most_um);
+    return correction_um;
   });
 }
 
@@ -178,7 +180,7 @@ MachineStudy study_machine(const Scenario& scenario, const scenarios::Model& mod
     study.predictors.push_back(by_thermal_modes(*scenario.machine, model.outputs(), modes, study.displacements[d]));
   }
   correct(study, scenario);
-  if (scenario.axis_loop) run_axis(study, *scenario.axis_loop);
+  if (scenario.axis_loop) run_axis(study, *scenario.axis_loop, scenario.limits.correction.most_um);
   find_ambiguities(study, scenario);
   return study;
 }

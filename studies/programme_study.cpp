@@ -170,7 +170,7 @@ double largest_percent(const JudgedPredictor& p) {
 
 /// Plans corrections on each prediction of a random cyclogram, and computes what the true drift leaves.
 ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const JudgedPredictor& p, std::size_t channel,
-                                        double tolerance_um, SchedulePolicy policy) {
+                                        double tolerance_um, SchedulePolicy policy, const CorrectionLimits& limits) {
   ProgrammeStudy::Scheduled s{p.name(), study.channels.name[channel]};
   const auto c = static_cast<Eigen::Index>(channel);
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
@@ -183,7 +183,7 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Judge
     const std::vector<double> drift_um = row_of(j.truth, c);
     // Half of the tolerance is reserved for the predictor's error.
     const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
-                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy);
+                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy, limits);
     int changes = 0;
     for (const Operation& o : corrected.schedule->operations)
       changes += static_cast<int>(std::count_if(o.corrections.begin(), o.corrections.end(),
@@ -351,7 +351,8 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
   const auto channel = static_cast<std::size_t>(std::find(study.channels.name.begin(), study.channels.name.end(), target) -
                                                 study.channels.name.begin());
   for (const auto& p : study.predictors)
-    study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um, planner_of(scenario)));
+    study.scheduled.push_back(
+        schedule_with(study, p, channel, programme.tolerance_um, planner_of(scenario), scenario.limits.correction));
   return study;
 }
 

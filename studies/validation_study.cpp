@@ -10,11 +10,11 @@
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"
-#include "compensation/judging/model_scatter.hpp"
 #include "compensation/sensors/thermometers.hpp"
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
+#include "studies/linear_physics.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -23,8 +23,7 @@ using namespace compensation;
 using scenarios::Scenario;
 using scenarios::Validation;
 
-constexpr int kModesOfObserver = 12;  // the slowest modes of the model, in addition to its steady responses
-constexpr double kRounding = 0.289;   // standard deviation of a rounding error of one step, 1 / sqrt(12)
+constexpr double kRounding = 0.289;  // standard deviation of a rounding error of one step, 1 / sqrt(12)
 
 /// One simulation.
 struct Job {
@@ -92,14 +91,10 @@ std::string why_not_in_balance(const scenarios::MachineModel& machine, const com
   return "";
 }
 
-/// What strategies may know of the machine for records, or the reason why nothing.
-struct RecordedPhysics {
-  std::optional<compensation::Physics> physics;
-  std::string why_none;
-};
-/// @param runs  for training and judging
-RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<const compensation::ObservedRun*>& runs,
-                                    const compensation::StrategySettings& how, const Listener& listener) {
+/// For strategies that are judged on records. @param runs  for training and judging; @param training  the former alone
+LinearPhysics physics_for_records(const Scenario& scenario, const std::vector<const compensation::ObservedRun*>& runs,
+                                  std::span<const compensation::ObservedRun> training,
+                                  const compensation::StrategySettings& how, const Listener& listener) {
   if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
   const scenarios::MachineModel& machine = *scenario.machine;
   if (!how.count_from_start)
@@ -134,9 +129,7 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
       if (std::find(outputs.begin(), outputs.end(), name) == outputs.end())
         return {std::nullopt, fmt::format("the scenario's machine has no sensor '{}'", name)};
     }
-    std::optional<compensation::Physics> physics = physics_of(scenario, model, 0.0, 1);
-    if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
-    return {std::move(physics), ""};
+    return linear_physics(scenario, model, training, 0.0, 1);
   } catch (const InputError& e) {  // a machine that cannot be reduced
     return {std::nullopt, e.what()};
   } catch (const SolveError& e) {  // for example heat that cannot leave
@@ -149,16 +142,6 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
 std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
   if (run.cyclogram.sections.empty()) return fmt::format("{} does not say what drove the machine", run.readings.source);
   return why_not_in_balance(machine, run);
-}
-
-std::optional<compensation::Physics> physics_of(const Scenario& scenario, const scenarios::Model& model, double scatter,
-                                                int seed) {
-  const scenarios::ReducedMachine* reduced = model.reduced();
-  if (!reduced || !reduced->system.is_linear()) return std::nullopt;
-  const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
-  const ModalPredictor modes =
-      make_ritz_predictor(reduced->system, reduced->start, kModesOfObserver, {.drive = {}, .ambient_K = ambient_K});
-  return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, ambient_K};
 }
 
 namespace {
@@ -214,8 +197,12 @@ std::optional<Record> as_judged(const Validation& v, const std::string& cyclogra
   return std::nullopt;
 }
 
-/// For strategies that are judged in simulation. The reduced model of a network costs nothing: it is opened though the scenario asks for the full one.
-RecordedPhysics physics_for_simulation(const Scenario& scenario, const scenarios::Model& model) {
+namespace {
+
+/// For strategies that are judged in simulation. The reduced model of a network costs nothing: it is opened though the
+/// scenario asks for the full one.
+LinearPhysics physics_for_simulation(const Scenario& scenario, const scenarios::Model& model,
+                                     std::span<const compensation::ObservedRun> training) {
   const Validation& v = *scenario.validation;
   try {
     std::optional<scenarios::Model> own;
@@ -226,21 +213,15 @@ RecordedPhysics physics_for_simulation(const Scenario& scenario, const scenarios
       for (const Cyclogram& c : v.train) cyclograms.push_back(&c);
       own.emplace(scenarios::open_model(reduced, cyclograms, {}, false));
     }
-    const scenarios::Model& used = own ? *own : model;
-    if (!used.reduced())
-      return {std::nullopt,
-              "they need the reduced model, and the scenario asks for the full one; `solver: {model: reduced}` is required"};
-    std::optional<compensation::Physics> physics = physics_of(scenario, used, v.model_scatter, v.seed);
-    if (!physics)
-      return {std::nullopt,
-              "they need a linear model, and in the scenario's machine films, heat or thermostats follow temperatures"};
-    return {std::move(physics), ""};
+    return linear_physics(scenario, own ? *own : model, training, v.model_scatter, v.seed);
   } catch (const InputError& e) {
     return {std::nullopt, e.what()};
   } catch (const SolveError& e) {
     return {std::nullopt, e.what()};
   }
 }
+
+}  // namespace
 
 Record read_in_validation(const Validation& v, Record exact, std::size_t run) {
   return as_read(std::move(exact), instrument_of(v), seed_of(v, run));
@@ -267,12 +248,13 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
   how.candidates = candidates;
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = true;
+  how.limits = scenario.limits.correction;
   how.image = study.image;
   how.speed = speed_channel(runs.front().readings);
   how.ambient = ambient_channel(scenario, runs.front().readings);
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
   how.drift_um = std::max(0.1, v.drift_noise_um);
-  RecordedPhysics physics = physics_for_simulation(scenario, model);
+  LinearPhysics physics = physics_for_simulation(scenario, model, runs);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
   return {std::move(runs), std::move(how)};
@@ -320,6 +302,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
     how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = study.count_from_start;
+  how.limits = scenario.limits.correction;
   how.image = study.image;
   how.speed = speed_channel(training.front());
   how.ambient = records.ambient;
@@ -327,7 +310,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   for (const std::vector<compensation::ObservedRun>* list : {&records.train, &records.test}) {
     for (const compensation::ObservedRun& run : *list) all.push_back(&run);
   }
-  RecordedPhysics physics = physics_for_records(scenario, all, how, listener);
+  LinearPhysics physics = physics_for_records(scenario, all, records.train, how, listener);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
   const Channel* elsewhere = how.ambient.empty() ? nullptr : records.test.front().readings.find(how.ambient);

@@ -33,17 +33,13 @@ struct StrategyTraining {
                                               const Record& exact);
 
 /// Judges strategies on measured records (record_study.hpp). Strategies with physics take part if the scenario has a
-/// linear machine, drift counts from the start of each record, and the records contain the drive.
+/// machine that can be made linear (linear_physics.hpp), drift counts from the start of each record, and the records contain the drive.
 [[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
                                                                const Listener& listener);
 
 /// The reason why a model of the machine cannot follow a measured run: its drive is unknown, or it begins out of balance
 /// with its ambient. "" if it can.
 [[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run);
-
-/// The model for strategies, with random factors (compensation::scattered()); none if it is not a linear reduced one.
-[[nodiscard]] std::optional<compensation::Physics> physics_of(const scenarios::Scenario& scenario,
-                                                              const scenarios::Model& model, double scatter, int seed);
 
 /// Whether there are thermometers to choose from.
 [[nodiscard]] bool has_thermometers(const scenarios::Study& study, const Record& record);

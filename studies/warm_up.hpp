@@ -54,6 +54,7 @@ struct CorrectedWarmUps {
   std::string target;  ///< the corrected displacement; others are unchanged
   double speed_rpm = 0.0;
   double model_scatter = 0.0;  ///< of the model that strategies get
+  std::string model = {};      ///< "linearised at 30 °C" where its laws of temperature are; else empty
   std::vector<double> times_s = {};
   std::vector<CorrectedWarmUp> strategies = {};  ///< the first is without correction
 };

@@ -58,6 +58,8 @@ std::optional<CorrectedWarmUps> corrected_warm_ups(const scenarios::Scenario& sc
   CorrectedWarmUps result{
       .target = scenario.study->target, .speed_rpm = speed_rpm, .model_scatter = validation.model_scatter};
   for (int i = 0; i <= kCorrectedTimes; ++i) result.times_s.push_back(longest_s * i / kCorrectedTimes);
+  if (const auto& physics = training.settings.physics; physics && physics->linearised)
+    result.model = compensation::words_of(*physics->linearised);
   std::vector<ReadRun> runs(result.times_s.size());
   listener.begin("warm-up beside correction");
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = read_run(validation, trials, speed_rpm, result.times_s[i]); });

@@ -118,7 +118,7 @@ TEST(SampleRows, AnObservationFarAheadOfTheAgentsOwnTimeIsOfThatTime) {
 }
 
 TEST(SampleRows, AnObservationThatComesBehindARowOfLaterTimeIsNotLost) {
-  // Observed before the answer that lacks them, by a clock that is behind the agent's: a spindle that turned for a moment.
+  // The observations are older than the answer that lacks them, because their clock is slower than the agent's: a spindle that turned for a moment.
   Agent agent(streams(0, 2, 1, {{1, 0, 1000}}),
               {streams(10, 2, 1, {}), streams(20, 4, 3, {{2, 9, 1500}, {3, 10, 1800}}), streams(20, 4, 3, {})});
   SampleRows source(agent.url(), speed(), 0.05, [](const std::string&) {});

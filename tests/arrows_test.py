@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Arrows between rooms: a file includes headers of its own room and of rooms that its CMakeLists.txt links, and no room needs itself.
+"""Checks the dependencies between rooms: a file includes only headers of its own room and of rooms that its CMakeLists.txt links, and no room depends on itself.
 
     arrows_test.py FOLDER_OF_THE_PROJECT
 """
@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^#include "([^"]+)/[^"/]+"', re.M)
 
 
 def rooms_of(top):
-    """By folder: the room's target, and by target: the targets that it links."""
+    """The target of each folder, and the targets that each target links."""
     target, links = {}, {}
     for cmake in top.glob("**/CMakeLists.txt"):
         folder = cmake.parent.relative_to(top).as_posix()
@@ -29,7 +29,7 @@ def rooms_of(top):
 
 
 def below(name, links, seen):
-    """All targets that one needs. Exits where it needs itself."""
+    """All targets that a target depends on. It exits if a target depends on itself."""
     for n in links.get(name, ()):
         if n in seen:
             sys.exit(f"a circle of rooms: {' -> '.join([*seen, n])}")

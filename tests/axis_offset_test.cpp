@@ -17,7 +17,7 @@ constexpr double kCycle_s = 0.125;  // sums of it are exact
 
 struct Axis {
   axis_offset_settings settings{
-      .most_rate_um_s = 2.0, .sign = -1.0, .um_per_count = 0.25, .unit_um = 1000.0, .most_age_s = 1.0};
+      .most_rate_um_s = 2.0, .sign = -1.0, .um_per_count = 0.25, .unit_um = 1000.0, .most_age_s = 1.0, .most_um = 0.0};
   axis_offset_state state{};
   bool heartbeat = false, beats = true, is_on = true, is_enabled = true;
   double correction_um = 20.0;
@@ -90,6 +90,20 @@ TEST(AxisOffset, BeginsAtZeroWheneverTheMachineIsSwitchedOn) {
   EXPECT_EQ(axis.state.counts, -10);
 }
 
+TEST(AxisOffset, GoesNoFurtherThanItsLimit) {
+  for (const double sign : {-1.0, 1.0}) {
+    Axis axis;
+    axis.settings.sign = sign;
+    axis.settings.most_um = 7.0;
+    axis.run(200);
+    EXPECT_EQ(axis.state.offset_um, sign * 7.0);
+    EXPECT_EQ(axis.state.is_wrong, 0);
+    axis.settings.most_um = 0.0;  // none
+    axis.run(200);
+    EXPECT_EQ(axis.state.offset_um, sign * 20.0);
+  }
+}
+
 TEST(AxisOffset, TakesANewSignOrScaleOnlyAtZero) {
   Axis axis;
   axis.run(200);
@@ -110,11 +124,9 @@ TEST(AxisOffset, TakesANewSignOrScaleOnlyAtZero) {
 TEST(AxisOffset, GoesBackToZeroByTheLastSettingsInOrder) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<double axis_offset_settings::*, std::vector<double>>> wrong = {
-      {&axis_offset_settings::most_rate_um_s, {-1.0, nan, inf}},
-      {&axis_offset_settings::sign, {0.0, 2.0, nan}},
-      {&axis_offset_settings::um_per_count, {0.0, -1.0, nan, inf}},
-      {&axis_offset_settings::unit_um, {0.0, -1.0, nan}},
-      {&axis_offset_settings::most_age_s, {0.0, -1.0, nan}}};
+      {&axis_offset_settings::most_rate_um_s, {-1.0, nan, inf}},    {&axis_offset_settings::sign, {0.0, 2.0, nan}},
+      {&axis_offset_settings::um_per_count, {0.0, -1.0, nan, inf}}, {&axis_offset_settings::unit_um, {0.0, -1.0, nan}},
+      {&axis_offset_settings::most_age_s, {0.0, -1.0, nan}},        {&axis_offset_settings::most_um, {-1.0, nan, inf}}};
   for (const auto& [setting, values] : wrong) {
     for (const double value : values) {
       Axis axis;

@@ -1,4 +1,4 @@
-"""A headless Chromium that tests talk to through its DevTools protocol, over two pipes: no library, no port."""
+"""A headless Chromium that tests control by its DevTools protocol over two pipes, without a library or a port."""
 import base64
 import itertools
 import json
@@ -15,7 +15,7 @@ class Browser:
         to_browser, self.to = os.pipe()
         self.back, from_browser = os.pipe()
 
-        def as_three_and_four():  # the numbers that Chromium looks at
+        def as_three_and_four():  # the file descriptors that Chromium reads
             os.dup2(to_browser, 30)
             os.dup2(from_browser, 31)
             os.dup2(30, 3)
@@ -50,7 +50,7 @@ class Browser:
         target = self.ask("Target.createTarget", url="about:blank")["targetId"]
         page = Page(self, self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"])
         self.ask("Emulation.setDeviceMetricsOverride", page.session, width=width, height=height, deviceScaleFactor=1, mobile=False)
-        self.ask("Page.bringToFront", page.session)  # one behind another draws nothing
+        self.ask("Page.bringToFront", page.session)  # a page in the background draws nothing
         self.ask("Page.navigate", page.session, url=url)
         return page
 
@@ -65,14 +65,14 @@ class Page:
         self.browser, self.session = browser, session
 
     def value(self, script):
-        """Of a JavaScript expression."""
+        """The value of a JavaScript expression."""
         result = self.browser.ask("Runtime.evaluate", self.session, expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{script}: {result['exceptionDetails']}")
         return result["result"].get("value")
 
     def wait(self, script, seconds=60):
-        """Until the expression holds."""
+        """Waits until the expression is true."""
         end = time.monotonic() + seconds
         while True:
             try:

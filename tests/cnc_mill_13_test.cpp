@@ -57,7 +57,7 @@ TEST_F(CncMill13, TheScrewAloneMakesMostOfTheDriftWhileTheAxisRuns) {
   const double screw_um = judged_.at("drift_z").values[75] - judged_.at("structure_z").values[75];
   EXPECT_LT(screw_um, -15.0);
   EXPECT_GT(screw_um, -35.0);
-  // Where the axis has stood for 45 min the screw is back within 2 K of the column (its time constant is 7 min).
+  // After the axis has been at rest for 45 min the screw is within 2 K of the column (its time constant is 7 min).
   EXPECT_NEAR(judged_.at("drift_z").values[210], judged_.at("structure_z").values[210], 2.0 * 5.64);
 }
 

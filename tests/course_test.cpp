@@ -67,7 +67,7 @@ TEST(Course, RunsAsThePropagatorDoes) {
   EXPECT_LT((course.states() - expected).cwiseAbs().maxCoeff(), 1e-10 * expected.cwiseAbs().maxCoeff());
 }
 
-// Differences of 1e-4 either way: their own error is of the order of 1e-8 of what they tell, and rounding over 1e-4 is smaller.
+// Central differences of 1e-4: their relative error is of the order of 1e-8, and rounding divided by 1e-4 is smaller.
 constexpr double kDifferences = 1e-6;
 
 TEST(Course, KnowsWhatEveryKindOfDifferenceDoes) {

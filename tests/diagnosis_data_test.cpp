@@ -1,4 +1,5 @@
-// Keys of diagnosis.json that others rely on (docs/reference/diagnosis.md), from causes by hand.
+// Keys of diagnosis.json that others rely on (docs/reference/diagnosis.md), from causes by hand; and the order in which the
+// reports of `diagnose`, `calibrate`, `validate` and `place` are read.
 
 #include "findings/diagnosis_data.hpp"
 
@@ -8,12 +9,23 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "findings/cause_words.hpp"
+#include "findings/diagnosis_answer.hpp"
+#include "findings/diagnosis_document.hpp"
 #include "findings/diagnosis_words.hpp"
+#include "findings/placement_document.hpp"
+#include "findings/strategy_section.hpp"
+#include "output/document_html.hpp"
 #include "output/document_json.hpp"
+#include "output/document_text.hpp"
 
 namespace driftwright::findings::diagnosis_data_test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
 TEST(DiagnosisData, CausesHaveTheirNumbersAndAlternatives) {
@@ -82,6 +94,181 @@ TEST(DiagnosisData, StatementsHaveTheirCourseInShownUnits) {
   EXPECT_EQ(json["record"], "monday");
   EXPECT_EQ(json["edge_min"], Json::parse("[0.0, 1.0, 3.0]"));
   EXPECT_EQ(json["value"], Json::parse("[0.0, 5.0]"));
+}
+
+/// A record of one indicator, which moved by a step that the scenario lacks.
+struct StepOfAnIndicator {
+  studies::MeasuredTwin measured;
+  diagnosis::Diagnosis d;
+  diagnosis::ExtendedScenario extended;
+
+  StepOfAnIndicator() {
+    measured.scenario.name = "mill";
+    measured.scenario.path = "mill.yaml";
+    diagnosis::MeasuredRun run;
+    run.name = "monday";
+    run.path = "monday.csv";
+    run.time_s = {0.0, 60.0};
+    run.cyclogram.sections = {{60.0, {}}};
+    run.ambient = {{0.0}, {0.0}};
+    run.start_K = Eigen::VectorXd::Zero(1);  // warm: its file is not read for ISO 230-3
+    run.channels = {{"nose", 0, "m", Eigen::VectorXd::Constant(2, 5e-6)}};
+    measured.runs = {run};
+    d.as_written = {Eigen::MatrixXd::Zero(1, 2)};
+    d.extended = {Eigen::MatrixXd::Constant(1, 2, 5e-6)};
+    d.search.fit.prediction = d.extended;
+    d.search.findings.resize(1);
+    d.noise["nose"] = {.white = 1e-6};
+    diagnosis::Cause cause{"mount_shift", "nose", "step, in monday", {{"shift", "um", 5.0, 4.0, 6.0}}, 41.25, {}};
+    cause.standing = diagnosis::Standing::kNamed;
+    cause.probability = 0.97;
+    d.causes = {cause};
+    d.verdict = diagnosis::Verdict::kNamed;
+    d.reason = "mount_shift at nose";
+    d.statements.nothing = 0.01;
+    for (const double probability : {0.97, 0.02}) {
+      diagnosis::Stated stated;
+      stated.says.quantity = diagnosis::StatedQuantity::kDisplacement;
+      stated.says.place = {probability > 0.5 ? "nose" : "table"};
+      stated.says.follows = "constant";
+      stated.says.law = "constant";
+      stated.says.unit = "m";
+      stated.probability = probability;
+      d.statements.stated.push_back(stated);
+    }
+    d.gain.push_back({.name = "nose", .unit = "um", .noise_floor = 1.0, .rmse_before = 5.0, .rmse_after = 1.0});
+    d.misses.as_written = 5.0;
+    d.misses.extended = 1.0;
+    d.calibrated.push_back({.name = "heat", .unit = "W", .value = 40.0, .low = 35.0, .high = 45.0, .deviation = 0.2});
+  }
+  [[nodiscard]] DiagnosisFindings findings(const std::string& file) const { return {measured, d, extended, "", file}; }
+};
+
+/// Answer, picture, what to do next, numbers, folded: no table before the numbers, and nothing that is folded among them.
+void expect_read_from_the_top(const output::Document& document) {
+  const std::string page = output::document_html(document).page;
+  const std::size_t answer = page.find("<div class=\"verdict"), picture = page.find("<figure"),
+                    next = page.find("<h2>What to do next</h2>"), numbers = page.find("<h2>The numbers</h2>"),
+                    table = page.find("<table"), experts = page.find("<h2>For experts</h2>"),
+                    folded = page.find("<details", std::min(experts, page.size()));
+  for (const std::size_t at : {answer, picture, next, numbers, table, experts, folded})
+    ASSERT_NE(at, std::string::npos) << page.substr(0, 4000);
+  EXPECT_LT(answer, picture);
+  EXPECT_LT(picture, next);
+  EXPECT_LT(next, numbers);
+  EXPECT_LT(numbers, table) << "a table comes before the answer, the picture and what to do next";
+  EXPECT_LT(table, experts);
+  EXPECT_LT(experts, folded);
+  EXPECT_LT(numbers, page.find("<details")) << "something is folded before the numbers";
+}
+
+TEST(Reports, OfADiagnosisAreReadFromTheTop) {
+  const StepOfAnIndicator found;
+  expect_read_from_the_top(diagnosis_document(found.findings("extended.yaml"), {}));
+}
+
+TEST(Reports, OfACalibrationAreReadFromTheTop) {
+  const StepOfAnIndicator found;
+  expect_read_from_the_top(calibration_document(found.findings("calibrated.yaml"), {}));
+}
+
+TEST(Reports, OfAPlacementAreReadFromTheTop) {
+  studies::Placement p;
+  p.options.n = 1;
+  p.spots = {{}};
+  p.spots.front().region = "head";
+  p.names = {"p1"};
+  p.chosen = {.way = "chosen", .sets = {{0}}, .left = {{.observer_um = 2.0, .regression_um = 3.0}}};
+  p.chosen_lost = p.chosen.left;
+  p.objective_um = p.observer_um = p.regression_um = {2.0};
+  p.drift_um = 20.0;
+  p.channels = {"nose"};
+  expect_read_from_the_top(document_of(p, {}, {"{name: p1, node: head}"}, {}));
+}
+
+TEST(Reports, OfStrategiesAreReadFromTheTop) {
+  compensation::StrategyMatrix m;
+  m.settings.strategies.target = "nose";
+  m.settings.tolerance_um = 10.0;
+  m.runs.push_back({.family = "measured", .season = "", .name = "tuesday", .run = {}});
+  compensation::JudgedStrategy strategy;
+  strategy.fitted.name = "ridge, all sensors";
+  strategy.safety = compensation::Safety::kSafe;
+  strategy.why = "never more than 2.0 µm left";
+  compensation::Case c;
+  c.before = {.rmse = 10.0, .peak_abs = 20.0, .mean = 5.0, .n = 10};
+  c.after = {.rmse = 1.0, .peak_abs = 2.0, .mean = 0.1, .n = 10};
+  strategy.cases = {c};
+  m.strategies = {strategy};
+  m.choice = {.name = strategy.fitted.name, .why = "the smallest error"};
+  output::Document document{.title = "mill"};
+  document.body.sections.push_back(strategy_section(m));
+  expect_read_from_the_top(document);
+  const std::string terminal = output::document_text(document);
+  EXPECT_THAT(terminal,
+              StartsWith("mill\n  Safe to use on the machine: ridge, all sensors: At worst it leaves 2.0 µm of nose"));
+  EXPECT_THAT(terminal, HasSubstr("--model models/ridge_all_sensors.json"));
+}
+
+TEST(Reports, AnswerInWordsForSomebodyAtTheMachine) {
+  const StepOfAnIndicator found;
+  const output::Verdict answer = answer_of(found.d, compared_of(found.measured.runs));
+  EXPECT_EQ(answer.title, "The cause is named");
+  EXPECT_EQ(
+      answer.text,
+      "The movement of nose is not what the scenario says: step, in monday; shift 5 µm. This is very likely (97 %); with "
+      "extended.yaml the simulation misses kept-out readings by 1.0 times their noise, with the scenario as it is by "
+      "5.0 times.");
+  const std::vector<std::string> steps = next_steps(found.measured, found.d, compared_of(found.measured.runs));
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0], "Look at the indicator of nose: its mount, what it touches, and its input at the logger.");
+  EXPECT_THAT(steps[1], HasSubstr("`driftwright diagnose extended.yaml --measured monday.csv`"));
+  const std::string page = output::document_html(diagnosis_document(found.findings("extended.yaml"), {})).page;
+  EXPECT_THAT(page, AllOf(HasSubstr("nose in monday: measured and simulated"), HasSubstr("simulated with the cause"),
+                          HasSubstr("All that might be missing: 2 possibilities")));
+}
+
+TEST(Reports, SayFirstThatFewChannelsWereCompared) {
+  StepOfAnIndicator found;
+  found.d.causes.clear();
+  found.d.search.findings.clear();
+  found.d.verdict = diagnosis::Verdict::kConsistent;
+  for (const char* name : {"t1", "t2", "t3", "t4", "t5"})
+    found.measured.runs[0].left_out.push_back({name, "the scenario has no such sensor"});
+  const output::Verdict answer = answer_of(found.d, compared_of(found.measured.runs));
+  EXPECT_EQ(answer.kind, output::Verdict::Kind::kNeutral);
+  EXPECT_EQ(answer.title, "No difference found, but only 1 of 6 channels was compared");
+  EXPECT_THAT(answer.text, StartsWith("1 of 6 channels of the records is compared"));
+}
+
+TEST(CauseWords, SayTimesAndSharesInTheSentence) {
+  diagnosis::Diagnosis d;
+  d.search.findings.resize(2);
+  d.causes.resize(2);
+  d.causes[0].effect = "sensor_detached";
+  d.causes[0].where = "t_column";
+  d.causes[0].law = "from a time on, in tuesday";
+  d.causes[0].parameters = {{"share", "1", 0.844}, {"time", "min", 95.0}};
+  d.causes[1].effect = "heat_window";
+  d.causes[1].where = "drum";
+  d.causes[1].law = "heat for a while";
+  d.causes[1].parameters = {{"power", "W", 71.5}, {"begin", "min", 117.0}, {"length", "min", 65.0}};
+  EXPECT_EQ(cause_sentence(d, 0),
+            "The reading of thermometer t_column is wrong: sensor that comes off its body, from 95 min on, in tuesday; 84 % "
+            "of air in the reading.");
+  EXPECT_EQ(cause_sentence(d, 1), "The heat in drum is not what the scenario says: heat from 117 to 182 min; power 71.5 W.");
+}
+
+TEST(CauseWords, NameWhatToLookAtForEachQuantity) {
+  using enum diagnosis::StatedQuantity;
+  EXPECT_THAT(look_text(kHeat, "spindle"), AllOf(HasSubstr("spindle"), HasSubstr("lubrication")));
+  EXPECT_THAT(look_text(kExchange, "column,ambient"), AllOf(HasSubstr("column and ambient"), HasSubstr("door")));
+  EXPECT_THAT(look_text(kReading, "t1"), HasSubstr("thermometer t1"));
+  EXPECT_THAT(look_text(kClock, "clock"), HasSubstr("logger"));
+  EXPECT_EQ(look_text({}, "a,b,c,d,e"), "Look at a, b, c and 2 others.");
+  EXPECT_EQ(sure_text(0.999), "almost certain (more than 99 %)");
+  EXPECT_EQ(sure_text(0.92), "very likely (92 %)");
+  EXPECT_EQ(sure_text(0.002), "unlikely (less than 1 %)");
 }
 
 }  // namespace

@@ -97,6 +97,33 @@ TEST(Document, DetailsAreTextOnlyWhereAskedFor) {
   EXPECT_THAT(document_text(document(), {.details = true}), HasSubstr("  An explanation.\n"));
 }
 
+// A report is read from the top; what only an expert needs is folded on the page and left out on the terminal.
+TEST(Document, FoldsSectionsThatAreDetailsOnThePage) {
+  Section statistics{.title = "Statistics", .detail = true};
+  add(statistics, Table{.key = "odds", .columns = {{.key = "of", .title = "of"}}, .rows = {{"a <cause>"}}});
+  Document d{.title = "t"};
+  d.body.sections = {next_section({"Look at the fan."}),
+                     {.title = "For experts", .sections = {statistics, folded("Nothing in it", {})}}};
+  const std::string page = document_html(d).page;
+  const std::size_t next = page.find("<h2>What to do next</h2>"), fold = page.find("<summary>Statistics</summary>");
+  ASSERT_NE(next, std::string::npos);
+  ASSERT_NE(fold, std::string::npos);
+  EXPECT_LT(next, fold);
+  EXPECT_LT(fold, page.find("a &lt;cause&gt;"));
+  EXPECT_LT(page.find("a &lt;cause&gt;"), page.find("</details>"));
+  EXPECT_THAT(page, Not(HasSubstr("Nothing in it")));
+  EXPECT_EQ(document_text(d), "t\n  What to do next\n    Look at the fan.\n");
+  EXPECT_THAT(document_text(d, {.details = true}), HasSubstr("Statistics\n"));
+  EXPECT_EQ(document_json(d)["odds"].size(), 1U);
+}
+
+TEST(Document, ASectionWithoutContentHasNoHeading) {
+  Document d{.title = "t"};
+  d.body.sections = {next_section({}), {.title = "Empty", .blocks = {Value{.key = "only_for_programs", .datum = 1}}}};
+  EXPECT_THAT(document_html(d).page, AllOf(Not(HasSubstr("What to do next")), Not(HasSubstr("<h2>Empty"))));
+  EXPECT_EQ(document_text(d), "t\n");
+}
+
 TEST(Document, LongTablesAreCutOnTheTerminalAlone) {
   Document d{.title = "t"};
   Table table{.key = "rows", .columns = {{.key = "i", .title = "i"}}};

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it; so does every example that a verb's --help shows. Not among them: docs/start/fl_thermal.md and docs/theory/measured.md, whose
-records others published, and docs/how-to/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
+"""Runs every indented `driftwright` command of README and of the pages below unchanged, and checks that it prints what the page shows under it. It also runs every example in the --help of a verb. Left out are docs/start/fl_thermal.md and docs/theory/measured.md,
+whose records others published, and docs/how-to/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
 
     documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
 
-Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what one before it wrote. Of a shown output each line must
-be printed (blanks count as one; a line that ends with "..." is the beginning of one; "..." alone stands for any lines).
+Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what an earlier one wrote. Each line of a shown output must
+be printed. Several blanks count as one; a line that ends with "..." is the beginning of a line; "..." alone means any number of lines.
 """
 import os, re, subprocess, sys, tempfile, time
 import xml.etree.ElementTree as xml
@@ -18,7 +18,7 @@ COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
 def blocks(text):
-    """(line number, command, lines shown under it) of a page."""
+    """The commands of a page, as (line number, command, lines shown under it)."""
     found, shown = [], None
     for number, line in enumerate(text.splitlines(), 1):
         if COMMAND.match(line):
@@ -47,7 +47,7 @@ def not_printed(shown, printed):
 
 
 def examples(program):
-    """(verb, command) that --help shows."""
+    """The examples in --help, as (verb, command)."""
     verbs = re.findall(r"^  ([a-z-]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1].split("Exit codes:")[0], re.M)
     for verb in verbs:
         text = subprocess.run([program, verb, "--help"], capture_output=True, text=True).stdout.split("Example:")

@@ -1,4 +1,4 @@
-// Explanations that the records at hand cannot tell apart, and the experiment that would: against records simulated one by one.
+// Explanations that the present records cannot distinguish, and the experiment that would distinguish them, compared with records simulated one by one.
 
 #include "diagnosis/experiment.hpp"
 

@@ -263,6 +263,19 @@ Record two(const std::vector<double>& T, const std::vector<double>& n) {
   return r;
 }
 
+TEST(Guarded, KeepsTheLimitsOfTheMachine) {
+  FailSafe safe = by_hand();
+  limit(safe, {.most_um = 100.0, .most_step_um = 100.0});  // wider than its own
+  EXPECT_EQ(safe.highest_um, 8.0);
+  EXPECT_EQ(safe.lowest_um, -5.0);
+  EXPECT_EQ(safe.most_rate_um_s, 0.1);
+  limit(safe, {.most_um = 2.0, .most_step_um = 0.5});
+  const Repaired r = repaired(safe, two({20, 20, 20, 20}, {0, 0, 0, 0}));
+  EXPECT_THAT(guarded(safe, r, std::vector<double>{0.0, 9.0, 9.0, -9.0}).correction_um, ElementsAre(0.0, 0.5, 1.0, 0.5));
+  EXPECT_EQ(guarded(safe, r, std::vector<double>{9.0, 9.0, 9.0, 9.0}).correction_um[0], 2.0);
+  EXPECT_EQ(guarded(safe, r, std::vector<double>{-9.0, 9.0, 9.0, 9.0}).correction_um[0], -2.0);
+}
+
 TEST(Guarded, ClampsSlewsAndHolds) {
   const FailSafe safe = by_hand();
   const Repaired r = repaired(safe, two({20, 20, 20, 20, 20, 20}, {0, 0, 0, 0, 0, 0}));

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Lines of `driftwright follow` on pins of a real HAL, and what stays there when it is killed. follow_hal_test.py PROGRAM PROJECT"""
+"""Checks the lines of `driftwright follow` on the pins of a real HAL, and which values remain when it is killed. follow_hal_test.py PROGRAM PROJECT"""
 import fcntl
 import json
 import os
@@ -30,10 +30,10 @@ def main():
     feeder = project / "compensation/control/follow_hal.py"
     (folder / "feed.sh").write_text(f"#!/bin/sh\nexec {feeder} --axes nose_z <{folder}/lines\n")
     (folder / "feed.sh").chmod(0o755)
-    # one HAL a machine: as tests/one_hal.hpp has it
+    # one HAL per computer, see tests/one_hal.hpp
     turn = open("/tmp/driftwright_one_hal", "a")
     fcntl.flock(turn, fcntl.LOCK_EX)
-    # halrun would take its HAL away with its shell; it lives as long as its standard input
+    # halrun ends its HAL with its shell, so its standard input is kept open
     hal = subprocess.Popen(["halrun", "-s"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT, cwd=folder, text=True)
     follow = None
     try:
@@ -46,7 +46,7 @@ def main():
         for row in range(40):
             before = halcmd("getp", "follow.heartbeat")
             say(follow, f"{60 * row},2000,20\n")
-            if row < 6:  # it turns over with each
+            if row < 6:  # it toggles with each line
                 wait_for("a beat", lambda: halcmd("getp", "follow.heartbeat") not in (before, ""))
         # 300 W on 20 W/K, 60 kJ/K: 15 K (1 - exp(-t / 50 min)), 4 um/K
         wanted_um = 60.0 * (1.0 - 2.718281828459045 ** (-39.0 / 50.0))

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A headless LinuxCNC whose Z axis moves by what `driftwright follow` tells: the offset, its soft limit, and what is left when `follow` is killed.
+"""Moves the Z axis of a headless LinuxCNC by the corrections of `driftwright follow`. Checked are the offset, its soft limit, and the state after `follow` is killed.
 
-    follow_linuxcnc_test.py PROGRAM PROJECT        as root: the component is put into LinuxCNC's folder of modules while it runs
+    follow_linuxcnc_test.py PROGRAM PROJECT        run as root: the component is copied into LinuxCNC's folder of modules during the test
 """
 import fcntl
 import json
@@ -76,7 +76,7 @@ net ready and2.0.out => thermal.machine-is-on
 setp thermal.most-rate-um-s {RATE_UM_S}
 setp thermal.most-age-s {MOST_AGE_S}
 """
-# Stands in the place of a screen: homes, and then does what is asked for, line by line.
+# Replaces LinuxCNC's user interface: homes the axes, then executes the commands line by line.
 SCRIPT = """#!/usr/bin/python3
 import linuxcnc, time
 c, s, e = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
@@ -120,10 +120,10 @@ def wait_for(what, is_so, seconds=60.0):
 
 
 class Control:
-    """The mill, asked for one block of its language after another."""
+    """The mill: executes one block after another."""
 
     def __init__(self, folder):
-        ends = []  # opened both ways, so that no side waits for the other
+        ends = []  # opened for reading and writing, so that neither side waits for the other
         for name in ("asked", "told"):
             os.mkfifo(folder / name)
             (folder / name).chmod(0o777)
@@ -153,7 +153,7 @@ def compiled(folder, project):
 
 
 def follow_drift(program, folder, control, lines):
-    """What is asked of the mill while `follow` runs and writes to `lines`, and what it must do."""
+    """Commands for the mill while `follow` runs and writes to `lines`, and the moves that it must make."""
     follow = subprocess.Popen([program, "follow", "head.yaml", "--slew", "100 um/s"], stdin=subprocess.PIPE, stdout=lines, cwd=folder, text=True)
     n_rows = 0
 
@@ -175,13 +175,13 @@ def follow_drift(program, folder, control, lines):
     assert abs(place_mm() - 2.0) < 1e-9
     halcmd("setp", "thermal.enable", "1")
     rows(60)  # 60 min at 2000 rpm
-    # Once the reader of `follow` runs and the slew limit has let it, Z stands off its place by the correction, and takes it along wherever it goes.
+    # Once the reader of `follow` runs and the slew limit allows it, Z is offset by the correction and keeps this offset in all moves.
     wait_for("correction", lambda: correction_um() > 35.0)
     wait_for("offset", lambda: is_led(2.0))
     assert 35.0 < correction_um() < 60.0, correction_um()
     assert control.do("G0 Z5")[0] == "done"
     wait_for("offset at the new place", lambda: is_led(5.0))
-    # At its soft limit the axis takes what is left of its way, here 15 um, and no more.
+    # At its soft limit the axis takes only the travel that is left, here 15 um.
     halcmd("setp", "thermal.enable", "0")
     wait_for("way back", lambda: abs(place_mm() - 5.0) < 1e-4)
     assert control.do(f"G0 Z{LOW_MM + 0.015}")[0] == "done"
@@ -191,7 +191,7 @@ def follow_drift(program, folder, control, lines):
         rows(1)
     at_limit_mm = place_mm()
     assert LOW_MM - 1e-6 <= at_limit_mm < LOW_MM + 0.002, at_limit_mm
-    # Killed without a word: behind the watchdog's time the offset goes back at the slew limit, and the machine knows where it is.
+    # `follow` is killed with SIGKILL: after the watchdog's time the offset returns to 0 at the slew limit, and all axes stay homed.
     halcmd("setp", "thermal.enable", "0")
     wait_for("way back from the limit", lambda: abs(place_mm() - (LOW_MM + 0.015)) < 1e-4)
     assert control.do("G0 Z5")[0] == "done"
@@ -210,7 +210,7 @@ def follow_drift(program, folder, control, lines):
     assert took_s > MOST_AGE_S + 1e3 * abs(led_mm - 5.0) / RATE_UM_S - 1.0, took_s
     said = control.do("G0 Z-3")
     assert said == ["done", "1"], said
-    assert abs(place_mm() + 3.0) < 1e-4, place_mm()  # the control's planner of offsets ends within a count, 0.05 um beside 0
+    assert abs(place_mm() + 3.0) < 1e-4, place_mm()  # the control's planner ends within a count of 0, at 0.05 um
     print(f"offset {1e3 * (led_mm - 5.0):.1f} um; at the limit {at_limit_mm:.4f} mm of {LOW_MM}; back {took_s:.1f} s after the kill")
 
 
@@ -231,7 +231,7 @@ def main():
         (folder / name).chmod(0o777)
     os.mkfifo(folder / "lines")
     keeper = os.open(folder / "lines", os.O_RDWR)  # so that feed.sh and follow may come in any order
-    turn = open("/tmp/driftwright_one_hal", "a")  # one HAL a machine: as tests/one_hal.hpp has it
+    turn = open("/tmp/driftwright_one_hal", "a")  # one HAL per computer, see tests/one_hal.hpp
     fcntl.flock(turn, fcntl.LOCK_EX)
     module = MODULES / "followed_axis.so"
     was_there = module.exists()
@@ -242,7 +242,7 @@ def main():
         control = Control(folder)
         assert control.answer() == ["homed"]
         lines = open(folder / "lines", "w")
-        os.close(keeper)  # no sooner: a reader without any writer takes that for the end of its lines
+        os.close(keeper)  # not earlier: a reader would take a FIFO without a writer for the end of the lines
         follow_drift(program, folder, control, lines)
         assert control.do("end") == ["ending"]
         control.process.wait(60)

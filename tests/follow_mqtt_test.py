@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright follow` at a real mosquitto on loopback that is killed again and again, with rows that are late, doubled, swapped, missing or none, that nest
-without end or are of megabytes.
+"""Runs `driftwright follow` with a real mosquitto on loopback that is killed again and again. Rows come late, twice, swapped or not at all, are unreadable, nest
+without end or have megabytes.
 
     follow_mqtt_test.py PROGRAM
 """
@@ -43,10 +43,10 @@ def main():
     server = broker(folder, port)
     try:
         nested = '{"time_s":' + "[" * 45000 + "]" * 45000 + "}"
-        large = (json.dumps({"time_s": 1, "speed_rpm": 9000, "ambient_degC": 20}) + "\n") * 40000  # 2 MB; a row, were it read
+        large = (json.dumps({"time_s": 1, "speed_rpm": 9000, "ambient_degC": 20}) + "\n") * 40000  # 2 MB; it would be a valid row
         words, n_waited = [], 0
         threading.Thread(target=lambda: words.extend(iter(follow.stderr.readline, "")), daemon=True).start()
-        while not any("waits for a header or a JSON row" in w for w in words):  # nothing that somebody publishes first ends it
+        while not any("waits for a header or a JSON row" in w for w in words):  # no first message may end the run
             n_waited += 1
             assert n_waited < 100 and follow.poll() is None, words
             publish(port, "mill/row", nested)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`driftwright follow` at an agent of MTConnect: a server of HTTP that answers as the standard says, is away, lacks an item. follow_mtconnect_test.py PROGRAM"""
+"""Runs `driftwright follow` with an MTConnect agent: an HTTP server that answers as the standard says, is unreachable, or lacks an item. follow_mtconnect_test.py PROGRAM"""
 import csv
 import functools
 import http.server
@@ -15,7 +15,7 @@ import threading
 import waiting
 from one_head import HEAD as SLOW_HEAD
 
-HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # it is warm at once
+HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # a small heat capacity: it is warm at once
 CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
 <MTConnectStreams xmlns="urn:mtconnect.org:MTConnectStreams:1.5">
   <Header creationTime="2026-11-23T12:00:00Z" sender="shop" instanceId="1" version="1.5" bufferSize="131072" nextSequence="9" firstSequence="1" lastSequence="8"/>
@@ -47,8 +47,8 @@ WRONG = """<?xml version="1.0"?><MTConnectError xmlns="urn:mtconnect.org:MTConne
 
 
 class Agent:
-    """What it tells is `values`. `feed`: the unit in its probe; None: it has no probe. `mode`: "html", a page for who asks for no XML; 301 ... 308, a redirection;
-    "loop", one without end."""
+    """An agent that answers with `values`. `feed`: the unit in its probe; None: it has no probe. `mode`: "html", a page for clients that do not request XML;
+    301 ... 308, a redirection; "loop", an endless redirection."""
 
     def __init__(self, values, port=0, feed="MILLIMETER/SECOND", mode=""):
         agent = self
@@ -115,7 +115,7 @@ def main():
         agent.values = {"speed": "UNAVAILABLE", "ambient": "21.5"}
         n = len(lines)
         wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 4
-        assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # what is missing is held, and is not 0
+        assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # a missing value is held and does not become 0
         agent.values = {"speed": "500", "ambient": "21.5"}
         agent.leave()
         n = len(lines)
@@ -126,13 +126,13 @@ def main():
         assert running.wait(30) == 0
         words = running.stderr.read()
         assert "asks it again every 0.2 s" in words and "answers again" in words, words
-        # items that are not there, a device that is not there, an address that is none
+        # missing items, a missing device, an invalid address
         for where, topics, code, said in [(address, ["speed_rpm=S1speeed", "ambient_degC=e2"], 2, "Did you mean 'S1speed'?"), ("ftp://x", ["speed_rpm=c3", "ambient_degC=e2"], 2, "http://10.0.0.7:5000")]:
             wrong = follow(program, folder, where, *topics)
             assert wrong.wait(60) == code, (where, wrong.stderr.read())
             text = wrong.stderr.read()
             assert said in text, text
-        # the map in the scenario that is followed, and in one that a model's file is followed with; --topic takes its place
+        # the map `topics` in the scenario that is followed, and in a scenario given with a model file; --topic replaces it
         pathlib.Path(folder, "mapped.yaml").write_text(HEAD + "topics: {speed_rpm: S1speed, ambient_degC: e2}\n")
         for words in (["mapped.yaml"], ["head.yaml", "--columns", "mapped.yaml"]):
             mapped = subprocess.Popen([program, "follow", *words, "--mtconnect", address, "--every", "0.2 s"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True)
@@ -148,7 +148,7 @@ def main():
         nobody.send_signal(signal.SIGTERM)
         assert nobody.wait(30) == 0
         again.leave()
-        # units of the probe, else of the standard; agents that answer with a page unless they are asked for XML, and that have moved
+        # units from the probe, else from the standard; agents that answer with a page unless XML is requested, and agents that redirect
         for feed, mode, expected, said in [("MILLIMETER/SECOND", "", 3000.0, ""), ("MILLIMETER/MINUTE", "", 50.0, ""), ("INCH/MINUTE", "", 1270.0, ""),
                                            ("", "", 3000.0, "its probe gives no units for them, so the standard's units are taken: Xfrt (AxisFeedrate) in MILLIMETER/SECOND"),
                                            (None, "", 3000.0, "it gives no probe (it answers: Could not find the device turn), so the standard's units are taken: S1speed (RotaryVelocity)"),

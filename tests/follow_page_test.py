@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands of docs/how-to/follow.md, "From a thermometer to a corrected axis", as they stand there, with a real broker. follow_page_test.py PROGRAM PROJECT"""
+"""Runs the commands of docs/how-to/follow.md, "From a thermometer to a corrected axis", unchanged, with a real broker. follow_page_test.py PROGRAM PROJECT"""
 import json
 import os
 import pathlib
@@ -12,12 +12,12 @@ import tempfile
 
 
 def end_daemons(folder):
-    """The broker has left the group of its shell; it has its environment."""
+    """Ends the broker, which has left the process group of its shell and is found by its environment."""
     for entry in pathlib.Path("/proc").glob("[0-9]*/environ"):
         try:
             if f"XDG_CACHE_HOME={folder}/cache".encode() in entry.read_bytes().split(b"\0"):
                 os.kill(int(entry.parent.name), signal.SIGTERM)
-        except OSError:  # another user's, or gone
+        except OSError:  # a process of another user, or one that has ended
             continue
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What `follow` has recorded is an ordinary record: `diagnose` names in it what it names in the rows themselves, a fan that stopped at an hour. follow_record_test.py PROGRAM"""
+"""Checks that the record of `follow` is an ordinary record: `diagnose` names the same cause in it as in the rows themselves, a fan that stopped at some time. follow_record_test.py PROGRAM"""
 import json
 import os
 import pathlib
@@ -43,7 +43,7 @@ def main():
         text = "".join(",".join(row) + "\n" for row in measured)
         (work / "hours.csv").write_text(text)
         late = text.splitlines()
-        late[100:100] = [late[100], "no row at all", late[97]]  # twice, none, late: none of it is recorded
+        late[100:100] = [late[100], "no row at all", late[97]]  # twice, unreadable, late: none of these rows is recorded
         lines = call("follow", "good.yaml", "--record", "seen.csv", input="\n".join(late) + "\n").stdout.splitlines()
         assert len(lines) == len(rows) - 1 + 3, len(lines)
         found = []

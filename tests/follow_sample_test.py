@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright follow --mtconnect --sample` at an agent with a buffer, as the standard describes one: no observation is lost between two questions, where it gives
-few at a time, where it is away, and it says when it is started anew or has forgotten. follow_sample_test.py PROGRAM"""
+"""Runs `driftwright follow --mtconnect --sample` with an agent that has a buffer, as the standard describes it. No observation is lost between two requests, if the agent gives
+few at a time, or if it is unreachable for a while; `follow` reports when the agent restarted or lost observations. follow_sample_test.py PROGRAM"""
 import csv
 import datetime
 import http.server
@@ -30,7 +30,7 @@ def stamp(time_s):
 
 
 class Agent:
-    """Observations (sequence, time, key, value) in a buffer of some size; the answers of MTConnect Standard part 1."""
+    """An agent with observations (sequence, time, key, value) in a buffer of limited size; it answers as MTConnect Standard part 1 says."""
 
     def __init__(self, size=1000, most=7):
         self.size, self.most, self.instance, self.lock, self.asked = size, most, 1, threading.Lock(), []
@@ -114,7 +114,7 @@ def main():
         said = [1000]
 
         def observe(n):
-            for _ in range(n):  # faster than it is asked, and more than it answers at once
+            for _ in range(n):  # more observations than requests, and more than one answer contains
                 said.append(said[-1] + 1)
                 agent.observe("speed", str(said[-1]))
                 agent.observe("load", "12")
@@ -130,26 +130,26 @@ def main():
         wait_for("row of now", lambda: time.time() - lines[-1]["time_s"] < 2.0 and lines[-1]["state"] == "on")
         time.sleep(1.5)
         n_currents = sum(path == "/current" for path in agent.asked)
-        assert n_currents == 1, agent.asked  # it goes on, and never begins anew
+        assert n_currents == 1, agent.asked  # it continues and never starts again
         assert agent.asked.count("/probe") == 1, agent.asked
-        # started anew: numbers begin at 1 again
+        # the agent restarts: sequence numbers begin at 1 again
         with agent.lock:
             agent.instance = 2
         agent.start_anew()
         wait_for("word of the new agent", lambda: any("started anew (instanceId 2 in place of 1)" in w for w in words))
         wait_for("question for its units", lambda: agent.asked.count("/probe") == 2)
-        said.append(1000)  # what it begins with
+        said.append(1000)  # the first values
         observe(20)
         wait_for("row of now", lambda: time.time() - lines[-1]["time_s"] < 2.0)
         time.sleep(1.5)
-        # more is observed while it is away than it can keep
+        # while it is unreachable, more is observed than its buffer can hold
         agent.leave()
         n_said = len(said)
         agent.size = 30
         observe(40)
         agent.open(agent.port)
         wait_for("word that it has forgotten", lambda: any("no longer has the observations" in w for w in words))
-        said[n_said:] = said[-1:]  # what it tells then is the last
+        said[n_said:] = said[-1:]  # it then gives the latest values
         observe(5)
         time.sleep(1.5)
         running.send_signal(signal.SIGTERM)
@@ -159,7 +159,7 @@ def main():
         changes = [v for k, v in enumerate(seen) if k == 0 or v != seen[k - 1]]
         assert changes == said, ([v for v in said if v not in changes], [v for v in changes if v not in said])
         times = [float(row["time_s"]) for row in rows]
-        # rows stand as far apart as the observations did: 10 ms and the time of a thread
+        # rows have the spacing of the observations: 10 ms plus the delay of a thread
         apart = [b - a for a, b, u, v in zip(times, times[1:], seen, seen[1:]) if v == u + 1]
         assert 0.009 < sorted(apart)[len(apart) // 2] < 0.2, sorted(apart)
         agent.leave()

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The page of `driftwright follow --serve` in a real browser: its numbers against the lines, a connection that breaks, a program that starts anew, tokens,
-ports, connections that mean no good. follow_serve_test.py PROGRAM PROJECT"""
+"""Tests the page of `driftwright follow --serve` in a real browser: its numbers against the lines, a lost connection, a restarted program, tokens,
+ports, hostile connections. follow_serve_test.py PROGRAM PROJECT"""
 import csv
 import json
 import os
@@ -30,12 +30,12 @@ class Follow:
         self.lines = []
 
     def say(self, row):
-        """@return the line that answers it"""
+        """Sends a row. @return the line that answers it"""
         self.process.stdin.write(row + "\n")
         while True:
             self.lines.append(self.process.stdout.readline())
             line = json.loads(self.lines[-1])
-            if line["time_s"] is not None:  # else said without a row, while none came
+            if line["time_s"] is not None:  # other lines were written without a row, because none came
                 return line
 
     def header(self, text):
@@ -50,7 +50,7 @@ class Follow:
 
 
 class Between:
-    """Hands bytes on between a browser and a server until it is cut."""
+    """Passes bytes between a browser and a server until it is cut."""
 
     def __init__(self, port):
         self.to, self.sockets, self.is_closed = port, [], False
@@ -66,7 +66,7 @@ class Between:
                 continue
             try:
                 there = socket.create_connection(("127.0.0.1", self.to))
-            except OSError:  # nobody is there by now
+            except OSError:  # the client has gone
                 here.close()
                 continue
             self.sockets += [here, there]
@@ -123,7 +123,7 @@ NUMBERS = "Array.from(document.querySelectorAll('#axes tbody tr'), row => Array.
 
 
 def shows(page, follow, time_s, values):
-    """Says rows from a time on until the page shows one before silence changes its numbers, and compares all of them. @return the line"""
+    """Sends rows from a time on until the page shows one, before silence changes its numbers, and compares all numbers. @return the line"""
     for _ in range(20):
         line = follow.say(f"{time_s},{values}")
         time_s += 1
@@ -142,7 +142,7 @@ def shows(page, follow, time_s, values):
 
 
 def curves(page, follow, column, key):
-    """The page's points are the numbers of the lines that answer rows, each once and in their order. Beside them are points of lines without a row."""
+    """Checks that the points of the page are the numbers of the lines that answer rows, each once and in order. Lines without a row give further points."""
     lines = [json.loads(line) for line in follow.lines]
     told = [(line["run_s"], line["axes"]["nose_z"][key]) for line in lines if line.get("run_s") is not None]
     rows_s = {run_s for run_s, _ in told}
@@ -172,10 +172,10 @@ def at_the_browser(program, folder, chromium):
     off = follow.say(f"{line['time_s']},2000,20")  # the same time again
     assert off["state"] == "held"
     page.wait("document.getElementById('status').className === 'held' && document.getElementById('alerts').innerText.includes('doubled')")
-    # the connection breaks: it says so, and comes back with what it has missed
+    # the connection is lost: the page says so, reconnects and fetches what it has missed
     between.cut()
     page.wait("document.getElementById('state').textContent === 'no connection'", 15)
-    time.sleep(8)  # longer than the page waits for a word: it asks again all the same
+    time.sleep(8)  # longer than the page waits for a message: it reconnects
     for k in range(32, 42):
         follow.say(f"{60 * k},1000,21")
     between.is_closed = False
@@ -183,8 +183,8 @@ def at_the_browser(program, folder, chromium):
     page.wait("document.getElementById('state').textContent === 'on'")
     curves(page, follow, 1, "predicted_um")
     entries = page.value("Array.from(document.getElementById('journal').children, e => e.textContent)")
-    assert len(set(entries)) == len(entries) and entries[-1].endswith("on"), entries  # nothing is told twice
-    # the program ends and another begins at the same place, of another machine: that machine and its curves alone
+    assert len(set(entries)) == len(entries) and entries[-1].endswith("on"), entries  # no line appears twice
+    # the program ends and another one starts at the same port for another machine: the page shows only that machine and its curves
     follow.end()
     page.wait("document.getElementById('state').textContent === 'no connection'", 15)
     pathlib.Path(folder, "tail.yaml").write_text(NETWORK.replace("name: nose_z", "name: tail_z").replace("name: head\n", "name: other\n", 1))
@@ -202,7 +202,7 @@ def at_the_browser(program, folder, chromium):
     shows(page, follow, 341, "1500,20")
     page.wait("live.points.length >= 4")
     curves(page, follow, 1, "predicted_um")
-    # readers who never read, and more of them than there are places for
+    # clients that never read their answers, more than there are places
     sockets = []
     for _ in range(60):
         s = socket.create_connection(("127.0.0.1", port))
@@ -215,15 +215,15 @@ def at_the_browser(program, folder, chromium):
         follow.say(f"{100 + 60 * k},1500,20")
         slowest = max(slowest, time.perf_counter() - began)
     assert slowest < 1.0, slowest
-    shows(page, follow, 90041, "1500,20")  # who reads is served
+    shows(page, follow, 90041, "1500,20")  # a client that reads is served
     took_s = follow.end()
     assert took_s < 15.0, took_s
     return slowest
 
 
 def silent_crowd(program, folder):
-    """100 connections that send nothing, a byte at a time, or never read what they asked for: rows are answered as without them, and so is who asks
-    for the page. @return times [s] from a row to its line, sorted, and how long the page took"""
+    """Opens 100 connections that send nothing, send a byte at a time, or never read their answers. Rows and requests for the page are answered as
+    without them. @return times [s] from a row to its line, sorted, and how long the page took"""
     follow = Follow(program, "head.yaml", "--serve", 0, folder=folder)
     port = int(follow.process.stderr.readline().rsplit(":", 1)[1].strip("/\n "))
     follow.header("time_s,speed_rpm,ambient_degC")
@@ -244,7 +244,7 @@ def silent_crowd(program, folder):
                 try:
                     if kind == 1:
                         s.send(b"G")
-                except OSError:  # was put out, and comes again
+                except OSError:  # was disconnected and reconnects
                     s.close()
                     crowd[k] = come(kind)
 
@@ -271,7 +271,7 @@ def silent_crowd(program, folder):
 
 
 def undisturbed(program, folder):
-    for _ in range(3):  # a row waits for a processor, too, where other programs are many
+    for _ in range(3):  # a row also waits for a processor if many other programs run
         took_s, page_s = silent_crowd(program, folder)
         if took_s[-len(took_s) // 100] < 0.01 and page_s < 2.0:
             break
@@ -281,7 +281,7 @@ def undisturbed(program, folder):
 
 
 def half_closed(program, folder):
-    """A client that has said all, and closes its half (`nc` at the end of its input), is answered; a head of megabytes is not read."""
+    """A client that closes its sending half after the request (as `nc` does at the end of its input) gets an answer; a request head of megabytes is not read."""
     follow = Follow(program, "head.yaml", "--serve", 0, folder=folder)
     port = int(follow.process.stderr.readline().rsplit(":", 1)[1].strip("/\n "))
     with socket.create_connection(("127.0.0.1", port), timeout=10) as s:
@@ -316,13 +316,13 @@ def with_token(program, folder, chromium):
     follow = Follow(program, "head.yaml", "--serve", port, folder=folder)
     follow.header("time_s,speed_rpm,ambient_degC")
     follow.say("0,2000,20")
-    assert status_of(f"http://127.0.0.1:{port}/", Host="elsewhere.example") == 403  # a name of elsewhere that points here
+    assert status_of(f"http://127.0.0.1:{port}/", Host="elsewhere.example") == 403  # a foreign host name that points to this computer
     assert status_of(f"http://localhost:{port}/") == 200
     follow.end()
 
 
 def on_a_mesh(program, project, folder, chromium):
-    """The FP3's surface has, next to its thermometers, the temperatures that `predict` says of them."""
+    """The FP3's surface has, near its thermometers, the temperatures that `predict` gives for them."""
     scenario = project / "scenarios/fp3_spindle.yaml"
     subprocess.run([program, "predict", scenario, "--cyclogram", "chaotic", "-o", "chaotic"], cwd=folder, check=True, capture_output=True)
     rows = list(csv.DictReader(line for line in (pathlib.Path(folder) / "chaotic/record.csv").open() if not line.startswith("#")))[:120]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright follow --sparkplug` at a real mosquitto, with payloads of another program: births with aliases, data by alias and by name, signed numbers, null,
-history, messages that are missing, deaths. follow_sparkplug_test.py PROGRAM"""
+"""Runs `driftwright follow --sparkplug` with a real mosquitto and payloads made by another program: births with aliases, data by alias and by name, signed numbers,
+null, historical values, missing messages, deaths. follow_sparkplug_test.py PROGRAM"""
 import functools
 import json
 import os
@@ -16,7 +16,7 @@ import time
 import waiting
 from one_head import HEAD as SLOW_HEAD
 
-HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # it is warm at once
+HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # a small heat capacity: it is warm at once
 INT16, INT32, FLOAT, DOUBLE, BOOLEAN, STRING, DATASET = 2, 3, 9, 10, 11, 12, 16
 lines, words = [], []
 wait_for = functools.partial(waiting.wait_for, told=lambda: (lines[-2:], words))
@@ -72,34 +72,34 @@ def main():
         wait_for("request for a birth", lambda: commands)
         asked = commands[0].metrics[0]
         assert (asked.name, asked.datatype, asked.boolean_value) == ("Node Control/Rebirth", BOOLEAN, True), commands
-        publish("DDATA", payload(9, {"alias": 5, "int_value": 2000}))  # before its birth: of no use
+        publish("DDATA", payload(9, {"alias": 5, "int_value": 2000}))  # data before the birth are not used
         birth(7)
         wait_for("drift of the birth", lambda: is_at(1000, 20))
         publish("DDATA", payload(2, {"alias": 5, "int_value": 500}))
         wait_for("drift of 500 rpm, told by alias", lambda: is_at(500, 20))
         publish("DDATA", payload(3, {"name": "Ambient", "datatype": INT16, "int_value": 0xFFFB}), "/spindle")
         wait_for("drift at -5 degC, told by name", lambda: is_at(500, -5))
-        publish("DDATA", payload(4, {"name": "Spindle/Speed", "int_value": 9000}), "/table")  # of another device, numbered with it
+        publish("DDATA", payload(4, {"name": "Spindle/Speed", "int_value": 9000}), "/table")  # data of another device, numbered in the same sequence
         publish("DDATA", payload(5, {"alias": 5, "int_value": 1500, "is_historical": True}, {"alias": 6, "is_null": True}))
         n = len(lines)
         wait_for("rows", lambda: len(lines) > n + 30)  # 6 s; the body settles in 4
-        assert is_at(500, -5), lines[-1]  # history is none of now; what is null is missing, and held
+        assert is_at(500, -5), lines[-1]  # historical values are not used; null is missing, and the last value is held
         publish("DDATA", payload(6, {"alias": 6, "datatype": INT16, "int_value": 22}))
         wait_for("drift at 22 degC", lambda: is_at(500, 22))
-        # a message is missing: what follows is of no use until the node says all of it anew
+        # a message is missing: later ones are not used until the node publishes a new birth
         n = len(commands)
         publish("DDATA", payload(8, {"alias": 5, "int_value": 9000}))
         wait_for("request for a birth", lambda: len(commands) > n)
         wait_for("word of what is missing", lambda: any("message 7 of its node is missing" in w for w in words))
         birth(7, speed=2000, ambient=21)
         wait_for("drift of the second birth", lambda: is_at(2000, 21))
-        # deaths: of a birth before, of the device, of the node
+        # deaths: of an earlier birth, of the device, of the node
         publish("NDEATH", payload(None, {"name": "bdSeq", "datatype": 8, "long_value": 6}))
         publish("DDATA", payload(2, {"alias": 5, "int_value": 1800}))
         wait_for("drift behind another's death", lambda: is_at(1800, 21))
         publish("NDEATH", payload(None, {"name": "bdSeq", "datatype": 8, "long_value": 7}))
         wait_for("word of its death", lambda: any("has died" in w for w in words))
-        # the broker goes: nobody knows what was missed
+        # the broker ends: messages may have been missed
         n = len(commands)
         server.kill()
         server.wait()

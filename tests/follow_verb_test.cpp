@@ -129,6 +129,32 @@ TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
   }
 }
 
+// An hour at 2000 rpm leads to 42 um. Four rows at 4000 rpm are above the limit: the correction is held, and goes on after them.
+TEST(FollowVerb, KeepsTheLimitsOfTheMachine) {
+  std::string rows = "time_s,speed_rpm,ambient_degC\n";
+  for (int minute = 0; minute <= 120; ++minute)
+    rows += std::to_string(60 * minute) + (minute > 60 && minute <= 64 ? ",4000" : ",2000") + ",20\n";
+  write_file("rows.csv", rows);
+  const auto corrections_um = [](const Followed& f) {
+    std::vector<double> um;
+    for (const Json& line : f.lines) um.push_back(line["axes"]["nose_z"]["correction_um"].get<double>());
+    return um;
+  };
+  write_file("limited.yaml", std::string(kHead) + "limits: {speed: 2000 rpm}\n");
+  const Followed held = follow("limited.yaml --slew '100 um/s'", "cat rows.csv |");
+  ASSERT_EQ(held.exit_code, 0) << held.words;
+  const std::vector<double> held_um = corrections_um(held);
+  ASSERT_EQ(held_um.size(), 121U);
+  EXPECT_GT(held_um[60], 30.0);
+  for (std::size_t minute = 61; minute <= 64; ++minute) EXPECT_EQ(held_um[minute], held_um[60]) << minute;
+  EXPECT_THAT(held.lines[62].dump(), HasSubstr("\"doubted\":[\"speed\"]"));
+  EXPECT_GT(held_um[66], held_um[60] + 1.0);
+  write_file("limited.yaml", std::string(kHead) + "limits: {correction: 20 um}\n");
+  const std::vector<double> small_um = corrections_um(follow("limited.yaml --slew '100 um/s'", "cat rows.csv |"));
+  ASSERT_EQ(small_um.size(), 121U);
+  EXPECT_EQ(*std::max_element(small_um.begin(), small_um.end()), 20.0);
+}
+
 TEST(FollowVerb, TakesSpeedAndAmbientThatComeInRowsOfTheirOwn) {
   write_file("head.yaml", kHead);
   std::string rows = "time_s,speed_rpm,ambient_degC\n0,2000,21\n";

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Scenarios in the words of an earlier release (`hall` for the ambient) give the same records, byte for byte, and a note for each line that says what to write; both keys at once
-and a lumped node that is called `ambient` end with exit code 2.
+"""Scenarios with the key of an earlier release (`hall` for the ambient) give the same records, byte for byte, and a note for each line that says what to write. Both keys at once,
+and a lumped node called `ambient`, end with exit code 2.
 
     former_words_test.py PROGRAM FOLDER_OF_THE_PROJECT [SCENARIO ...]
 
-Without names those of lumped nodes, which take seconds; that all others read alike is for former_words_test.cpp.
+Without names it runs the lumped scenarios, which take seconds; former_words_test.cpp checks that all others are read alike.
 """
 import pathlib
 import re
@@ -41,7 +41,7 @@ def main():
             return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
 
         (folder / "scenarios").mkdir()
-        for entry in (top / "scenarios").iterdir():  # files that a scenario names stand beside it
+        for entry in (top / "scenarios").iterdir():  # files that a scenario names must be in the same folder
             (folder / "scenarios" / entry.name).symlink_to(entry)
         for scenario in sys.argv[3:] or LUMPED:
             now = top / f"scenarios/{scenario}.yaml"

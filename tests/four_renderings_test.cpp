@@ -83,7 +83,7 @@ std::string all_csv(const fs::path& folder) {
   return text;
 }
 
-/// @param for_programs  keys that people are not shown: numbers behind a sentence, or longer than a table
+/// @param for_programs  keys that are not shown to people: numbers from which a sentence was made, or too many for a table
 void expect_same_numbers(const std::string& arguments, const fs::path& out, const std::set<std::string>& for_programs,
                          const std::string& json_file = "summary.json") {
   const CommandOutcome told = run_program(arguments + " -o " + out.string() + " --details");

@@ -93,6 +93,16 @@ TEST(FrameProgram, GivesSiemensTheSlopeInSettingData) {
                     HasSubstr("MD32750 acts after power-on"), HasSubstr("MD32760 after NEWCONF"), HasSubstr("\nNEWCONF\n")));
 }
 
+TEST(FrameProgram, NamesTheLimitOfCorrectionsInEachProgram) {
+  FrameProgram limited = program();
+  limited.most_correction_um = 80.0;
+  for (const char* name :
+       {"siemens/THERMFRAME.SPF", "siemens/THERMDATA.SPF", "linuxcnc/thermframe.ngc", "heidenhain/THERMFRAME.H"}) {
+    EXPECT_THAT(file(name, limited), HasSubstr("limit of the scenario: no correction above 80 um")) << name;
+    EXPECT_THAT(file(name), AllOf(Not(HasSubstr("limit of the scenario")), Not(HasSubstr("no such file")))) << name;
+  }
+}
+
 // A table that has grown by 132 um/m about P0 and gone 12 um: both ways move the axis along with it, whatever the
 // control's sign is.
 TEST(FrameProgram, MovesXTheSameWayBySettingDataAndByFrame) {

@@ -89,7 +89,7 @@ TEST(GantryTable, JudgesTableLessScale) {
 }
 
 // docs/how-to/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5
-// um with a model; no frame leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings
+// um with a model; no frame leaves less than 9.2 um (the best by least squares 13.4). The goals were 75 % less, which rings
 // alone miss, and 90 %, which no frame reaches.
 TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],

@@ -1,5 +1,5 @@
-// Bodies behind a guard whose air has a way of its own to the ambient: what the entry says, and that one which a scenario
-// lacks is found.
+// Bodies inside a guard whose air has its own exchange with the ambient: the effect of the entry, and that `diagnose` finds
+// a guard that a scenario lacks.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

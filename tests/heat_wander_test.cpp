@@ -66,8 +66,8 @@ TEST(HeatWander, IsInTheBodyThatWasHeatedAndAsLarge) {
   EXPECT_LT(wander->bodies.front().sd_W, 8.4 * 1.7);
 }
 
-// Knots are 13 min apart. What changes sign every 7 min is told to stay alike for no longer than the shortest time that
-// is tried, what stands for all five hours for the longest at least.
+// Knots are 13 min apart. For heat that changes sign every 7 min the result is the shortest correlation time that is tried;
+// for heat that is constant for all five hours it is the longest.
 TEST(HeatWander, SaysWhereItsTimeIsAnEndOfThoseTried) {
   std::string fast;
   for (int i = 0; i < 20; ++i)

@@ -48,6 +48,24 @@ TEST(InjectVerb, UnitsAndCounts) {
   EXPECT_EQ(control("--counts x2 --insert half --correction " + count), 10);
 }
 
+// 11 um are two whole cycles of 4 um, and 11 counts in quarters of 1 um.
+TEST(InjectVerb, ALargerCorrectionIsHeldAtTheLimit) {
+  const std::string rows = row_text(legs({400}));
+  const std::string up = file("up.csv", "row,e_um\n1,50\n"), down = file("down.csv", "row,e_um\n1,-50\n"),
+                    small = file("small.csv", "row,e_um\n1,8\n");
+  const auto filtered = [&](const std::string& arguments) { return inject("limit", "--period '4 um' " + arguments, rows); };
+  const Filtered limited = filtered("--limit '11 um' --correction " + up);
+  EXPECT_EQ(counted(limited.rows).count(), 400 + 8);
+  EXPECT_THAT(limited.words, HasSubstr("larger than --limit 11 um"));
+  EXPECT_EQ(counted(filtered("--limit '11 um' --insert quarter --correction " + up).rows).count(), 400 + 11);
+  EXPECT_EQ(counted(filtered("--limit '11 um' --insert quarter --correction " + down).rows).count(), 400 - 11);
+  EXPECT_THAT(filtered("--limit '11 um' --correction " + small).words, ::testing::Not(HasSubstr("--limit")));
+  const Filtered no_period =
+      inject("limit_alone", "--limit '11 um' --correction " + file("n.csv", "row,e_count\n1,5\n"), rows);
+  EXPECT_EQ(no_period.exit_code, 2);
+  EXPECT_THAT(no_period.words, HasSubstr("--limit requires --period"));
+}
+
 TEST(InjectVerb, ACorrectionByTimeHoldsFromItsTimeOn) {
   // Row i is at (i - 1) ms; rows 1, 5, ... are low. Row 42 is just past a low one, row 81 is one: neither early nor late
   // would do. Cycles against the motion, for those with it look the same at any position.

@@ -128,7 +128,7 @@ double contact_m2(const mesh::Mesh& mesh) {
 }
 
 TEST(OverhangingJoint, IsInContactWhereItsSidesFaceEachOther) {
-  // b stands on the upper face of a, shifted so that 0.06 m of its 0.1 m lie on it, whichever side is the finer.
+  // b is on the upper face of a, shifted so that 0.06 m of its 0.1 m lie on it; either side may have the finer mesh.
   for (int n : {4, 16}) {
     const mesh::Mesh mesh =
         fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.05}, {n, n, 1}, CellShape::kTet10},

@@ -6,7 +6,7 @@ import sys
 
 
 def anchors(page):
-    """Of its headings, as GitHub and Forgejo make them: lower case, blanks to hyphens, no other signs."""
+    """The anchors of its headings, as GitHub and Forgejo make them: lower case, blanks to hyphens, no other signs."""
     text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
     return {re.sub(r"[^\w\- ]", "", h.strip().lower()).replace(" ", "-") for h in re.findall(r"^#+ (.*)$", text, flags=re.M)}
 

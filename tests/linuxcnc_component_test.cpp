@@ -1,5 +1,5 @@
-// The component for LinuxCNC: its C body with stand-ins for HAL, driven by numbers of closed form, and, where halcompile
-// is installed, halcompile itself.
+// Tests the component for LinuxCNC: its C body with substitutes for HAL, compared with closed forms, and, if halcompile is
+// installed, halcompile itself.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

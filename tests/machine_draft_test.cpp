@@ -22,7 +22,7 @@ using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
 /// Two boxes as an input file of Abaqus, in mm, of one hexahedron each: a plate of 200 x 100 x 20 mm on the ground, a
-/// block of 100 x 100 x 50 mm that stands on its half, with nodes of its own; and a third 300 mm beside them.
+/// block of 100 x 100 x 50 mm on one half of it, with separate nodes; and a third box 300 mm away.
 constexpr const char* kBoxes = R"(*NODE
 1, 0, 0, 0
 2, 200, 0, 0

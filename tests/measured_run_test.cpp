@@ -132,13 +132,13 @@ TEST_F(MeasuredRunTest, KeepsAnAmbientThatChangesByMoreThanThermometersErr) {
     }
     const MeasuredRun run = read(text);
     EXPECT_LT(missed_K(run, ambient_K, 5.0 * 3600.0), 0.02) << wandering_K;
-    // a machine that has stood is as warm as the air's course, 0 here, not as its last gust
+    // a machine that was at rest has the temperature of the air's course, 0 here, not that of its last gust
     EXPECT_NEAR(run.ambient.at(0.0), 0.0, 1.2 * wandering_K * 2.0 / std::sqrt(24.0) + 0.03) << wandering_K;
   }
 }
 
-// Of rows ten minutes apart nobody can tell what is noise of the thermometer and what is air; a course on a few knots
-// would leave out what bodies of minutes feel.
+// With rows ten minutes apart, noise of the thermometer cannot be distinguished from changes of the air. A course on a few
+// knots would leave out changes that matter to bodies with time constants of minutes.
 TEST_F(MeasuredRunTest, TakesAnAmbientOfFewRowsAsItIsRecorded) {
   Random random(12);
   std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
@@ -184,8 +184,8 @@ TEST_F(MeasuredRunTest, RecognisesStepsThatWereWrittenRoundedOrBelongToAConverte
   }
 }
 
-/// A front bearing 15 K warmer after an hour's time constant, read in steps; it stands still at some rows. The rear one
-/// follows the same course to two digits, later by 5 min.
+/// A front bearing that warms by 15 K with a time constant of an hour, read in steps; its readings stick at some rows. The
+/// rear bearing follows the same course, read to two digits and 5 min later.
 std::string warming(double step_K, int stuck_from, int stuck_until) {
   std::string text = "time_s,speed_rpm,t_front_degC,t_rear_degC\n";
   double held_C = 0.0;
@@ -260,8 +260,8 @@ TEST_F(MeasuredRunTest, CutsOffASensorWhoseNoiseIsLargerThanItsStep) {  // 0.1 K
 }
 
 TEST_F(MeasuredRunTest, CallsNoCoarseSensorStuckForAChannelThatGoesItsOwnWay) {  // a bearing at rest beside a draughty door
-  // the first: at its end the door swings and never told the bearing; the second: it told the rise by chance, and the
-  // bearing leaves its rest step by step
+  // first case: the door swings at the end and never followed the bearing; second case: the door followed the rise by
+  // chance, and the bearing leaves its rest step by step
   for (const auto& [swing_K, share] : {std::pair{8.0, 0.25}, {4.0, 0.5}}) {
     std::string text = "time_s,speed_rpm,t_front_degC,door_degC\n";
     for (int i = 0; i < 200; ++i) {

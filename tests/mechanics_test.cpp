@@ -62,8 +62,8 @@ TEST(SpringSupport, HoldsAHeatedBarWithTheForceOfBarAndSpringInSeries) {
 }
 
 TEST(SpringSupport, LevellingFeetAloneLeaveThermalExpansionFree) {
-  // Springs of even stiffness under a block that expands evenly push it nowhere but bend it: the foot wants to stay. Very
-  // soft ones leave it free: u = alpha theta (x - centre of the foot) across.
+  // Springs of uniform stiffness do not move a block that expands evenly, but they bend it, because they resist the growth
+  // of its foot. Very soft springs leave it free: u = alpha theta (x - centre of the foot) across.
   const mesh::Mesh mesh = fixtures::box_mesh({{0, 0, 0}, {0.4, 0.4, 0.4}, {2, 2, 2}, CellShape::kTet10});
   const Elasticity elastic(mesh, {kSteel}, {{"z0", {false, false, false}, false, {1e4, 1e4, 1e4}}});
   const Eigen::Matrix3Xd u = elastic.displacement(uniform(mesh));

@@ -79,7 +79,7 @@ double rms_off_um(const DriftModel& model, const Record& judged) {
   return score(off).rmse;
 }
 
-// None of the truth's lags is among those of the formula; sums of these make them, and single coefficients say nothing.
+// None of the truth's lags is among those of the formula; sums of these make them, and single coefficients mean nothing.
 // What has to be right is the drift: on speeds and times not fitted on, and the answer to each input alone, here against
 // its closed form.
 void expect_the_truth(const DriftModel& model) {
@@ -178,9 +178,9 @@ TEST(Memories, TakeTheAmbientOnceAndNothingThatNeverMoves) {
   EXPECT_EQ(n_of({"bed", "flat"}, "", "flat"), 0);
 }
 
-// Four thermometers that read two hidden temperatures in shares of their own; the drift is 3 um/K of the one at once and
-// 2 um/K of the other behind 60 min. Two common modes are those two, mixed, and the formula reads the thermometers
-// themselves.
+// Four thermometers read two hidden temperatures, each with other shares. The drift follows the first temperature by 3 um/K
+// without lag and the second by 2 um/K with a lag of 60 min. The two common modes are mixtures of both temperatures, and
+// the formula reads the thermometers themselves.
 TEST(Memories, OfCommonModesAreThoseOfWhatThermometersShare) {
   const auto record_with = [](std::uint64_t seed, int n_min) {
     Random random(seed);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`check` says what memory a mesh will take, and refuses what does not fit: the prediction against the measured peak of `simulate`.
+"""`check` predicts the memory that a mesh will take and refuses a mesh that does not fit. The test compares the prediction with the measured peak of `simulate`.
 
     mesh_demand_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -32,7 +32,7 @@ def main():
         _, status, usage = os.wait4(run.pid, 0)
         measured_MB = 1.024e-3 * usage.ru_maxrss
         expect(status == 0 and 0.88 < told_MB / measured_MB < 1.12, f"cnc_mill_13: {told_MB:.0f} MB told, {measured_MB:.0f} MB measured")
-        # Less memory than that, by a limit of the process: refused with both numbers and what to change, before anything is solved.
+        # With a lower memory limit of the process the scenario is refused before anything is solved; the message has both numbers and what to change.
         for limit_MB in range(600, 3000, 100):
             def limited():
                 resource.setrlimit(resource.RLIMIT_AS, (limit_MB << 20, limit_MB << 20))

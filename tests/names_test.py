@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Names of files as people and machines give them: as long as the file system takes them, in no UTF-8, with line breaks and commands to terminals,
-and those of our own results. Every verb ends with 0 or, in words, with 2; whatever it writes and says is UTF-8 and holds no control characters.
+"""Tests unusual file names: as long as the file system allows, not UTF-8, with line breaks and terminal commands, and the names of our own result files.
+Every verb must end with 0, or with 2 and a message; all that it writes and prints must be UTF-8 without control characters.
 
     names_test.py PROGRAM
 """
@@ -8,7 +8,7 @@ import os, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
-LONGEST = 255      # bytes of a name that file systems take
+LONGEST = 255      # longest file name in bytes
 LONGEST_OURS = 235
 SMALL = """
 cyclograms:
@@ -45,7 +45,7 @@ class Trial:
         if done.returncode not in wanted or says not in said:
             failures.append(f"{label}: {done.returncode}, not {wanted}: {said[-300:]}")
         self.judge(label, "what is printed", done.stdout)
-        if done.returncode == 2 and "no UTF-8" not in label:  # messages tell such a name as it is
+        if done.returncode == 2 and "no UTF-8" not in label:  # messages show such a name unchanged
             self.judge(label, "the message", done.stderr)
         files = [p for p in sorted(self.out.rglob("*")) if p.is_file()]
         for p in files:
@@ -58,7 +58,7 @@ class Trial:
 
 
 def try_name(trial, label, name, wanted=(0,), says=""):
-    """A record, a scenario and a program of that name, without its ending, through the verbs that take them."""
+    """Runs the verbs on a record, a scenario and a program of that name (given without its ending)."""
     work, folder = trial.work, os.fsencode(trial.work)
 
     def copy(of, ending):
@@ -67,7 +67,7 @@ def try_name(trial, label, name, wanted=(0,), says=""):
         return path
     scenario, records = work / "small.yaml", work / "simulated/records"
     record, named_scenario = copy(records / "shift.csv", b""), copy(scenario, b".yaml")
-    # calibrated.yaml names a record by its path; YAML has no word for a path that is no UTF-8 (docs/theory/verification_faults.md)
+    # calibrated.yaml names a record by its path; YAML cannot contain a path that is not UTF-8 (docs/theory/verification_faults.md)
     fitted = records / "climb.csv" if label == "no UTF-8" else record
     climb = records / "climb.csv"
     for words in (["check", named_scenario], ["predict", scenario, "--cyclogram", record], ["compare", record, climb],
@@ -99,7 +99,7 @@ def main():
         for name in ("driftwright-manifest.json", "figures", "tables", "report.html"):
             shutil.copy(TOP / "scenarios/parts/pocket.ngc", work / name)
             trial.run(f"schedule, {name}", "schedule", work / "small.yaml", "--program", work / name, wanted=(2,), says="rename the program")
-        # Twice into one folder: what was written first is known as ours.
+        # Twice into one folder: the files of the first run are recognised as ours.
         os.rename(work / "driftwright-manifest.json", os.fsencode(work) + b"/Geh\xe4use.ngc")
         for i in range(2):
             done = subprocess.run([program, "schedule", work / "small.yaml", "--program", os.fsencode(work) + b"/Geh\xe4use.ngc", "-o", work / "again"],

@@ -258,6 +258,25 @@ INSTANTIATE_TEST_SUITE_P(Each, NcRounding,
                                            Rounded{"r_inch_above", "G20 G2 X0.2025 R0.1 F10\nM2\n", false}),
                          [](const auto& rounded) { return std::string(rounded.param.name); });
 
+// The half circle from (0, 0) to (20, 0) about (10, 0) clockwise rises to y = 10 mm; the drilling goes to z = -8 mm; after
+// G92 the words count from another origin.
+TEST(NcProgram, KnowsWhatEachBlockAsksOfTheMachine) {
+  const NcProgram program =
+      read("G21 G90 S1200 M3\nG2 X20 Y0 I10 J0 F300\nG81 X30 Z-8 R2 F90\nG80\nG92 X0\nG1 X5 F600\nG0 X9\nM2\n");
+  const auto demand = [&](std::size_t step) { return program.steps[step].demand; };
+  EXPECT_NEAR(demand(1).high_m[1], 0.010, 1e-12);
+  EXPECT_NEAR(demand(1).low_m[1], 0.0, 1e-12);
+  EXPECT_NEAR(demand(1).high_m[0], 0.020, 1e-12);
+  EXPECT_GT(demand(1).low_m[2], demand(1).high_m[2]) << "z is not commanded";
+  EXPECT_NEAR(demand(1).feed_m_s, 0.005, 1e-12);
+  EXPECT_NEAR(demand(1).speed_rpm, 1200.0, 1e-9);
+  EXPECT_NEAR(demand(2).low_m[2], -0.008, 1e-12);
+  EXPECT_NEAR(demand(5).high_m[0], 0.035, 1e-12);
+  EXPECT_NEAR(demand(5).feed_m_s, 0.010, 1e-12);
+  EXPECT_EQ(demand(6).feed_m_s, 0.0) << "a rapid has no programmed feed";
+  EXPECT_NEAR(demand(6).high_m[0], 0.039, 1e-12);
+}
+
 TEST(NcArc, OfTwoDecimalsEndsWhereItIsWritten) {
   // An eighth of r = 5 mm from (0, 0) about (3.5355, 3.5355), each number rounded to 0.01 mm: radii 5.0063 and 4.9992 mm.
   const NcProgram program = read("G3 X7.07 I3.54 J3.54 F600\nG1 X17.07\nM2\n");

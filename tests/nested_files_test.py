@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Files and rows that nest 300 000 deep, through every verb that reads JSON or YAML: in words, with 2 where it is a file; `follow` goes on behind a row.
+"""Files and rows that nest 300 000 deep, for every verb that reads JSON or YAML: a file ends the verb with exit code 2 and a message; `follow` continues after such a row.
 
     nested_files_test.py PROGRAM
 """
@@ -50,7 +50,7 @@ def main():
                 run(f"follow, state of {kind}", "follow", SCENARIO, "--state", file)
                 run(f"follow, limits of {kind}", "follow", OBSERVER, "--watch", file)
 
-            # A folder of results whose list of files is none of ours is not replaced.
+            # A folder of results whose list of files is not ours is not replaced.
             (work / "results").mkdir(exist_ok=True)
             (work / "results/driftwright-manifest.json").write_text('{"program": "driftwright", "files": ' + nested + "}")
             run(f"manifest of {kind}", "predict", SCENARIO, "--cyclogram", "shift", "-o", "results", says="--force")

@@ -304,7 +304,7 @@ TEST(Nonlinear, TemperaturesThatNoMachineHasEndTheRun) {
 }
 
 TEST(Nonlinear, ASteadyStateBeyondALawNamesTheLaw) {
-  // 300 W by one face of 0.01 m^2 would want thousands of kelvins; air is known up to 500 K.
+  // 300 W through one face of 0.01 m^2 would require thousands of kelvins; properties of air are known up to 500 K.
   const FullSystem system =
       assemble_heat(cube(), {fixtures::steel()},
                     fixtures::balance_of({"{type: natural_convection, surface: x0, orientation: vertical, length: 100 mm}",

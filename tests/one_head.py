@@ -1,4 +1,4 @@
-"""The machine that tests of `follow` run beside: a head that warms in an hour and a nose that grows with it."""
+"""The machine in the tests of `follow`: a head that warms in an hour and a nose that grows with it."""
 HEAD = """name: head
 reference_temperature: 20 degC
 machine: {generator: lumped}

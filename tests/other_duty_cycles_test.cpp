@@ -53,7 +53,7 @@ std::string comes_and_goes(const std::vector<std::string>& records) {
   }
   return list;
 }
-// What could tell the friction's growth, or the windows.
+// Effects that could replace the friction's growth, or the windows.
 const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law",    "heat_window",   "heat_source",
                                              "run_state",   "exchange_window", "speed_override"};
 

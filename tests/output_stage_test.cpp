@@ -26,6 +26,17 @@ TEST(OutputStage, NeverMovesFasterThanTheSlewLimit) {
   EXPECT_EQ(stage.take(-100.0, 5.0), 10.0);
 }
 
+TEST(OutputStage, KeepsTheLimitsOfTheMachine) {
+  OutputStage stage({.most_rate_um_s = 2.0, .limits = {.most_um = 12.0, .most_step_um = 5.0}});
+  (void)stage.take(0.0, 0.0);
+  EXPECT_EQ(stage.take(100.0, 10.0), 5.0);
+  EXPECT_EQ(stage.take(100.0, 1.0), 7.0);  // the slew limit is the narrower one
+  EXPECT_EQ(stage.take(100.0, 10.0), 12.0);
+  EXPECT_EQ(stage.take(100.0, 10.0), 12.0);
+  for (int i = 0; i < 5; ++i) (void)stage.take(-100.0, 10.0);
+  EXPECT_EQ(stage.state().correction_um, -12.0);
+}
+
 TEST(OutputStage, HoldsThenFadesAsAnExponential) {
   OutputStage stage({.most_rate_um_s = 10.0, .hold_s = 30.0, .fade_s = 100.0});
   (void)stage.take(50.0, 60.0);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What a verb writes every verb reads: records of `simulate`, `predict`, `run` and `schedule` through select, validate, predict, calibrate and
-diagnose. Nothing may end with 1 or a signal, and where the record has what a verb asks for it must end with 0. What a scenario has
-simulated itself is consistent with it, and diagnosis.json has the keys that others rely on (docs/reference/diagnosis.md).
+"""Every verb reads what other verbs write: records of `simulate`, `predict`, `run` and `schedule` are given to select, validate, predict, calibrate and
+diagnose. No run may end with 1 or a signal, and if the record has the columns that a verb needs, it must end with 0. A record that a
+scenario simulated is consistent with it, and diagnosis.json has the keys that other programs rely on (docs/reference/diagnosis.md).
 
     own_records_test.py PROGRAM [SCENARIO ...]      [lumped_spindle]
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 from result_schema import errors
 
 TOP = Path(__file__).resolve().parent.parent
-UNJUDGED = {"lumped_spindle": "warm_up", "first_machine": "shift"}  # scenarios that `run` has nothing to judge in, and a cyclogram of theirs
+UNJUDGED = {"lumped_spindle": "warm_up", "first_machine": "shift"}  # scenarios without a study for `run`, and one of their cyclograms
 failures = []
 
 
@@ -35,7 +35,7 @@ def records_in(folder):
 
 
 def scenario_of(name, work):
-    """The scenario; that without a mesh and a study gets a study, so that all verbs have something to do."""
+    """The scenario. One without mesh and study gets a study, so that all verbs can run."""
     path = TOP / f"scenarios/{name}.yaml"
     if name != "lumped_spindle":
         return path
@@ -46,7 +46,7 @@ def scenario_of(name, work):
 
 
 def judge(diagnosis):
-    """Of a record that the scenario made itself."""
+    """Judges the verbs on a record that the scenario itself simulated."""
     d = json.loads(diagnosis.read_text())
     if d["verdict"] != "consistent":
         failures.append(("verdict " + d["verdict"], [diagnosis.parent.name], d["reason"][:300]))
@@ -70,7 +70,7 @@ def try_scenario(program, name, work):
         return
     out = work / f"{name}-out"
     a, b, c = written[0], written[len(written) // 2], written[-1]
-    # A single speed or one and the same run may be refused (2); nothing else.
+    # Only a single speed, or the same run twice, may be refused (2).
     for i, record in enumerate(written):
         run(program, work, "predict", scenario, "--cyclogram", record, "-o", out)
         other = written[i - 1]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright place` of the FP3: places keep out of what is excluded, leave less than random ones and those of the grey grade on what was not chosen on, and are written as
-sensors that `check` and `simulate` take; wrong options.
+"""`driftwright place` on the FP3: places avoid excluded regions, leave less drift than random places and those of the grey grade on cyclograms that were not used for the choice,
+and are written as sensors that `check` and `simulate` accept. Wrong options are refused.
 
     place_verb_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """

@@ -237,8 +237,8 @@ TEST(Placement, RefusesWhatTheMachineHasNot) {
   EXPECT_THAT(refused({.n = 1, .train = {"jbo"}}), ThrowsMessage<InputError>(HasSubstr("jbo")));
 }
 
-// The column stands on the floor and carries the head: its foot, its top and what of the head lies on it are out of
-// reach; the rest of the head's bottom is seen from below.
+// The column is on the floor and carries the head. Its foot, its top and the part of the head on it cannot be reached; the
+// rest of the head's bottom is visible from below.
 TEST(Reach, EndsAtTheFloorAndAtJoints) {
   const mesh::Mesh mesh = fixtures::column_and_head();
   const std::vector<bool> reached = mesh::reachable_nodes(mesh, mesh::skin_of(mesh));
@@ -265,8 +265,8 @@ TEST(Reach, EndsAtTheFloorAndAtJoints) {
   EXPECT_GT(n_hidden, 10);
 }
 
-// Points keep out of what is excluded; their temperatures are those that the written scenario simulates there; one that
-// may sit anywhere tells at least as much.
+// Points avoid excluded regions, and their temperatures are those that the written scenario simulates there. A thermometer
+// that may be anywhere gives at least as much information.
 TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const std::filesystem::path folder = fresh_folder("placed");
   fixtures::ColumnAndHead machine;

@@ -40,8 +40,8 @@ double rms_behind(const Prediction& p, const MeasuredRun& run, std::size_t chann
   return std::sqrt(miss.tail(miss.size() - from).squaredNorm() / static_cast<double>(miss.size() - from));
 }
 
-// 0.04 um are left without noise; with 0.1 um of it three speeds tell n and n² poorly apart, and the fourth is missed by
-// 0.45 um of some 20.
+// Without noise 0.04 um are left. With 0.1 um of noise three speeds hardly distinguish n from n², and the error at the
+// fourth speed is 0.45 um of some 20.
 TEST(PlainRegression, PredictsWhatFollowsTheDriveOnRowsItHasNotSeen) {
   const MeasuredRun run = growing(1);
   MeasuredRun fitted = run;

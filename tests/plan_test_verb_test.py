@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright plan-test`: the written programme is a cyclogram that `check` takes and `simulate` follows to the record that was told, LinuxCNC's interpreter reads the NC
-program, the same seed gives the same plan, wrong options are refused.
+"""`driftwright plan-test`: `check` accepts the written programme as a cyclogram, and `simulate` gives the record that was written with it. LinuxCNC's interpreter reads the NC
+program, the same seed gives the same plan, and wrong options are refused.
 
     plan_test_verb_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -70,7 +70,7 @@ def main():
         expect(not (folder / "axes/plan_test.ngc").exists(), "no NC program where axes move")
         expect("t_ambient" not in json.dumps(summary["channels"]), "an ambient thermometer is the ambient record")
 
-        # the written cyclogram, in the scenario in place of its job
+        # the written cyclogram replaces the job of the scenario
         (folder / "again.yaml").write_text(AXES + (folder / "axes/plan_test.yaml").read_text() + "\nsolver: {output_interval: 30 s}\n")
         done = call("check", "again.yaml")
         expect(done.returncode == 0, f"check of the written cyclogram: {done.stderr.strip()[-300:]}")
@@ -93,7 +93,7 @@ def main():
         expect(all(b["share_named"] < a["share_named"] for a, b in zip(quiet["tests"], loud["tests"])), "more noise, fewer faults named")
 
         if shutil.which("rs274"):
-            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL a machine: as tests/one_hal.hpp has it
+            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/one_hal.hpp
                 fcntl.flock(turn, fcntl.LOCK_EX)
                 said = subprocess.run(["rs274", "-g", str(folder / "one/plan_test.ngc")], capture_output=True, text=True, timeout=60)
             dwelt_s = sum(float(s) for s in re.findall(r"DWELL\(([0-9.]+)\)", said.stdout))

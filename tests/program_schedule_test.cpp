@@ -363,5 +363,57 @@ TEST(ProgramSchedule, MovesTheAxisAgainstTheError) {
   }
 }
 
+/// Passes to and fro along X, a minute each.
+std::string to_and_fro() {
+  std::string text = "G21\nG0 X0 Z5\n";
+  for (int i = 0; i < 6; ++i) text += "G1 X60 F60\nX0\n";
+  return text + "M2\n";
+}
+
+// 100 um in two passes alone, which are held: nothing is left to correct.
+TEST(ProgramSchedule, HoldsTheCorrectionInHeldSteps) {
+  const NcProgram program = read(to_and_fro());
+  const double from_s = program.steps[6].start_s, to_s = program.steps[7].end_s, end_s = program.duration_s();
+  const std::vector<double> time_s = {0, from_s, from_s + 1.0, to_s - 1.0, to_s, end_s};
+  const std::vector<ProgramAxis> axes = {{0, 1.0, 5.0, {0, 0, 100, 100, 0, 0}}};
+  ProgramScheduleOptions options;
+  EXPECT_FALSE(plan_program(program.steps, time_s, axes, options).changes.empty());
+  options.held_steps.assign(program.steps.size(), 0);
+  options.held_steps[6] = options.held_steps[7] = 1;
+  for (const bool split : {false, true}) {
+    options.split = split;
+    const ProgramSchedule plan = plan_program(program.steps, time_s, axes, options);
+    EXPECT_TRUE(plan.changes.empty());
+    EXPECT_EQ(plan.initial_um[0], 0.0);
+    EXPECT_NEAR(plan.courses[0].worst_um, 100.0, 1e-9) << "what is left there is told";
+  }
+}
+
+// A drift that rises from 0 to 60 um: it would be followed up to more than 50 um, by about 10 um at once.
+TEST(ProgramSchedule, HoldsCorrectionsBeyondALimit) {
+  const NcProgram program = read(to_and_fro());
+  const std::vector<double> time_s = {0, program.duration_s()};
+  const std::vector<ProgramAxis> axes = {{0, 1.0, 6.0, {0, 60}}};
+  for (const SchedulePolicy policy : {SchedulePolicy::kMinimal, SchedulePolicy::kPaper}) {
+    const ProgramSchedule free = plan_program(program.steps, time_s, axes, {.policy = policy});
+    ASSERT_GT(*free.changes.back().correction_um[0], 40.0);
+    EXPECT_TRUE(free.held.empty());
+    const ProgramSchedule small = plan_program(program.steps, time_s, axes, {.policy = policy, .limits = {.most_um = 25.0}});
+    ASSERT_FALSE(small.changes.empty());
+    for (const ProgramChange& change : small.changes) EXPECT_LE(*change.correction_um[0], 25.0);
+    ASSERT_EQ(small.held.size(), 1u);
+    EXPECT_FALSE(small.held[0].is_step);
+    EXPECT_GT(small.held[0].first, small.changes.back().step);
+    EXPECT_EQ(small.held[0].last, program.steps.size() - 2) << "the last pass, before M2";
+    EXPECT_EQ(small.held[0].held_um, *small.changes.back().correction_um[0]);
+    EXPECT_GT(small.held[0].planned_um, 40.0);
+    const ProgramSchedule slow =
+        plan_program(program.steps, time_s, axes, {.policy = policy, .limits = {.most_step_um = 2.0}});
+    EXPECT_TRUE(slow.changes.empty());
+    ASSERT_EQ(slow.held.size(), 1u);
+    EXPECT_TRUE(slow.held[0].is_step);
+  }
+}
+
 }  // namespace
 }  // namespace driftwright::compensation::program_schedule_test

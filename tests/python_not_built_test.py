@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`import driftwright` from the sources, where nothing is built, says how to build it.   python_not_built_test.py FOLDER_OF_THE_PROJECT"""
+"""`import driftwright` from the sources, before anything is built, says how to build it.   python_not_built_test.py FOLDER_OF_THE_PROJECT"""
 
 import os
 import subprocess

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python package beside the program: python_test.py PROGRAM (with PYTHONPATH at the package, in the project's folder)."""
+"""Compares the Python package with the program: python_test.py PROGRAM (with PYTHONPATH at the package, in the project's folder)."""
 
 import pathlib
 import subprocess
@@ -130,7 +130,7 @@ class Package(unittest.TestCase):
         with self.assertRaisesRegex(dw.InputError, "no_such.yaml"):
             dw.Machine("no_such.yaml")
         machine = dw.Machine(FP3)
-        with self.assertRaisesRegex(dw.InputError, "warm_up_2000"):  # names the cyclograms there are
+        with self.assertRaisesRegex(dw.InputError, "warm_up_2000"):  # the message names the existing cyclograms
             machine.predict("warm_up")
         with self.assertRaisesRegex(dw.InputError, "names no unit"):
             machine.diagnose(pd.DataFrame({"speed": [1.0, 2.0, 3.0]}, index=[0.0, 1.0, 2.0]))

@@ -63,8 +63,8 @@ TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
   EXPECT_TRUE(d.causes[0].is_written) << d.causes[0].why_not_written;  // what the holes leave open does not speak against it
 }
 
-// What is read for an hour and a half behind a hole tells of what drove the machine in it: such rows judge nothing, and
-// where there are no others nothing is said of a gain.
+// The readings of an hour and a half after a hole depend on the unknown drive in the hole. Such rows are not used to judge,
+// and if there are no others, no gain is reported.
 TEST(ARecordWithAHole, LeavesNothingToJudgeByWhereItIsJustBeforeAllThatIsKeptOut) {
   const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
   for (const auto& [first, last, is_open] : {std::tuple{150, 195, true}, {5, 12, false}}) {

@@ -1,4 +1,4 @@
-"""Files of results against what `driftwright schema` says that they hold, by a validator of another make."""
+"""Checks files of results against the schema of `driftwright schema`, with an independent validator."""
 import functools
 import json
 import subprocess
@@ -14,6 +14,6 @@ def _validator(program, what):
 
 
 def errors(program, file):
-    """Sentences, of a diagnosis.json or calibration.json."""
+    """Error messages for a diagnosis.json or calibration.json."""
     found = _validator(str(program), file.stem).iter_errors(json.loads(file.read_text()))
     return [f"{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in found]

@@ -107,8 +107,8 @@ TEST(ScatterSlopes, ANumberAtTheEndOfItsRangeStopsNoFit) {
   }
 }
 
-// Twice every capacity, conductance and heat is the same machine: no temperature tells of it, so that slopes add up to
-// nothing along that direction. What is known of it is what was known before.
+// With twice every capacity, conductance and heat, all temperatures are the same. So slopes add up to zero along that
+// direction, and its uncertainty remains that of the prior.
 TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
   std::string text = kScenario;
   const std::string heat = "type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3";

@@ -290,5 +290,23 @@ TEST(SchedulePolicies, RefuseATolerancesThatIsNotPositiveAndADriftWithoutValue) 
       ThrowsMessage<InputError>(HasSubstr("no value at 1 s")));
 }
 
+TEST(HoldWithin, KeepsTheCorrectionBeforeUntilAPlannedOneIsWithinTheLimits) {
+  std::vector<double> c_um = {0, 8, 20, 30, 9, -2, 5};
+  const std::vector<HeldCell> held = hold_within(c_um, {.most_um = 15.0, .most_step_um = 10.0});
+  EXPECT_EQ(c_um, (std::vector<double>{0, 8, 8, 8, 9, 9, 5}));
+  ASSERT_EQ(held.size(), 3u);
+  EXPECT_EQ(held[0].cell, 2u);
+  EXPECT_FALSE(held[0].is_step);
+  EXPECT_EQ(held[1].planned_um, 30.0);
+  EXPECT_EQ(held[2].cell, 5u);
+  EXPECT_TRUE(held[2].is_step);  // from 9 to -2
+  EXPECT_EQ(held[2].held_um, 9.0);
+  std::vector<double> warm_um = {14, 14};  // before the program nothing cuts: the value alone is limited
+  EXPECT_TRUE(hold_within(warm_um, {.most_um = 15.0, .most_step_um = 1.0}).empty());
+  std::vector<double> hot_um = {16};
+  EXPECT_EQ(hold_within(hot_um, {.most_um = 15.0}).size(), 1u);
+  EXPECT_EQ(hot_um[0], 0.0);
+}
+
 }  // namespace
 }  // namespace driftwright::compensation::schedule_policy_test

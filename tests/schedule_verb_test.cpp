@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -286,7 +287,137 @@ TEST(ScheduleVerb, RefusesASpeedThatTheScenarioSaysNothingOf) {
   EXPECT_THAT(refused.outcome.output,
               AllOf(HasSubstr("part.ngc:5"), HasSubstr("turns at 60000 rpm"), HasSubstr("--beyond")));
   EXPECT_FALSE(std::filesystem::exists(refused.folder / "part.ngc"));
-  EXPECT_EQ(run_schedule("beyond", fast, "--beyond").outcome.exit_code, 0);
+}
+
+/// The rows of schedule.csv as numbers; empty cells are NaN.
+std::vector<std::map<std::string, double>> rows_of(const Scheduled& s) {
+  std::vector<std::map<std::string, double>> rows;
+  std::vector<std::string> header;
+  for (const std::string& line : lines_of(read_text(s.folder / "schedule.csv"))) {
+    if (line.starts_with("#")) continue;
+    std::vector<std::string> cells = {""};
+    for (const char c : line) {
+      if (c == ',') {
+        cells.emplace_back();
+      } else {
+        cells.back().push_back(c);
+      }
+    }
+    if (header.empty()) {
+      header = cells;
+      continue;
+    }
+    rows.emplace_back();
+    for (std::size_t i = 0; i < header.size(); ++i)
+      rows.back()[header[i]] = cells.at(i).empty() ? std::nan("") : std::stod(cells[i]);
+  }
+  return rows;
+}
+
+// Five minutes at 2000 rpm, six at 60000 rpm, which heat by 0.15 K/s, and on at 2000 rpm. Each block of the fast stretch
+// would need corrections of its own.
+TEST(ScheduleVerb, BeyondLimitsTheCorrectionIsHeldAndThatIsSaid) {
+  const Scheduled s = run_schedule("beyond",
+                                   "G21 G90 G54\nS2000 M3\nG0 X0 Z5\nG1 X100 F20\nS60000\nG1 X0 F50\nG1 X100\nG1 X0\n"
+                                   "S2000\nG0 Z6\nG1 X100 F50\nG0 Z9\nM30\n",
+                                   "--beyond");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  double after_um = 0.0;
+  for (const auto& row : rows_of(s)) {
+    const double line = row.at("line");
+    EXPECT_FALSE(line >= 5 && line <= 8) << "a change at line " << line;
+    if (line >= 9 && std::isfinite(row.at("z_correction_um"))) after_um = row.at("z_correction_um");
+  }
+  EXPECT_GT(after_um, 100.0) << "corrected again where the speed is known";
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("beyond the limits of the machine"), HasSubstr("lines 6 to 8"),
+                                      HasSubstr("is extrapolated"), HasSubstr("at most 2000 rpm is allowed")));
+  EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("The program goes beyond the limits of the machine"));
+  EXPECT_THAT(read_text(s.folder / "part.ngc"), HasSubstr("(driftwright: BEYOND THE LIMITS."));
+  const nlohmann::json summary = nlohmann::json::parse(read_text(s.folder / "summary.json"));
+  ASSERT_EQ(summary["beyond_limits"].size(), 1U);
+  EXPECT_EQ(summary["beyond_limits"][0]["limit"], "speed");
+  EXPECT_EQ(summary["beyond_limits"][0]["where"], "lines 6 to 8");
+}
+
+struct Limited {
+  const char* name;
+  const char* limits;
+  const char* where;
+  const char* message;
+};
+
+class ScheduleLimit : public ::testing::TestWithParam<Limited> {};
+
+TEST_P(ScheduleLimit, RefuseTheBlockWithItsLineAndPlanWithBeyond) {
+  const std::string scenario = std::string(kHead) + "limits: " + GetParam().limits + "\n";
+  const std::string name = std::string("limit_") + GetParam().name;
+  const Scheduled refused = run_schedule(name, passes(), "", scenario);
+  EXPECT_EQ(refused.outcome.exit_code, 2) << refused.outcome.output;
+  EXPECT_THAT(refused.outcome.output,
+              AllOf(HasSubstr(GetParam().where), HasSubstr(GetParam().message), HasSubstr("--beyond")));
+  EXPECT_FALSE(std::filesystem::exists(refused.folder / "part.ngc"));
+  const Scheduled planned = run_schedule(name + "_beyond", passes(), "--beyond", scenario);
+  ASSERT_EQ(planned.outcome.exit_code, 0) << planned.outcome.output;
+  EXPECT_THAT(planned.outcome.output, HasSubstr("The program goes beyond the limits of the machine"));
+}
+
+// Of passes(): line 5 is the first feed, F50; line 7 is the arc to X310.
+INSTANTIATE_TEST_SUITE_P(Each, ScheduleLimit,
+                         ::testing::Values(Limited{"feed", "{speed: 2500 rpm, feed: 49 mm/min}", "part.ngc:5",
+                                                   "the feed is 50 mm/min; at most 49 mm/min"},
+                                           Limited{"travel", "{travel: {x: [-1 mm, 305 mm]}}", "part.ngc:7",
+                                                   "X goes to 310 mm; the travel ends at 305 mm"},
+                                           Limited{"correction", "{correction: 15 um}",
+                                                   "part.ngc:", "but `correction` of `limits`"},
+                                           Limited{"step", "{step: 3 um}", "part.ngc:", "but `step` of `limits`"}),
+                         [](const auto& each) { return each.param.name; });
+
+// The feed that is written is above what the machine's rapids do.
+TEST(ScheduleVerb, RefusesAFeedAboveTheRapids) {
+  const Scheduled s = run_schedule("fast_feed", "G21 G90 G54\nS2000 M3\nG0 X0 Z5\nG1 X100 F12000\nG0 Z9\nM30\n");
+  EXPECT_EQ(s.outcome.exit_code, 2);
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc:4"), HasSubstr("12000 mm/min; at most 10000 mm/min"),
+                                      HasSubstr("`rapid` of `schedule`")));
+}
+
+TEST(ScheduleVerb, TakesTheSpeedOfTheLimitsInPlaceOfTheScenarios) {
+  const std::string program = "G21 G90 G54\nS3000 M3\nG0 X0 Z5\nG1 X100 F20\nG0 Z9\nM30\n";
+  const auto with = [](const char* limits) { return std::string(kHead) + "limits: {speed: " + limits + "}\n"; };
+  EXPECT_EQ(run_schedule("limit_unstated", program).outcome.exit_code, 2);
+  EXPECT_EQ(run_schedule("limit_higher", program, "", with("3000 rpm")).outcome.exit_code, 0);
+  const Scheduled lower = run_schedule("limit_lower", program, "", with("2999 rpm"));
+  EXPECT_EQ(lower.outcome.exit_code, 2);
+  EXPECT_THAT(lower.outcome.output, AllOf(HasSubstr("part.ngc:3"), HasSubstr("at most 2999 rpm"), HasSubstr("`limits`")));
+}
+
+TEST(ScheduleVerb, KeepsTheLimitsOfCorrectionsAndWritesThemIntoTheProgram) {
+  const auto largest = [](const Scheduled& s, const char* column) {
+    double most_um = 0.0;
+    const auto rows = rows_of(s);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      for (const char* axis : {"x_", "z_"}) {
+        const double um = rows[i].at(std::string(axis) + column);
+        if (std::isfinite(um)) most_um = std::max(most_um, std::abs(um));
+      }
+    }
+    return most_um;
+  };
+  const Scheduled free = run_schedule("limits_none", passes());
+  ASSERT_GT(largest(free, "correction_um"), 30.0);
+  ASSERT_GT(largest(free, "increment_um"), 9.0);
+  EXPECT_THAT(read_text(free.folder / "part.ngc"), Not(HasSubstr("limit of the scenario")));
+  const std::string small = std::string(kHead) + "limits: {correction: 15 um, step: 9 um}\n",
+                    large = std::string(kHead) + "limits: {correction: 80 um, step: 60 um}\n";
+  const Scheduled held = run_schedule("limits_small", passes(), "--beyond", small);
+  ASSERT_EQ(held.outcome.exit_code, 0) << held.outcome.output;
+  EXPECT_LE(largest(held, "correction_um"), 15.0);
+  EXPECT_LE(largest(held, "increment_um"), 9.0);
+  const Scheduled within = run_schedule("limits_large", passes(), "", large);
+  ASSERT_EQ(within.outcome.exit_code, 0) << within.outcome.output;
+  EXPECT_EQ(read_text(within.folder / "schedule.txt"), read_text(free.folder / "schedule.txt"));
+  EXPECT_THAT(read_text(within.folder / "part.ngc"),
+              AllOf(HasSubstr("(driftwright: no correction is larger than 80 um"),
+                    HasSubstr("(driftwright: no correction changes by more than 60 um at once")));
 }
 
 TEST(ScheduleVerb, NotesHaltsAndALastBlockThatMoves) {
@@ -377,8 +508,8 @@ TEST(ScheduleSeries, WritesOneProgramForEachPartThatDiffers) {
   EXPECT_THAT(read_text(s.folder / "summary.json"), HasSubstr("\"n_parts\": 4"));
 }
 
-// Behind ten hours at the program's speed the machine is as warm as it gets: parts agree, one program makes them all, and
-// it begins with the whole drift.
+// After ten hours at the program's speed the machine is in balance. All parts drift alike, so one program makes them all,
+// and it begins with the whole drift.
 TEST(ScheduleSeries, OfAWarmMachineIsOneProgram) {
   const std::string start = write_file("ten_hours.csv", "time_s,speed_rpm\n0,2000\n36000,0\n");
   const Scheduled s = run_schedule("series_warm", kShortPart, "--parts 5 --start " + start);
@@ -469,6 +600,13 @@ INSTANTIATE_TEST_SUITE_P(
                       BadSchedule{"tolerance", "tolerance: 10 um", "tolerance: 0 um", "schedule.tolerance"},
                       BadSchedule{"policy", "  tolerance: 10 um", "  policy: greedy", "'greedy' is not known here"},
                       BadSchedule{"unknown_key", "  tolerance: 10 um", "  tolerances: 10 um", "unknown key 'tolerances'"},
+                      BadSchedule{"unknown_limit",
+                                  "cyclograms:", "limits: {sped: 3 rpm}\ncyclograms:", "unknown key 'sped'"},
+                      BadSchedule{"unit_of_a_limit", "cyclograms:", "limits: {step: 3 K}\ncyclograms:", "wrong unit"},
+                      BadSchedule{"travel_upside_down", "cyclograms:", "limits: {travel: {x: [3 mm, 1 mm]}}\ncyclograms:",
+                                  "the lowest and the highest position"},
+                      BadSchedule{"cyclogram_above_a_limit", "cyclograms:", "limits: {speed: 1500 rpm}\ncyclograms:",
+                                  "cyclogram 'warm_up' turns the spindle at 2000 rpm"},
                       BadSchedule{"no_rapid", "  rapid: 10 m/min\n", "", "state `rapid`"},
                       BadSchedule{"work_offset", "  tolerance: 10 um", "  work_offset: G55", "write `offset: absolute`"}),
     [](const auto& each) { return each.param.name; });

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What `driftwright schema` prints, by a validator of another make: every shipped file is valid; what the schema refuses, the program refuses with
-exit 2, and what is written otherwise but right both take; the tables in docs/reference/ are those that the program prints.
+"""Checks `driftwright schema` with an independent validator: every shipped file is valid; the program refuses with exit code 2 what the schema refuses;
+both accept other correct spellings; the tables in docs/reference/ are those that the program prints.
 
     schema_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -60,9 +60,9 @@ def errors(text):
 
 
 SPINDLE, MILL, TABLE = "lumped_spindle", "fp3_spindle", "gantry_table"
-# file, what stands there, what is written instead, what the program says of it
+# file, its text, the replacement, a part of the program's message
 WRONG = [
-    # a key that is none
+    # an unknown key
     (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nreference: 3", "unknown key 'reference'"),
     (SPINDLE, "  output_interval: 30 s", "  output_intervall: 30 s", "unknown key 'output_intervall'"),
     (SPINDLE, "    f0: 0.4  ", "    f_0: 3\n    f0: 0.4  ", "unknown key 'f_0'"),
@@ -76,6 +76,9 @@ WRONG = [
     (SPINDLE, "absolute_tolerance: 1e-3 K", "absolute_tolerance: 1e-3 degC", "temperature difference"),
     (SPINDLE, "conductance: 30 W/K", "conductance: 30 W/(m^2 K)", "wrong unit"),
     (SPINDLE, "flow: 6 L/min", "flow: 6 L", "wrong unit"),
+    (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nlimits: {step: 3 K}", "wrong unit"),
+    (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nlimits: {travel: {x: [3 mm]}}", "at least 2"),
+    (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nlimits: {speeds: 3 rpm}", "unknown key 'speeds'"),
     (SPINDLE, "capacity: 19 kJ/K", "capacity: 19", "has no unit"),
     (SPINDLE, "[4 h, 23.5 degC]", "[4 h, 23.5 h]", "wrong unit"),
     (SPINDLE, "warm_up: [[60 min, 12000 rpm]]", "warm_up: [[60 min, 200 Hz]]", "wrong unit"),
@@ -91,7 +94,7 @@ WRONG = [
     (MILL, "feed: 600 mm/min, every: 20 s", "feed: 600 mm/min", "key 'every' is missing"),
     (TABLE, "  judge_until: 24 h  ", "  # ", "key 'judge_until' is missing"),
     (TABLE, "{name: low, at: [-4.8 m, 0 m, 0 m]}", "{name: low}", "key 'at' is missing"),
-    # another word, a number out of range, too few, too many
+    # an unknown word, a number out of range, too few or too many entries
     (SPINDLE, "runs: always", "runs: often", "'often' is not known here"),
     (SPINDLE, "type: motor_loss, node: shaft", "type: motor_los, node: shaft", "'motor_los' is not known here"),
     (SPINDLE, "name: t_stator", "name: t/stator", "is no name"),
@@ -119,6 +122,7 @@ RIGHT = [
     (SPINDLE, "flow: 6 L/min", "flow: 1e-4 m3 s-1"),
     (SPINDLE, "conductance: 30 W/K", "conductance: 30 J s-1 K-1"),
     (SPINDLE, "relative_tolerance: 1e-4", "relative_tolerance: 0.01 %"),
+    (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nlimits: {speed: 24000 rpm, travel: {x: [-1 mm, 0.3 m]}, correction: 0.1 mm, step: 5 um}"),
     (SPINDLE, "relative_tolerance: 1e-4", "relative_tolerance: '1e-4'"),
     (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 295.15 K\nstart: 71.6 degF"),
     (SPINDLE, "  output_interval: 30 s", "  stresses: false\n  output_interval: 30s"),
@@ -178,7 +182,7 @@ class Schema(unittest.TestCase):
                 self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/reference/{page} is stale: tests/schema_tables.sh writes it anew")
 
     def test_the_reference_has_every_key(self):
-        """of the scenario's upper two levels, told from the JSON and not from the tables"""
+        """Every key of the scenario's upper two levels, taken from the JSON and not from the tables."""
         text = (TOP / "docs/reference/scenario.md").read_text()
         for block, schema in VALIDATORS["scenario"].schema["then"]["properties"].items():
             self.assertIn(f"`{block}`", text)

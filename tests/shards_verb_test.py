@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`place` and `plan-test` in shards: merged, every file has the bytes of one run; a shard that was killed goes on where it was; damaged pieces are worked out again; what is
-missing, wrong shards and two processes at one shard are refused.
+"""`place` and `plan-test` in shards: after the merge every file has the bytes of one run; a killed shard continues where it was; damaged pieces are computed again. Missing
+pieces, wrong shards and two processes at one shard are refused.
 
     shards_verb_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -46,7 +46,7 @@ def main():
             for shard in ("2/3", "3/3"):
                 done = call(*command, "--shard", shard, "-o", "shared")
                 expect(done.returncode == 0, f"{verb} --shard {shard}: {done.stdout.strip()} {done.stderr.strip()[-300:]}")
-            # One file as a process that was killed leaves it: without its last rows, a line torn, and a row that is not as it was written.
+            # One file as a killed process may leave it: the last rows missing, a torn line, and a changed row.
             whole = folder / "shared.parts/pieces.3of3.csv"
             lines = whole.read_text().splitlines(keepends=True)
             torn = lines[:2] + [lines[2].replace(",", ",1", 1)] + lines[3:-4] + [lines[-4][:-5]]
@@ -63,7 +63,7 @@ def main():
             one, merged = files_of(folder / "whole"), files_of(folder / "shared")
             differ = [f for f in one.keys() | merged.keys() if one.get(f) != merged.get(f)]
             expect(len(one) > 5 and not differ, f"{verb}: {len(one)} files, of which differ: {differ}")
-            # Pieces of other options, or of a scenario that was changed since, are not taken.
+            # Pieces of other options, or of a scenario that has changed since, are not used.
             kept = folder / "shared.parts/pieces.1of2.csv"
             call(*command, "--shard", "1/2", "-o", "shared", "--force")
             text, opening = (folder / scenario).read_text(), kept.open().readline()

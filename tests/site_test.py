@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/site.py makes a page of each page, whose links lead somewhere, and the search finds each: site_test.py PROJECT; 77: no python3-markdown"""
+"""docs/site.py makes one HTML page from each page; all links have a target, and the search finds each page: site_test.py PROJECT; 77: no python3-markdown"""
 import json, re, subprocess, sys, tempfile
 from pathlib import Path
 

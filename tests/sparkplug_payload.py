@@ -1,4 +1,4 @@
-"""Payloads of Sparkplug B, made by Google's Python library after the message of the public specification: another program than the one that is tested."""
+"""Makes payloads of Sparkplug B with Google's Python library, after the public specification, independently of the tested program."""
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 F = descriptor_pb2.FieldDescriptorProto

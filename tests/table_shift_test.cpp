@@ -167,8 +167,8 @@ TEST(EvenGrowth, IsTableLessScaleFromWhereEachIsHeld) {
   EXPECT_EQ(even_growth(points, x, std::nullopt, T)[0](1, 0), 0.0);
 }
 
-// Two rings at y = 0 see no scale of Y; thermometers tell it, and between measurements they carry X. An evenly warm table
-// leaves nothing.
+// Two rings at y = 0 do not show the scale of Y. Thermometers give it, and between measurements they give the growth along
+// X. For an evenly warm table no error is left.
 TEST(ThroughBestFrame, ThermometersTellTheScaleOfYThatRingsDoNot) {
   TableErrors table = growing_table(0.0);
   const EvenAxis axis{.table_1_K = 12e-6, .scale_1_K = 11e-6};

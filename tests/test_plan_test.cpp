@@ -1,4 +1,4 @@
-// Test programmes and what their records are expected to tell, against closed forms, the fitter and the machine itself.
+// Test programmes and the expected information of their records, compared with closed forms, the fitter and the machine itself.
 
 #include "studies/test_plan.hpp"
 
@@ -139,8 +139,8 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   EXPECT_NEAR(information(p, p) / pp, 1.0, 0.06);
   EXPECT_NEAR(information(g, g) / gg, 1.0, 0.06);
   EXPECT_NEAR(information(p, g) / pg, 1.0, 0.06);
-  // Another power and another conductance to the ambient, each off by 0.7 of its logarithm, are told apart by the hand's
-  // formula as by the program's.
+  // Another power and another conductance to the ambient, each off by 0.7 of its logarithm, are distinguished equally by
+  // the formula by hand and by the program's.
   Question q = planned.doubts.question;
   q.number_sd = Eigen::VectorXd(0);
   q.laws = {{.effect = "heat_source", .size_sd = 0.7}, {.effect = "link", .size_sd = 0.7}};
@@ -268,7 +268,7 @@ TEST(TestPlan, IsTheSameEachTimeAndNoWorseThanTheUsualAndTheSteppedTest) {
   EXPECT_GE(plan.planned.prospect.share_named, plan.stepped.prospect.share_named);
   EXPECT_NEAR(plan.planned.cyclogram.duration_s(), options.duration_s, 1e-6);
   EXPECT_GT(plan.n_tried, 300);
-  // More readings tell no less: each instrument is worth something, a further thermometer, too.
+  // More readings never give less information: each instrument has a value, and so has a further thermometer.
   ASSERT_EQ(plan.without.size(), 2u);
   for (const ChannelWorth& c : plan.without) EXPECT_LE(c.share_named, plan.planned.prospect.share_named) << c.name;
   ASSERT_EQ(plan.with.size(), 1u);  // the housing has one

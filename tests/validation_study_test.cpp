@@ -99,7 +99,7 @@ TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) 
   EXPECT_EQ(strategy("observer")["worse_than_nothing"], false);
 }
 
-// Polyakov, Marusich & Nikitina: temperatures alone, learned while running continuously, do not tell the drift of another
+// Polyakov, Marusich & Nikitina: a regression on temperatures that was fitted to continuous running does not predict the drift of another
 // cyclogram.
 TEST_F(ValidationStudy, TemperaturesAloneFailWhereTheyWereNotTrained) {
   const auto chaotic_as_trained = [](const CsvRow& r) {

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""`driftwright view` in a real browser: what the page computes against `predict` and `run`, script of its frames, its picture, hostile names, bad input.
+"""Tests `driftwright view` in a real browser: the page's numbers against `predict` and `run`, script time of its frames, its picture, hostile names, bad input.
 
-    view_test.py PROGRAM FOLDER_OF_THE_PROJECT [frames]     frames: on a quiet machine, fails above 8 ms of script a frame (bench/README.md)
+    view_test.py PROGRAM FOLDER_OF_THE_PROJECT [frames]     frames: on an idle computer, fails above 8 ms of script per frame (bench/README.md)
 """
 import csv
 import json
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-MOST_UM, MOST_K = 0.1, 0.02   # between the page and `predict`
+MOST_UM, MOST_K = 0.1, 0.02   # allowed difference between the page and `predict`
 MOST_MB, MOST_FRAME_MS = 15.0, 8.0
 
 NODE = "</script><script>document.title='broken out'</script><img src=x onerror=document.title='broken out'>"
@@ -38,7 +38,7 @@ def expect(holds, what):
 
 
 def browse(browser, page, *options):
-    """What the browser prints of a page with #report."""
+    """The JSON that a page with #report writes in the browser."""
     call = [browser, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
             "--hide-scrollbars", f"--user-data-dir={page.parent}/profile", *options]
     return subprocess.run(call, capture_output=True, text=True, timeout=300).stdout
@@ -58,7 +58,7 @@ def record_of(path):
 
 
 def farthest(page, record):
-    """(K, um) between outputs of the page and a record."""
+    """Largest differences (K, um) between outputs of the page and a record."""
     far = {"degC": 0.0, "um": 0.0, "urad": 0.0}
     for name, values in page["outputs"].items():
         unit = next(u for u in far if f"{name}_{u}" in record)
@@ -118,7 +118,7 @@ def check(program, top, browser, folder):
     measure_frames(browser, page, report["frames"], judges=sys.argv[3:] == ["frames"])
     expect(0.1 < report["picture"]["covered"] < 0.9, f"the picture: {report['picture']}")
 
-    # Oil, preload and a chiller: against `predict` with tolerances so tight that its chiller switches when it does.
+    # Oil, preload and a chiller: compared with `predict` at tolerances so tight that its chiller switches at the same times.
     tight = (top / "scenarios/lumped_spindle.yaml").read_text()
     for loose, close in [("relative_tolerance: 1e-4", "relative_tolerance: 1e-8"), ("absolute_tolerance: 1e-3 K", "absolute_tolerance: 1e-8 K")]:
         expect(loose in tight, f"lumped_spindle.yaml has {loose}")
@@ -151,7 +151,7 @@ def check(program, top, browser, folder):
 
 
 def measure_frames(browser, page, first, judges):
-    """Milliseconds of script a frame; on a machine with other work they say nothing, so they are judged where that was asked for."""
+    """Milliseconds of script per frame. On a busy computer they mean nothing, so they are judged only with the argument `frames`."""
     frames = [first]
     while judges and len(frames) < 4 and any(best_of(frames, act)["p95"] > MOST_FRAME_MS for act in first):
         frames.append(report_of(browser, page)[0]["frames"])
@@ -161,7 +161,7 @@ def measure_frames(browser, page, first, judges):
 
 
 def best_of(frames, act):
-    """Of several reports: other work on the computer stretches what a clock tells."""
+    """The shortest times of several reports, because other work on the computer lengthens measured times."""
     return {k: min(f[act][k] for f in frames) for k in ("median", "p95", "most")}
 
 

@@ -1,4 +1,4 @@
-"""What tests of sources share: waiting for what another program does, ports, a real mosquitto on loopback."""
+"""Shared by tests of sources: waiting for another program, ports, a real mosquitto on loopback."""
 import os
 import pathlib
 import shutil
@@ -9,7 +9,7 @@ import time
 
 
 def wait_for(what, is_so, seconds=60.0, told=lambda: ""):
-    """@param told  what else the message says where it never comes"""
+    """@param told  further text of the message if the event never comes"""
     end = time.monotonic() + seconds
     while not is_so():
         assert time.monotonic() < end, f"no {what}: {told()}"
@@ -33,7 +33,7 @@ def need_mosquitto():
 
 
 def broker(folder, port):
-    """@return the process of a mosquitto that listens already"""
+    """@return the process of a mosquitto that already listens"""
     conf = pathlib.Path(folder) / "broker.conf"
     conf.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
     started = subprocess.Popen([program_of("mosquitto"), "-c", conf], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

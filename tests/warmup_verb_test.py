@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright warmup` of the FP3: the written programme, given to `predict` as what was before the job, leaves the drift that was told; LinuxCNC's interpreter reads the
-NC program; wrong options.
+"""`driftwright warmup` on the FP3: `predict`, started from the written programme, gives the drift that the report states. LinuxCNC's interpreter reads the
+NC program, and wrong options are refused.
 
     warmup_verb_test.py PROGRAM FOLDER_OF_THE_PROJECT
 """
@@ -81,7 +81,7 @@ def main():
         expect(abs(peak_um(folder / "again/record.csv") - told) < 0.01, f"peak told {told:.4f} um, of predict {peak_um(folder / 'again/record.csv'):.4f} um")
         expect(abs(peak_um(folder / "cold/record.csv") - told) < 1e-4, "record.csv holds that peak")
 
-        (folder / "lag.yaml").write_text(LAG)  # an instrument that remembers what was before the job
+        (folder / "lag.yaml").write_text(LAG)  # an instrument with memory of the time before the job
         done = call("warmup", "lag.yaml", "--then", "job", "--tolerance", "3 um", "-o", "lag")
         told = way(json.loads((folder / "lag/summary.json").read_text()), "two speeds")
         call("predict", "lag.yaml", "--cyclogram", "job", "--start", "lag/warmup.csv", "-o", "lag_again")
@@ -89,7 +89,7 @@ def main():
                f"behind a scale that lags: told {told['peak_um']:.4f} um, of predict {peak_um(folder / 'lag_again/record.csv', ['nose_um']):.4f} um")
 
         if shutil.which("rs274"):
-            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL a machine: as tests/one_hal.hpp has it
+            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/one_hal.hpp
                 fcntl.flock(turn, fcntl.LOCK_EX)
                 said = subprocess.run(["rs274", "-g", str(folder / "cold/warmup.ngc")], capture_output=True, text=True, timeout=60)
             dwelt_s = sum(float(s) for s in re.findall(r"DWELL\(([0-9.]+)\)", said.stdout))

@@ -40,8 +40,8 @@ struct Raised {
   std::vector<double> time_s;
   std::string words;
 };
-Raised alarms(const TrialMachine& machine, const compensation::ObservedRun& run) {
-  Watch watch(machine.observer(), limits());
+Raised alarms(const TrialMachine& machine, const compensation::ObservedRun& run, const WatchLimits& of = limits()) {
+  Watch watch(machine.observer(), of);
   Raised raised;
   compensation::ObservedRun growing = run;
   growing.readings.time_s.clear();  // values beyond the last time are not looked at
@@ -127,6 +127,83 @@ TEST(Watch, LimitsThatAreNotAsTheyWereWrittenAreRefused) {
 TEST(Watch, ThresholdsWantAMachineForADay) {
   EXPECT_THROW((void)simulated_limits(observer(), kSensors, kSettings, 0, 7.0, {}), std::logic_error);
   EXPECT_THROW((void)simulated_limits(observer(), kSensors, kSettings, 10, 0.5, {}), std::logic_error);
+}
+
+// Three runs of a sound machine, taught as `validate` does.
+compensation::Observer taught_by(const solver::ReducedSystem& machine) {
+  std::vector<compensation::ObservedRun> runs;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) runs.push_back(fixtures::run_of(machine, 60.0, 0.0, 0.1, seed));
+  compensation::Observer o = observer();
+  o.learn(runs);
+  return o;
+}
+
+// Simulated at rows of 5 min, used at rows of 1 min: alarms are as seldom as with limits of rows of 1 min.
+TEST(Watch, DeployedLimitsRaiseNoMoreAlarmsAtShorterRows) {
+  const compensation::ObservedRun training = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
+  const std::optional<WatchLimits> deployed = deployed_limits(taught_by(fixtures::three_parts()), {&training, 1}, {});
+  ASSERT_TRUE(deployed);
+  EXPECT_EQ(deployed->sensors, kSensors);
+  std::size_t n = 0;
+  for (int m = 0; m < 100; ++m) {
+    const TrialMachine machine(observer(), kSensors, kSettings, 7000 + static_cast<std::uint64_t>(m));
+    n += alarms(machine, machine.work(7.0 * kDay_s, {}, 8000 + static_cast<std::uint64_t>(m)), *deployed).time_s.size();
+  }
+  EXPECT_LE(n, 14U);
+}
+
+// A model that was off in training raises no alarm at being as far off: its verdict says how good it is.
+TEST(Watch, DeployedLimitsAllowTwiceWhatTheTrainingReached) {
+  solver::ModelFactors factors{.source = {2.5, 1.0}, .exchange = {1.0, 1.0}};
+  const compensation::ObservedRun off =
+      fixtures::run_of(solver::with_factors(fixtures::three_parts(), factors), 60.0, 0.0, 0.1);
+  const compensation::Observer model = observer();  // has learned nothing of it
+  const auto sound = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
+  const WatchLimits narrow = *deployed_limits(model, {&sound, 1}, {}), wide = *deployed_limits(model, {&off, 1}, {});
+  const auto is_raised = [&](const WatchLimits& limits) {
+    Watch watch(model, limits);
+    bool is = false;
+    compensation::ObservedRun growing = off;
+    growing.readings.time_s.clear();
+    for (double t_s : off.readings.time_s) {
+      growing.readings.time_s.push_back(t_s);
+      is = is || watch.next(growing) > 1.0;
+    }
+    return is;
+  };
+  EXPECT_TRUE(is_raised(narrow));
+  EXPECT_FALSE(is_raised(wide));
+}
+
+TEST(Watch, NoLimitsWithoutAThermometerOrASpeed) {
+  const auto run = fixtures::run_of(fixtures::three_parts());
+  const auto at_rest =
+      fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.0, 1, {.name = "rest", .sections = {{3600, {}}}});
+  EXPECT_FALSE(deployed_limits(observer().with_sensors({}), {&run, 1}, {}));
+  EXPECT_FALSE(deployed_limits(observer(), {&at_rest, 1}, {}));
+}
+
+// The alarm says what its thermometers show now, also after a restart, and not what they showed when it was raised.
+TEST(Watch, AnAlarmSaysWhatHoldsNow) {
+  compensation::ObservedRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
+  std::vector<double>& t3 = run.readings.channels[2].values;
+  for (std::size_t i = 60; i < t3.size(); ++i) t3[i] += i < 120 ? 6.0 : -6.0;
+  Watch watch(observer(), limits());
+  std::vector<std::string> words;
+  compensation::ObservedRun growing = run;
+  growing.readings.time_s.clear();
+  for (std::size_t i = 0; i < t3.size(); ++i) {
+    growing.readings.time_s.push_back(run.readings.time_s[i]);
+    (void)watch.next(growing);
+    words.push_back(watch.alarm() ? watch.alarm()->words : "");
+  }
+  EXPECT_EQ(words[59], "");
+  EXPECT_THAT(words[110], AllOf(HasSubstr("T3 is "), HasSubstr("K warmer")));
+  EXPECT_THAT(words[200], AllOf(HasSubstr("T3 is "), HasSubstr("K colder")));
+  Watch again(observer(), limits());
+  again.recall(watch.memory());
+  ASSERT_TRUE(again.alarm());
+  EXPECT_EQ(again.alarm()->words, watch.alarm()->words);
 }
 
 }  // namespace

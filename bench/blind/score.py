@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Scores diagnoses of blind cases against their truth: score.py CASES [--diagnoses NAME] [--resolved NAME] [--misses N] [--json FILE]
 
-CASES holds case_*/truth.json (tests/blind), case_*/NAME/diagnosis.json (NAME: diagnosis), and for what is ambiguous the same after the
-proposed experiment (NAME: resolved). Resolved rightly: each hidden effect is a cause without alternatives at its place, and nothing
-else is one.
+CASES holds case_*/truth.json (tests/blind), case_*/NAME/diagnosis.json (NAME: diagnosis), and for ambiguous cases the same after the
+proposed experiment (NAME: resolved). A case is resolved rightly if each hidden effect is a cause without alternatives at its place, and there is
+no other cause.
 
 Same cause, same place:
 - A place is the set of its words: "a,b", "b,a" and "a/b" are one.
 - Constant heat is one law under three keys: heat_source of exponent 0, coolant and radiation at the same place are one cause.
 - A link to the hall is the film of a machine without surfaces: contact "x,hall" and convection "x" are one cause.
-A cause's set is itself with its alternatives; it holds a truth when it has at most three members and one of them is it.
+The set of a cause is the cause with its alternatives. It contains a truth if it has at most three members and one of them is the truth.
 Loudness is d' of truth.json; with two effects the smaller of both, each beside the other. The figures are those of d' >= 10.
-Nothing but Python's own library is needed.
+The script needs only the standard library.
 """
 import argparse
 import csv
@@ -25,7 +25,7 @@ LARGEST_SET = 3
 RESOLVED = "ambiguous, proposed experiment simulated: resolved rightly"
 RESOLVED_CATALOGUE = "the same, without effects that are in no catalogue"
 CONSTANT_HEAT = {"heat_source", "coolant", "radiation"}
-# Laws that were in no catalogue when cases were drawn with them, and are now: named so they are right.
+# Laws that were in no catalogue when cases were drawn with them, but are now: these names count as right.
 HELD_SINCE = {"oscillating heat": "heat_source"}
 
 
@@ -76,7 +76,7 @@ def members(cause):
 
 
 def find(effect, causes):
-    """The member that is the truth, at its place if any is, with its cause; or None."""
+    """The member that is the truth (at its place if there is one), with its cause; or None."""
     found = None
     for cause in causes:
         if len(members(cause)) > LARGEST_SET:
@@ -90,21 +90,21 @@ def find(effect, causes):
 
 
 def both_found(effects, causes):
-    """Two truths in two causes."""
+    """Whether two truths are in two different causes."""
     a, b = effects
     holds = [[i for i, c in enumerate(causes) if find(e, [c])] for e in (a, b)]
     return any(i != j for i in holds[0] for j in holds[1])
 
 
 def resolved_rightly(effects, diagnosis):
-    """Each truth alone at its place, and no other cause."""
+    """Whether each truth is a cause alone at its place, and there is no other cause."""
     causes = diagnosis.get("causes", [])
     return (len(causes) == len(effects) and all(len(members(c)) == 1 for c in causes)
             and all(any(same_place(e, c) for c in causes) for e in effects))
 
 
 def read_diagnosis(path):
-    """None where there is none that can be read."""
+    """The diagnosis; None if it does not exist or cannot be read."""
     try:
         with open(os.path.join(path, "diagnosis.json"), encoding="utf-8") as file:
             return json.load(file)
@@ -125,7 +125,7 @@ def comparable(effect, claim):
         value = truth[name]["value"]
         if name in ("power", "growth") and of_speed:
             if "at_speed" not in said:
-                continue  # a power without its speed is no number
+                continue  # a power without its speed cannot be compared
             ratio = said["at_speed"]["value"] / truth["at_speed"]["value"]
             exponent = truth["exponent"]["value"] if "exponent" in truth else 2.0 if effect["effect"] == "centrifugal" else 1.0
             value *= ratio**exponent
@@ -155,11 +155,11 @@ def columns(path):
 
 
 def held_out(folder, truth, diagnosis):
-    """Residuals of the extended model over the noise that the truth put into each channel, root mean square over channels. A model that
-    knows the effect and all numbers leaves the noise alone, 1.
+    """Residuals of the extended model divided by the noise of each channel, root mean square over channels. A model that
+    has the effect and all numbers right leaves only the noise: 1.
 
-    On holdout.csv where the diagnosis comes with holdout_prediction.csv, its prediction of that record; else as the diagnosis itself
-    held out (`gain`).
+    They are computed on holdout.csv if the diagnosis has holdout_prediction.csv, its prediction of that record; else they are those of
+    the rows that the diagnosis kept out (`gain`).
     """
     noise = {c["name"]: c["noise"] for c in truth["channels"]}
     prediction = os.path.join(folder, "holdout_prediction.csv")
@@ -215,7 +215,7 @@ def main():
             if not os.path.exists(os.path.join(folder, options.diagnoses + ".log")):
                 missing += 1
                 continue
-            diagnosis = {"verdict": "failed", "causes": []}  # begun and not brought to an end: right about nothing
+            diagnosis = {"verdict": "failed", "causes": []}  # begun and not finished: it counts as wrong
             failed += 1
         verdict, causes, kind, loud = diagnosis["verdict"], diagnosis.get("causes", []), truth["class"], loudness(truth)
         band = "" if loud >= 10 else ", d' 5 to 10" if loud >= 5 else ", d' < 5"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The scorer against diagnoses written by hand."""
+"""Tests the scorer with diagnoses written by hand."""
 import json
 import os
 import subprocess

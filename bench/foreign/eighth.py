@@ -96,7 +96,7 @@ def attempt(index, number, cls, ways, order):
             raise Impossible
     try:
         hidden, worth, line = third.sized(rng, "eighth " + cls, drawn, machine, measured, noise, z, [offsets[r.name] for r in measured]) if drawn else ([], [], [])
-    except np.linalg.LinAlgError:      # a size of which the records tell nothing
+    except np.linalg.LinAlgError:      # the records contain no information about this size
         raise Impossible
     if hidden and hidden[0].low == hidden[0].high and worth[0] > faults.MOST_NATS:
         raise Impossible
@@ -141,7 +141,7 @@ def met_as(program, machine, record, dt, fault):
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by columns that are told."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by recorded columns."""
     worst = [0.0, 0.0]
 
     def note(name, off):
@@ -189,7 +189,7 @@ def held_to(program):
     record, fault = drawn("resistance_rises")
     fault = fault.with_size(0.004)
     note("resistance_rises", check.met(program, machine, record, 30, [fault], f"{{type: changed_law, law: cutting_heat {fault.data['node']}, decay: {fault.size[0]:.9g} 1/K}}")[0])
-    for way in ("every_other_run", "chiller_hunts", "stiff_start", "critical_speed", "other_room"):      # each hides a column; here the record tells it
+    for way in ("every_other_run", "chiller_hunts", "stiff_start", "critical_speed", "other_room"):      # each hides a column; here the record contains it
         record, fault = drawn(way)
         record.columns["told"] = record.columns.pop(faults.HIDDEN)
         fault.data["column"] = "told"

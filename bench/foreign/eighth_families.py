@@ -81,7 +81,7 @@ def radio_dish(rng, v):
 
 
 def length_comparator(rng, v):
-    """A carriage along a scale under a cover; what it has of heat is a lamp, a motor and whoever stands there."""
+    """A carriage along a scale under a cover; its heat sources are a lamp, a motor and the people next to it."""
     m = Machine("length_comparator")
     build(m, v, dict(scale=1.9e3, gauge=0.8e3, carriage=11e3, granite=0.9e6, cover_air=4e3, laser=2.6e3), [])
     m.air.add("cover_air")
@@ -291,7 +291,7 @@ def rows(rng, style, dt, n):
 
 
 def record(rng, name, plan, time_s, styles, column=None):
-    """styles: of speed, of power, of feeds; each axis moves by itself."""
+    """styles: of speed, of power, of feeds; each axis moves separately."""
     n = len(time_s)
     speed, power = np.zeros(n), np.zeros(n)
     if "top" in plan:

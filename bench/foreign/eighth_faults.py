@@ -19,7 +19,7 @@ NEW_C = ["logger_mean", "play", "range_end", "recalibrated", "stand_bumped", "al
 UNSAYABLE = set(UNSAYABLE_A) | {"logger_mean", "play", "range_end"}      # by no effect of the grammar, or by one that says nearly the same
 KINDS_C = [k for k in third_faults.KINDS_C if k != "sensor_swap"]      # which has no size
 N_RECORDS = {"recalibrated": [3, 4, 5], "warm_start": [2, 3, 4]}
-NOT_STEADY = {"evaporation", "pump_rests", "chiller_hunts"}      # what stood for long before would be another state
+NOT_STEADY = {"evaporation", "pump_rests", "chiller_hunts"}      # a machine at rest for long before would have another state
 MOST_NATS = 400        # of what has no size
 
 # key of truth.json and further names that count as right at the same place; `parameters` is empty and `sizes` says how large it is
@@ -95,7 +95,7 @@ def draw(rng, way, machine, plan, records, column, noise):
             m.links.append(("left_out", a))
             numbers.update({"C left_out": s * c, f"G left_out {a}": s * c / t, "C " + a: (1 - s) * c})
         return restructured(split, 0.02, 0.93, node=a, minutes=t / 60)
-    if way == "cabin_forgotten":      # two or more bodies stand in air of their own behind a guard
+    if way == "cabin_forgotten":      # two or more bodies are in separate air inside a guard
         films = [a for a, b in machine.links if b == "hall" and a not in machine.air]
         if len(films) < 2:
             raise Impossible
@@ -180,7 +180,7 @@ def draw(rng, way, machine, plan, records, column, noise):
             m.heats.append(dict(kind="heat_source", node=node, at=1.0, axis=None, turning=False, has_exponent=False, has_idle=False, has_decay=True))
             numbers[f"P {i}"], numbers[f"decay {i}"] = -s, np.full_like(s, -0.06)
         return restructured(wet, 0.002 * watts, 1.5 * watts, node=node, per_K=0.06)
-    if way == "pump_rests":      # the circuit stands, or trickles, while the machine does
+    if way == "pump_rests":      # the coolant rests, or trickles, while the machine is at rest
         node, warm = pick(rng, machine.circuits)
         rests = lambda r: ~np.asarray(runs(machine, r), bool)
         hide(records, "1", rests)
@@ -218,7 +218,7 @@ def draw(rng, way, machine, plan, records, column, noise):
             return 1 - 2 * x if saw else np.sin(2 * np.pi * x)
         hide(records, "W", wave)
         return gain(node, 0.01, 8, period_min=round(period / 60, 2))
-    if way == "stiff_start":      # grease that has settled: more heat after each start, the more so the longer it had stood
+    if way == "stiff_start":      # grease that has settled: more heat after each start, the more the longer the machine had been at rest
         fades, settles = rng.uniform(0.01, 0.06) * shortest, rng.uniform(0.02, 0.2) * shortest
 
         def churned(r):
@@ -245,7 +245,7 @@ def draw(rng, way, machine, plan, records, column, noise):
         return [Fault(way, {}, None, 0.2 * step / 60, 0.15 * shortest / 60)]
     if way == "play":      # a dial gauge that sticks
         return [Fault(way, dict(channel=pick(rng, channels)), None, 0.03, 60)]
-    if way == "range_end":      # in all records; it is told as if nothing were the matter
+    if way == "range_end":      # in all records; truth.json has it as if nothing were wrong
         channel = pick(rng, channels if channels and (not sensors or rng.random() < 0.4) else sensors)
         m = copy.copy(machine)
         m.sensors, m.displacements = [x for x in machine.sensors if x[0] == channel], [x for x in machine.displacements if x[0] == channel]

@@ -7,7 +7,7 @@
     many_readings    thermometers, or displacements, are off by stated shares of one size, from a time on
     all_in_air       all thermometers read a share of the ambient
     logger_mean      every reading is the mean of so many minutes before it
-    play             a displacement follows only once it has moved by more than so much from where it stands
+    play             a displacement follows only after a change of more than this amount
     range_end        a channel reads no more than `top` minus the size
 """
 import copy

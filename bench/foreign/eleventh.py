@@ -30,7 +30,7 @@ def table():
     out = [("B", [])] * COUNTS["B"]
     for ways in faults.GROUPS.values():
         out += [("A", [str(w)]) for w in np.concatenate([rng.permutation(ways) for _ in range(-(-EACH // len(ways)))])[:EACH]]
-    left, first = [str(x) for x in rng.permutation(faults.WAYS_A)], lambda w: w in faults.NOT_STEADY or w in faults.N_RECORDS      # what rules the start or the records of a case stands first
+    left, first = [str(x) for x in rng.permutation(faults.WAYS_A)], lambda w: w in faults.NOT_STEADY or w in faults.N_RECORDS      # a way that determines the start or the records of a case comes first
     for _ in range(COUNTS["D"]):
         a = left.pop(0)
         b = left.pop(next(i for i, x in enumerate(left) if faults.GROUP[x] != faults.GROUP[a] and not (first(a) and first(x))))
@@ -41,7 +41,7 @@ def table():
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then each way: as the grammar says it, by another machine, or by columns that are told."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then each way: as the grammar says it, by another machine, or by recorded columns."""
     worst, done = [0.0, 0.0], set()
 
     def note(name, off):
@@ -91,7 +91,7 @@ def held_to(program):
         return [float(np.max(np.abs(x - y))) for x, y in zip(simulate(machine, machine.nominal(), record, [fault]), simulate(machine, machine.nominal(), record, other))]
 
     def tell(record, fault):
-        """What no file has, in columns that the record tells."""
+        """Moves hidden columns into the record."""
         new = [f"told_{k}" for k in range(len(fault.data["columns"]))]
         for old, name in zip(fault.data["columns"], new):
             record.columns[name] = record.columns.pop(old)
@@ -133,7 +133,7 @@ def held_to(program):
     s = float(fault.size[0])
     lines = [f"{{type: exchange_window, node: {b}, surrounding: coolant_tank, conductance: {s * x:.9g} W/K, windows: {rows(fault.data['by_record'][record.name])}}}" for b, x in zip(fault.data["washed"], fault.data["flows"])]
     note("tank_pumped, another machine, windows and a column that is told", met(record, still, lines + [f"{{type: recorded_drive, node: coolant_tank, gain: {s * fault.data['pump']:.9g}, column: told_0}}"], other))
-    for way in ("belt_fans", "seal_air", "warm_under_the_roof", "brake_resistor", "changer_unrecorded", "sun_wanders", "gear_stage", "washed_down"):      # each follows columns; here the record tells them
+    for way in ("belt_fans", "seal_air", "warm_under_the_roof", "brake_resistor", "changer_unrecorded", "sun_wanders", "gear_stage", "washed_down"):      # each follows columns; here the record contains them
         record, fault = drawn(way)
         tell(record, fault)
         note(f"{way} by columns that are told", met(record, fault, drives(fault, record)))
@@ -157,7 +157,7 @@ def held_to(program):
         extra = simulate(machine, machine.nominal(), record, [fault])[1][0] - simulate(machine, machine.nominal(), record)[1][0]
         record.columns["told"] = ("degC", t_ref + extra[:, [d[0] for d in machine.displacements].index(c)] / size)
         note(f"{way} by a column that is told", met(record, fault, [f"{{type: displacement_path, displacement: {c}, sensitivity: {size:.9g} um/K, column: told}}"]))
-    record, fault = drawn("position_changes")      # where it stands in one place, it is another sensitivity
+    record, fault = drawn("position_changes")      # if the axis stays in one place, this is another sensitivity
     record.columns[fault.data["columns"][0]] = ("1", np.ones(300))
     fault = fault.with_size(0.7)
     note("position_changes, one position", met(record, fault, [f"{{type: displacement_path, displacement: {fault.data['channel']}, sensitivity: {fault.size[0]:.9g} um/K, body: {fault.data['body']}}}"]))

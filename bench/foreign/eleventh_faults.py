@@ -1,7 +1,7 @@
 """What is hidden in the set `eleventh`: structure that is missing, in five groups (README.md).
 
 Each way is one fault with one size. It carries its law (`change`, `parts`, `record`, `reads`; eleventh_network.py), and what it is called: `key` and `place` of truth.json, `also`, whether the grammar can say it exactly (`sayable`),
-and `at`, the bodies at which the rule on what data cannot tell apart tries other names. The laws are those of things: a tank is pumped while the machine runs, a furnace radiates with the fourth power, a tool that is new has the air's temperature.
+and `at`, the bodies at which the rule about indistinguishable effects tries other names. The laws are those of things: a tank is pumped while the machine runs, a furnace radiates with the fourth power, a tool that is new has the air's temperature.
 """
 import numpy as np
 
@@ -27,7 +27,7 @@ GROUPS = dict(
               "furnace_beside",          # a furnace of a neighbour shines on a part
               "line_while_running",      # a hydraulic line or a chip stream joins two parts while the machine runs
               "seal_air",                # sealing or blowing air, colder than the hall, blows while the machine runs and a little longer
-              "warm_under_the_roof",     # the hall warms from its roof, and what stands high is in warmer air
+              "warm_under_the_roof",     # the hall warms from its roof, and high parts are in warmer air
               "shared_pipe"],            # one pipe, or one casting, joins three parts in a row
     input=["heat_follows_another",       # a heat goes by another input than is written, or by none
            "brake_resistor",             # what a spindle gives back as it brakes is burnt beside a part
@@ -36,12 +36,12 @@ GROUPS = dict(
            "gear_stage",                 # below a speed the motor turns faster than the spindle
            "machine_warms_its_air"],     # the ambient is recorded where the machine does not warm the air
     path=["stand_follows_hall",          # the stand of the indicators goes with the hall, late
-          "position_changes",            # the axis stands elsewhere in some programmes, and more or less of a body is between
+          "position_changes",            # the axis has another position in some programmes, so that more or less of a body lies between tool and table
           "thermometer_on_plate",        # a thermometer sits on a plate between body and air
           "thermometer_in_return",       # a thermometer reads a neighbour while oil or coolant passes it
           "control_compensates",         # the control moves the axis by a thermometer of its own, every so many minutes
           "tool_swapped"],               # each run begins with a tool that is as warm as the air
-    event=["power_cut",                  # all stood for a while, pumps and electronics too, and the record has what was commanded
+    event=["power_cut",                  # everything was off for a while, pumps and electronics too, but the record has the commanded speed
            "washed_down",                # a part is hosed down once
            "tank_refilled",              # a tank, a sump or a gearbox is filled up with cold or warm fluid
            "rezeroed",                   # the indicators are set anew in a pause, or in several
@@ -49,8 +49,8 @@ GROUPS = dict(
            "ran_by_hand"])               # the spindle turned in a pause, by hand, and only programmes are recorded
 GROUP = {w: g for g, ways in GROUPS.items() for w in ways}
 WAYS_A = list(GROUP)
-NOT_STEADY = {"furnace_beside", "warm_under_the_roof"}      # what stood for long before would be another state
-NOT_OUTDOORS = {"seal_air", "furnace_beside", "changer_unrecorded", "tool_swapped", "position_changes", "control_compensates"}      # no machine stands there
+NOT_STEADY = {"furnace_beside", "warm_under_the_roof"}      # a machine at rest for long before would have another state
+NOT_OUTDOORS = {"seal_air", "furnace_beside", "changer_unrecorded", "tool_swapped", "position_changes", "control_compensates"}      # there is no machine there
 N_RECORDS = {"fixture_changed": [2, 3, 4, 5]}
 MOST_NATS = 400
 STEFAN_BOLTZMANN = 5.67e-8

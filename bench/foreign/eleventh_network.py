@@ -3,8 +3,8 @@
     change    (machine, numbers, size): alters copies of both, as in eighth_network.py
     record    (record, size) -> what really drove the machine; it may have more rows than the record, and is made anew for each size
     parts     (fault, machine, numbers, record) -> faults of the older truths, with their sizes
-    looks     bodies, or `hall`, whose temperatures `reads` wants
-    reads     (fault, seen): alters what the instruments of one record tell
+    looks     bodies, or `hall`, whose temperatures `reads` needs
+    reads     (fault, seen): alters the readings of one record
 """
 import copy
 import types

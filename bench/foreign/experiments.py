@@ -186,11 +186,11 @@ def named_in(diagnosis):
 
 
 def answered(question, cause, before, after, truth):
-    """(result, whether the truth stood among the claims, a word on the place)."""
+    """(result, whether the truth was among the claims, a word on the place)."""
     effects, n = truth["effects"], truth["n_records"]
     asked = [e for e in effects if any(kind_right(c, e) for c in claims(cause))]
     stood = bool(asked)
-    if not asked:      # then what is wanted is an effect that stood in no cause's place
+    if not asked:      # then the answer must be an effect that no cause contained
         asked = [e for e in effects if not any(kind_right(x, e) for c in before["causes"] for x in claims(c))]
     if after is None:
         return "no end", stood, ""

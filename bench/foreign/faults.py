@@ -1,4 +1,4 @@
-"""What is hidden: how it is drawn, where it acts, and how truth.json tells it. Its size is set afterwards, by nats."""
+"""Hidden faults: how they are drawn, where they act, and how truth.json describes them. Their sizes are set afterwards, by nats."""
 import numpy as np
 
 KINDS_A = ["hidden_body", "link", "exchange_window", "heat_window", "heat_source", "recorded_drive", "displacement_path", "run_state", "sensor_place"]

@@ -99,7 +99,7 @@ def attempt(index, number, cls, ways, order):
                 raise Impossible
     try:
         hidden, worth, line = third.sized(rng, "fifth " + cls, drawn, machine, measured, noise, z, [offsets[r.name] for r in measured]) if drawn else ([], [], [])
-    except np.linalg.LinAlgError:      # a size of which the records tell nothing
+    except np.linalg.LinAlgError:      # the records contain no information about this size
         raise Impossible
     for f in hidden:      # of a recorded power no more becomes heat than all of it, and no less than nothing
         if way == "power_square" and not 0 < shares[f.data["of_heat"]] + f.size[0] < 1:
@@ -158,7 +158,7 @@ def held_to(program):
     for way, pattern in (("power_square", "{{type: recorded_drive, node: {node}, gain: {size:.9g}, column: told}}"), ("run_on", "{{type: recorded_drive, node: {node}, opening: {size:.9g}, column: told}}")):
         fault = faults.draw(rng, way, machine, plan, [record], None)[0]
         unit, values = record.columns.pop(faults.HIDDEN)
-        record.columns["told"], fault.data["column"] = (unit, values), "told"      # here the record tells it
+        record.columns["told"], fault.data["column"] = (unit, values), "told"      # here the record contains it
         fault = fault.with_size(np.sqrt(fault.low * fault.high))
         note(f"{way} by a column that is told", check.met(program, machine, record, 60, [fault], pattern.format(node=fault.data["node"], size=fault.size[0]))[0])
         del record.columns["told"]

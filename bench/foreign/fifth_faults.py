@@ -1,4 +1,4 @@
-"""What is hidden in the set `fifth`: kinds of the sets before and six that none of them has (README.md). One way of being wrong may be two faults, or follow a column that no record tells."""
+"""What is hidden in the set `fifth`: kinds of the sets before and six that none of them has (README.md). One way of being wrong may be two faults, or follow a column that no record contains."""
 import copy
 
 import numpy as np

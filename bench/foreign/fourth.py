@@ -103,7 +103,7 @@ def attempt(index, number, cls, kinds, order):
                 raise Impossible
     try:
         hidden, worth, line = third.sized(rng, "fourth " + cls, drawn, machine, measured, noise, z, [offsets[r.name] for r in measured]) if drawn else ([], [], [])
-    except np.linalg.LinAlgError:      # a size of which the records tell nothing, as of a stop that ends in a rest
+    except np.linalg.LinAlgError:      # the records contain no information about this size, as for a stop that ends in a rest
         raise Impossible
     for f in hidden:
         if f.key == "recorded_drive" and "heat" in f.data and shares[f.data["heat"]] * np.exp(f.size[0]) > 1:

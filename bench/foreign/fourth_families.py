@@ -10,7 +10,7 @@ CADENCES = (4, 5, 7, 8, 12, 16, 18, 25, 40, 45, 75, 90, 100, 150, 180, 240, 420,
 
 
 def vacuum_furnace_shelf(rng, v):
-    """Radiation between shields that are nearly as warm is told by conductances."""
+    """Radiation between shields of nearly equal temperature is written as conductances."""
     m = Machine("vacuum_furnace_shelf")
     build(m, v, dict(heater=1.4e3, shelf=9e3, charge=22e3, shield=5e3, vessel=58e3),
           [("heater", "shelf", 3.2), ("heater", "shield", 1.5), ("shelf", "charge", 7), ("charge", "shield", 0.9), ("shield", "vessel", 1.3), ("vessel", "hall", 9)])
@@ -287,7 +287,7 @@ def record(rng, name, plan, time_s, styles, column=None):
     kind = plan["drive"]
     if "top" in plan:
         speed = np.round(drive(rng, time_s, styles[0], plan["top"]), 0)
-    if kind == "wind":      # speed and power follow one wind; below the least of it the rotor stands
+    if kind == "wind":      # speed and power follow one wind; below its smallest value the rotor is at rest
         wind = np.clip(0.55 + np.cumsum(rng.standard_normal(n) * 0.35 * np.sqrt(np.diff(time_s, append=time_s[-1]) / 86400)), 0, None)
         wind = np.abs((wind + 1) % 2 - 1)
         speed = np.where(wind > 0.22, np.round(plan["top"] * np.clip(0.55 + 0.6 * wind, 0, 1) / 40) * 40, 0.0)
@@ -329,7 +329,7 @@ def instruments(rng, machine, seen):
     machine.numbers = {k: x for k, x in machine.numbers.items() if not (k.startswith("S ") and k.split()[1] in drop)}
     if rng.random() < 0.6:
         temperature = dict(sigma=rounded(np.exp(rng.uniform(np.log(0.015), np.log(0.2))), 2), step=0.001)
-    else:      # steps in which the converter tells it
+    else:      # resolution of the converter
         step = float(rng.choice([0.03125, 0.0625, 0.1, 0.2]))
         temperature = dict(sigma=rounded(max(0.02, step * rng.uniform(0.4, 0.9)), 2), step=step)
     displacement = dict(sigma=rounded(np.exp(rng.uniform(np.log(0.08), np.log(1.2))), 2), step=float(rng.choice([0.01, 0.05, 0.25], p=[0.6, 0.2, 0.2])))

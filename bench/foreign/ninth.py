@@ -21,7 +21,7 @@ eighth.families, eighth.faults, eighth.SEED, eighth.__doc__ = families, faults, 
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, by columns that are told, or by another way of the truth."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, by recorded columns, or by another form of the truth."""
     worst = [0.0, 0.0]
 
     def note(name, off):
@@ -63,7 +63,7 @@ def held_to(program):
             record, fault = drawn(way)
             note(f"{way}, written down, start {machine.start}", eighth.met_as(program, machine, record, 60, fault))
     machine.start = "hall"
-    for way in ("holding_torque", "bearing_damage", "chip_heap", "loss_saturates"):      # each hides a column; here the record tells it
+    for way in ("holding_torque", "bearing_damage", "chip_heap", "loss_saturates"):      # each hides a column; here the record contains it
         record, fault = drawn(way)
         record.columns["told"] = record.columns.pop(faults.HIDDEN)
         fault.data["column"] = "told"

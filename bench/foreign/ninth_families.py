@@ -315,7 +315,7 @@ def hall(rng, time_s, outdoor):
 
 
 def record(rng, name, plan, time_s, styles, column=None):
-    """styles: of speed, of power, of feeds; each axis moves by itself."""
+    """styles: of speed, of power, of feeds; each axis moves separately."""
     n = len(time_s)
     speed, power = np.zeros(n), np.zeros(n)
     if "top" in plan:

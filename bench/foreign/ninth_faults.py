@@ -17,7 +17,7 @@ NEW_C = ["ratchet", "amplifier_warms", "hall_clock", "tilted_indicator", "hall_i
 UNSAYABLE = set(UNSAYABLE_A) | {"ratchet", "amplifier_warms", "hall_clock", "hall_in_exhaust"}
 KINDS_C = eighth_faults.KINDS_C
 N_RECORDS = {"bearing_damage": [2, 3, 4]}
-NOT_STEADY = {"holding_torque", "clamped_at_rest", "one_way_stream", "wax_valve", "free_convection", "fit_tightens", "filter_clogs"}      # what stood for long before would be another state
+NOT_STEADY = {"holding_torque", "clamped_at_rest", "one_way_stream", "wax_valve", "free_convection", "fit_tightens", "filter_clogs"}      # a machine at rest for long before would have another state
 MOST_NATS = 400
 
 # key of truth.json and further names that count as right at the same place; `parameters` is empty and `sizes` says how large it is
@@ -67,7 +67,7 @@ def stretches(time_s, on):
 
 
 def feedback(make, low, high, **data):
-    """Heat that hangs on temperatures as no heat of network.py does: make(size, numbers) -> what network.py's `feedback` wants."""
+    """Heat that hangs on temperatures as no heat of network.py does: make(size, numbers) -> what `feedback` of network.py needs."""
     def change(m, numbers, s):
         m.feedback = [make(s, numbers, m)]
     return restructured(change, low, high, **data)
@@ -129,15 +129,15 @@ def draw(rng, way, machine, plan, records, column, noise):
             m.links += [("left_out", a), ("left_out_behind", "left_out")]
             numbers.update({"C left_out": np.maximum(s * c1, 1e-3), "C left_out_behind": np.maximum(s * c2, 1e-3), f"G left_out {a}": s * g1, "G left_out_behind left_out": s * g2})
         return restructured(chain, 0.02, 6, node=a, capacities=[c1, c2], conductances=[g1, g2])
-    if way == "two_feet":      # both stand on the same cold, or warm, ground
+    if way == "two_feet":      # both are on the same cold or warm ground
         warm = float(round(rng.uniform(5, 30), 1))
         if len(machine.bodies) < 2 or min(abs(warm - np.mean(r.hall)) for r in measured) < 2.5:
             raise Impossible
         hide(records, "degC", lambda r: np.full(len(r.time_s), warm), must_move=False)
         return [Fault(way, dict(nodes=two(machine.bodies), column=HIDDEN, degC=warm), None, 0.01 * g, 6 * g)]
-    if way == "lid_over_two":      # a door, a lid or a hood: what lies behind it has the hall's air for a while
+    if way == "lid_over_two":      # a door, a lid or a hood: bodies inside have the hall's air for a while
         return [Fault(way, dict(nodes=two([b for b in machine.bodies if b not in machine.air])), low=0.01 * g, high=12 * g, **fifth_faults.happened(rng, records))]
-    if way == "holding_torque":      # a drive that holds while its own axis stands
+    if way == "holding_torque":      # a drive that holds its axis at rest
         i = pick(rng, servos + speeds)
         h = machine.heats[i]
         hide(records, "W", lambda r: (r.feeds[h["axis"]] if i in servos else r.speed) == 0)
@@ -183,7 +183,7 @@ def draw(rng, way, machine, plan, records, column, noise):
         if len(set(nodes)) < 2:
             raise Impossible
         return [Fault(way, dict(heats=[int(i) for i in chosen], nodes=nodes), None, 0.05, 1.8 if sign > 0 else min(value(f"e {i}") for i in chosen) - 0.05, sign)]
-    if way == "many_stops":      # at each change of tool or part it stands for a while, and the commanded speed does not say so
+    if way == "many_stops":      # at each change of tool or part the spindle stops for a while, but the commanded speed does not show it
         r = pick(rng, measured)
         turning = r.time_s[(r.speed > 0) & (r.time_s > 0.04 * r.time_s[-1]) & (r.time_s < 0.88 * r.time_s[-1])]
         if len(turning) < 20:
@@ -194,7 +194,7 @@ def draw(rng, way, machine, plan, records, column, noise):
         if high < 4 * low:
             raise Impossible
         return [Fault(way, dict(starts_s=[float(x) for x in starts]), [r.name], low, high)]
-    if way == "clamped_at_rest":      # two parts are pressed on each other while the machine stands
+    if way == "clamped_at_rest":      # two parts are pressed together while the machine is at rest
         by_record = {r.name: stretches(r.time_s, ~np.asarray(runs(machine, r), bool)) for r in records}
         if not all(any(a > 0 for a, _ in by_record[n]) for n in names):
             raise Impossible
@@ -300,7 +300,7 @@ def draw(rng, way, machine, plan, records, column, noise):
         if not any(np.any(np.diff(r.speed) < -0.2 * plan["top"]) for r in measured):
             raise Impossible
         return [Fault("record_change", dict(place="spindle", driven=sorted(nodes), change=lambda r, s: truly(r, speed=coasting(r, plan["top"], max(s, 1e-6)))), None, 0.004 * shortest / 60, 0.25 * shortest / 60)]
-    if way == "chip_heap":      # it grows as the machine works, and is swept away where it stands for long
+    if way == "chip_heap":      # it grows as the machine works, and is removed when the machine rests for long
         works = [i for i, h in enumerate(machine.heats) if h["kind"] == "cutting_heat"] or speeds or servos
         i, long = pick(rng, works), rng.uniform(0.03, 0.08) * shortest
 

@@ -4,7 +4,7 @@
     two_feet         two bodies are joined to something that keeps its temperature
     column_on_two    a recorded column is heat in two bodies, by stated shares
     exponent_of_two  the heat of two bodies grows with another exponent, by one further exponent
-    many_stops       the spindle stood several times, each as long as the size [min]
+    many_stops       the spindle stopped several times, each as long as the size [min]
     stand_on_machine displacements follow one more body, by stated shares
     filter_clogs     a film takes less by a share of the size, as a column says it
     crosstalk        each thermometer of a card reads a share of the channel before it

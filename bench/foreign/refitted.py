@@ -40,7 +40,7 @@ class Refit:
         self.y = [self.model(self.start, hidden, np.zeros(len(hidden)), i)[0] for i in range(len(records))]
 
     def model(self, z, faults, logs, i, differences=False):
-        """Readings of one record; with `differences` those of a step in each unknown that it knows behind the first row."""
+        """Readings of one record; with `differences`, the first row is followed by those for a step in each unknown."""
         n, f = len(self.labels), len(faults)
         count = 2 + n + f if differences else 1
         numbers = {}

@@ -65,7 +65,7 @@ TIMES = re.compile(r"^(begin|start|from|end|until|length|time)(_?\d+)?$")
 
 
 def told_windows(cause, last_min):
-    """[begin, end] in minutes of all windows that a cause tells, whatever it calls them; one without an end lasts."""
+    """[begin, end] in minutes of all windows of a cause, under any of their names; one without an end lasts."""
     out, begin = [], None
     for p in cause.get("parameters") or []:
         name = TIMES.match(str(p.get("name")))
@@ -88,7 +88,7 @@ def told_windows(cause, last_min):
 
 
 def times_right(causes, effect, last_min):
-    """Do the windows of all causes of the right kind together overlap those of the truth by half of what both cover? Told by one cause or by several."""
+    """Do the windows of all causes of the right kind together overlap those of the truth by half of what both cover? They may belong to one cause or several."""
     grid = [last_min * (i + 0.5) / 2000 for i in range(2000)]
     told = [w for c in causes if kind_right(c, effect) for w in told_windows(c, last_min)]
     inside = lambda t, windows: any(a <= t < b for a, b in windows)

@@ -97,7 +97,7 @@ def attempt(index, number, cls, ways, order):
             raise Impossible
     try:
         hidden, worth, line = third.sized(rng, "seventh " + cls, drawn, machine, measured, noise, z, [offsets[r.name] for r in measured]) if drawn else ([], [], [])
-    except np.linalg.LinAlgError:      # a size of which the records tell nothing
+    except np.linalg.LinAlgError:      # the records contain no information about this size
         raise Impossible
     for f in hidden:      # of a recorded power no more becomes heat than all of it
         if f.key == "recorded_drive" and "heat" in f.data and sum(shares.values()) + shares[f.data["heat"]] * (np.exp(f.size[0]) - 1) > 1:
@@ -128,7 +128,7 @@ def attempt(index, number, cls, ways, order):
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by columns that are told."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by recorded columns."""
     worst = [0.0, 0.0]
 
     def note(name, off):
@@ -151,7 +151,7 @@ def held_to(program):
     rng = np.random.default_rng([112])
     machine, plan = families.gun_drill(rng, Draw(rng))
     machine.sensors, time_s = [("t_" + b, b) for b in machine.bodies], np.arange(400) * 60.0
-    for way in ("vent_by_hall", "late_heat", "load_heat", "foundation", "cold_tank", "sunbeam", "grease_shots", "standstill_heater"):      # each hides a column; here the record tells it
+    for way in ("vent_by_hall", "late_heat", "load_heat", "foundation", "cold_tank", "sunbeam", "grease_shots", "standstill_heater"):      # each hides a column; here the record contains it
         machine.start = "hall"
         record = families.record(rng, "measured_1", plan, time_s, ["trials", "walk", "recipe"])
         while True:

@@ -12,7 +12,7 @@ WAYS_A = ["hidden_body"] * 2 + ["link", "exchange_window", "heat_window", "colum
 NEW_C = ["slow_hall", "wrong_slope", "held_reading", "bumped_and_back", "clock_jump", "cold_junction"]
 KINDS_C = [k for k in third_faults.KINDS_C if k != "sensor_swap"]      # which has no size
 N_RECORDS = {"run_state": [3, 4, 5], "cover_fitted": [3, 4, 5], "loosening": [3, 4, 5]}
-NOT_STEADY = {"standstill_heater", "cold_tank"}      # what stood for long before would have been warmed, or cooled, by it
+NOT_STEADY = {"standstill_heater", "cold_tank"}      # bodies at rest for long before would have been warmed, or cooled, by it
 HIDDEN = "untold"      # a column of this name acts and no file has it
 LEAST_NATS = 3.0       # another name counts as right where it leaves less than this of what is hidden
 

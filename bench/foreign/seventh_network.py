@@ -7,7 +7,7 @@
     loosening        a joint's conductance falls by one factor from record to record
     bumped           a displacement is shifted, and shifted back later
     wrong_slope      a thermometer reads T + s (T - 20 degC)
-    held_reading     a thermometer's channel tells its last value for a while
+    held_reading     a thermometer's channel repeats its last value for a while
     card_bias        all thermometers of one card read so much more or less
     clock_jump       from a time on what is read is logged late (+) or early
 """

@@ -97,7 +97,7 @@ def attempt(index, number, cls, ways, order):
             raise Impossible
     try:
         hidden, worth, line = third.sized(rng, "sixth " + cls, drawn, machine, measured, noise, z, [offsets[r.name] for r in measured]) if drawn else ([], [], [])
-    except np.linalg.LinAlgError:      # a size of which the records tell nothing
+    except np.linalg.LinAlgError:      # the records contain no information about this size
         raise Impossible
     for f in hidden:      # of a recorded power no more becomes heat than all of it
         if f.key == "recorded_drive" and "heat" in f.data and sum(shares.values()) + shares[f.data["heat"]] * (np.exp(f.size[0]) - 1) > 1:
@@ -124,7 +124,7 @@ def attempt(index, number, cls, ways, order):
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by columns that are told."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, or by recorded columns."""
     worst = [0.0, 0.0]
 
     def note(name, off):
@@ -150,7 +150,7 @@ def held_to(program):
     rng = np.random.default_rng([102])
     machine, plan = machine_of(families.roll_grinder, rng)
     machine.start, time_s = "steady", np.arange(400) * 60.0
-    for way in ("flood", "neighbour", "run_up", "mixed_friction", "running_in", "force_path", "mount_creep"):      # each hides columns; here the record tells them
+    for way in ("flood", "neighbour", "run_up", "mixed_friction", "running_in", "force_path", "mount_creep"):      # each hides columns; here the record contains them
         record = families.record(rng, "measured_1", plan, time_s, ["tool_list", "series", "breaks"])
         while True:
             try:

@@ -396,7 +396,7 @@ def instruments(rng, machine, plan):
         machine.numbers = {k: x for k, x in machine.numbers.items() if not (k.startswith("S ") and k.split()[1] in gone)}
     slot = int(rng.integers(1, 4))
     machine.sensors = [(f"B{slot}_{i + 1:02d}", b) for i, (_, b) in enumerate(machine.sensors)]
-    if rng.random() < 0.15:      # a control that tells a quarter of a kelvin
+    if rng.random() < 0.15:      # a control with a resolution of a quarter of a kelvin
         noise["temperature"] = dict(sigma=0.12, step=0.25)
     if rng.random() < 0.15:      # a dial gauge
         noise["displacement"] = dict(sigma=0.5, step=1.0)

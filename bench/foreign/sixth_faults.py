@@ -115,7 +115,7 @@ def draw(rng, way, machine, plan, records, column):
         if max(len(np.unique(r.speed)) for r in records) > 14:
             raise Impossible      # each speed is a network of its own
         return [Fault("forced_convection", dict(link=pick(rng, [x for x in machine.links if x[1] != "hall" and {machine.heats[i]["node"] for i in speeds} & set(x)]), at=float(plan["top"] / 4)), None, 0.05, 2.5)]
-    if way == "ambient_window":      # a gate that stands open on the machine's side of the hall
+    if way == "ambient_window":      # an open gate on the machine's side of the hall
         r = pick(rng, measured)
         begin, length = rng.uniform(0.08, 0.65), rng.uniform(0.1, 0.35)
         return [Fault("ambient_window", dict(begin_s=float(round(begin * r.time_s[-1])), end_s=float(round((begin + length) * r.time_s[-1]))), [r.name], 0.3, 9, sign)]

@@ -1,6 +1,6 @@
 """network.py's truth with what only the set `sixth` hides (sixth_faults.py); importing it lets the judges of sizes (nats.py, refitted.py) and check.py use it, in this process alone.
 
-    stream              exchange of a body with a stream that has a temperature of its own, while a column is 1 (`on`); `excess` tells, in K, how much warmer than the recorded hall it is then
+    stream              exchange of a body with a stream that has a temperature of its own, while a column is 1 (`on`); `excess` is, in K, its temperature then over the recorded hall's
     ambient_window      the true hall is another one between two times
     sensor_with_drive   a thermometer's error while a column is 1
     sensor_loose        while a column is 1 a thermometer reads a share of the air

@@ -965,7 +965,7 @@ def X_third(rng, m, recs):                           # only from the third start
     return f
 
 
-def X_n2lag(rng, m, recs):                           # thermometer, speed squared behind a lag
+def X_n2lag(rng, m, recs):                           # thermometer, speed squared with a lag
     f = base(rng, recs)
     s, b = m.sens[int(rng.integers(len(m.sens)))]
     tau = U(rng, .03, .15) * min(R.n * R.dt for R in recs)
@@ -1233,7 +1233,7 @@ def X_moving(rng, m, recs):                          # a heat that moves from on
     return f
 
 
-def X_gust(rng, m, recs):                            # half of the machine stands in other air
+def X_gust(rng, m, recs):                            # half of the machine is in other air
     f = base(rng, recs)
     bs = [l for l in m.links if l[1] < 0 and not l[3]]
     if len(bs) < 3:

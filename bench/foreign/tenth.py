@@ -47,7 +47,7 @@ def table():
 
 
 def held_to(program):
-    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, by columns that are told, or by another way of the truth."""
+    """Each family twice, nominal and without noise, in two styles of driving and of rows; then what is new: as the grammar says it, by recorded columns, or by another form of the truth."""
     worst = [0.0, 0.0]
 
     def note(name, off):
@@ -112,7 +112,7 @@ def held_to(program):
     note("follows_another", met(record, fault, f"{{type: displacement_path, displacement: {fault.data['channel']}, sensitivity: {fault.size[0]:.9g} um/K, body: {body}{lag}}}"))
     record, fault = drawn("door_open")
     note("door_open", met(record, fault, [f"{{type: exchange_window, node: {n}, conductance: {w * fault.size[0]:.9g} W/K, surrounding: ambient, windows: [{rows(fault.windows(record))}]}}" for n, w in zip(fault.data["nodes"], fault.data["shares"])]))
-    for way in ("friction_another_law", "stands_on_floor", "standby_heat", "second_shift"):      # each hides a column; here the record tells it
+    for way in ("friction_another_law", "stands_on_floor", "standby_heat", "second_shift"):      # each hides a column; here the record contains it
         record, fault = drawn(way, wanted=lambda f: f.key == "recorded_drive")
         record.columns["told"] = record.columns.pop(faults.HIDDEN)
         fault.data["column"] = "told"

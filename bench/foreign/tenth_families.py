@@ -260,7 +260,7 @@ def rows(rng, style, dt, n):
 
 
 def record(rng, name, plan, time_s, styles, column=None):
-    """styles: of speed, of power, of feeds; each axis moves by itself, and where there is a speed only while it turns, but for some positioning."""
+    """styles: of speed, of power, of feeds; each axis moves separately, and where there is a speed only while it turns, but for some positioning."""
     n = len(time_s)
     speed, power = np.zeros(n), np.zeros(n)
     if "top" in plan:

@@ -1,8 +1,8 @@
 """What is hidden in the set `tenth`: what usually is wrong with a thermal model of a machine when it meets records from the shop (README.md).
 
-WEIGHTS is how often, of a hundred or so, the author expects each to be what is wrong, from what he knows of shops and of the literature on thermal errors (heat sources and boundary conditions that are not known stand
-before all else there; then parts and joints that were left out, then what the displacement is measured against, then the drive that was another one than the record says). It was chosen before the ways were written,
-and by no look at what the catalogue can say. The laws are those of things: a chiller has a tank, a compressor and a hysteresis; a pump stands in its own case; a cover has air on its outer side; a lid bares several bodies at once.
+WEIGHTS is how often, of a hundred or so, the author expects each to be what is wrong, from what he knows of shops and of the literature on thermal errors (unknown heat sources and boundary conditions come first
+there; then parts and joints that were left out, then what the displacement is measured against, then the drive that was another one than the record says). It was chosen before the ways were written,
+and by no look at what the catalogue can say. The laws are those of things: a chiller has a tank, a compressor and a hysteresis; a pump has its own case; a cover has air on its outer side; a lid bares several bodies at once.
 """
 import copy
 
@@ -22,28 +22,28 @@ WEIGHTS = dict(
     body_left_out=10,             # a cover, a tank, a fixture, a motor's body that the model lacks
     joint_left_out=9,             # two bodies touch, or are bolted or piped together, and the model has no path there
     follows_another=8,            # the displacement is measured against a gauge's holder, the bed, the column, which warm, too
-    chiller_set_point=6,          # the chiller stands on another temperature than the sheet says
+    chiller_set_point=6,          # the chiller is set to another temperature than the data sheet says
     door_open=6,                  # a door, a lid, a guard is open for a while
     thermometer_elsewhere=6,      # it sits nearer to the neighbour, or in a stream of air
     friction_another_law=6,       # friction goes with speed otherwise, or the grease thins as it warms
     stands_on_floor=5,            # the machine's feet, or a tank's, conduct into a slow floor
     standby_heat=5,               # drives and pumps that warm while nothing moves, until the control switches them off
     recorded_not_used=5,          # the sun, a heater column, an air supply, an extraction: somebody recorded it and the model does not use it
-    guard_left_out=5,             # several bodies stand in a guard's air and not in the hall's
+    guard_left_out=5,             # several bodies are in a guard's air and not in the hall's
     warm_up_unrecorded=5,         # the machine had been run before somebody began to write
     cuts_in_and_out=5,            # a heater, a fan or a chiller that goes by a thermostat
     part_clamped=4,               # a part, a pallet, a fixture as warm as the hall is put on the table
     cooling_off=4,                # the circuit, or a fan, is off for a while, or passes less
     second_shift=4,               # in one shift something else runs: a neighbour, a compressor, another station
-    speed_overridden=4,           # the knob stood elsewhere
-    stop_unrecorded=3,            # it stood, and the commanded speed does not say so
+    speed_overridden=4,           # the override knob had another position
+    stop_unrecorded=3,            # the spindle stopped, but the commanded speed does not show it
     splash=3)                     # coolant, oil mist or chips wash a body while the machine works
 WAYS_A = list(WEIGHTS)
 MOST = 4      # cases of one way
 UNSAYABLE = {"friction_another_law", "standby_heat", "warm_up_unrecorded", "cuts_in_and_out", "cooling_off", "splash"}
 KINDS_C = eighth_faults.KINDS_C
 NEW_C = []
-NOT_STEADY = {"cuts_in_and_out", "cooling_off", "splash"}      # what stood for long before would be another state
+NOT_STEADY = {"cuts_in_and_out", "cooling_off", "splash"}      # a machine at rest for long before would have another state
 MOST_NATS = 400
 
 

@@ -1,4 +1,4 @@
-"""What is hidden in the set `third`: the kinds of faults.py and further ones; how they are drawn, where they act, and how truth.json tells them (README.md)."""
+"""What is hidden in the set `third`: the kinds of faults.py and further ones; how they are drawn, where they act, and how truth.json describes them (README.md)."""
 import numpy as np
 
 import faults

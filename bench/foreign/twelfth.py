@@ -2,7 +2,7 @@
 """Writes the cases of the set `twelfth` (README.md), by the driver of `eighth`; how sizes are set is that of third.py.
 
     twelfth.py FOLDER [--only 7 12] [--seed N]
-    twelfth.py --check [--program driftwright]      the nominal machines and what is hidden, as the grammar, another machine or told columns say it, against `driftwright simulate`
+    twelfth.py --check [--program driftwright]      the nominal machines and what is hidden, as the grammar, another machine or recorded columns say it, against `driftwright simulate`
 """
 import eighth      # before numpy: one core
 
@@ -87,7 +87,7 @@ def held_to(program):
         return [float(np.max(np.abs(x - y))) for x, y in zip(simulate(machine, machine.nominal(), record, [fault]), other)]
 
     def tell(record, fault):
-        """What no file has, in columns that the record tells."""
+        """Moves hidden columns into the record."""
         new = [f"told_{k}" for k in range(len(fault.data["columns"]))]
         for old, name in zip(fault.data["columns"], new):
             record.columns[name] = record.columns.pop(old)
@@ -100,7 +100,7 @@ def held_to(program):
         for start in ("steady",) if way in faults.STEADY else ("hall", "steady"):
             record, fault = drawn(way, start)
             note(f"{way}, written down, start {machine.start}", eighth.met_as(program, machine, record, 60, fault))
-    for way in ("workpieces", "enclosure_air"):      # another machine, and columns that are told
+    for way in ("workpieces", "enclosure_air"):      # another machine, and recorded columns
         record, fault = drawn(way)
         tell(record, fault)
         other, numbers = eighth.altered(fault, machine, machine.nominal())
@@ -108,11 +108,11 @@ def held_to(program):
         still = Fault(way, {k: x for k, x in fault.data.items() if k != "change"}).with_size(fault.size[0])
         note(f"{way}, another machine and columns that are told", met(record, still, drives(fault, record), other))
         note(f"{way}, the same by one machine", own(record, fault, simulate(other, other.nominal(), record, [still])))
-    for way in ("air_over_height", "cutting_fluid", "surface_turns", "chiller_follows_room", "motor_enabled", "nut_friction", "sun_on_part"):      # each follows columns; here the record tells them
+    for way in ("air_over_height", "cutting_fluid", "surface_turns", "chiller_follows_room", "motor_enabled", "nut_friction", "sun_on_part"):      # each follows columns; here the record contains them
         record, fault = drawn(way)
         tell(record, fault)
         note(f"{way} by columns that are told", met(record, fault, drives(fault, record)))
-    for way in ("joint_tightens", "preload_rises", "oil_thins"):      # what hangs on temperatures, told row by row as the true temperatures make it
+    for way in ("joint_tightens", "preload_rises", "oil_thins"):      # laws that depend on temperature, recorded row by row as the true temperatures give them
         record, fault = drawn(way)
         T = simulate(machine, machine.nominal(), record, [fault])[0][0]
         index, row, speed = {b: i for i, b in enumerate(machine.bodies)}, np.arange(len(record.time_s)), record.speed[None, :]
@@ -136,14 +136,14 @@ def held_to(program):
     record.columns[fault.data["columns"][0]] = ("1", np.zeros(300))
     n = fault.data["sensor"]
     note("thermometer_loose in air that rests", met(record, fault, [f"{{type: sensor_place, sensor: {n}, share: {fault.size[0]:.9g}, body: ambient}}", f"{{type: sensor_lag, sensor: {n}, lag: {fault.size[0] * fault.data['lag']:.9g} min}}"]))
-    for way in ("door_opened", "override_turned"):      # the record that is true, told
+    for way in ("door_opened", "override_turned"):      # with the true record
         record, fault = drawn(way)
         true = fault.data["record"](record, float(fault.size[0]))
         note(f"{way}, told by the record", own(record, fault, simulate(machine, machine.nominal(), true)))
         note(f"{way}, told by the record, by the program", met(true, None, []))
     for start in ("hall", "steady"):
         record, fault = drawn("warm_before", start)
-        fault = fault.with_size(np.round(fault.size))      # whole minutes, so that the file tells the times exactly
+        fault = fault.with_size(np.round(fault.size))      # whole minutes, so that the file contains the exact times
         longer, k = fault.data["before"](record, float(fault.size[0]))
         note(f"warm_before, the longer record, start {start}", own(record, fault, [x[:, k:] for x in simulate(machine, machine.nominal(), longer)]))
         note(f"warm_before, the longer record, by the program, start {start}", check.met(program, machine, longer, 1)[0])      # rows each second, among them those of the file

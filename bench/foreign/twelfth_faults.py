@@ -1,6 +1,6 @@
 """What is hidden in the set `twelfth`: what the literature says thermal models of machine tools, and experiments with them, usually lack (README.md, which names the sources).
 
-Each way is one fault with one size, with its law in `change`, `parts`, `record`, `reads` (eleventh_network.py) or `before` (twelfth_network.py), and is told as in eleventh_faults.py. The laws are those of things and not of the catalogue.
+Each way is one fault with one size, with its law in `change`, `parts`, `record`, `reads` (eleventh_network.py) or `before` (twelfth_network.py), and is described as in eleventh_faults.py. The laws are those of things and not of the catalogue.
 """
 import numpy as np
 
@@ -16,8 +16,8 @@ from sixth_faults import HIDDEN
 from twelfth_families import BED, HIGH, INSIDE, WORK
 
 WEIGHTS = dict(      # cases of class A of each way, the more the more ordinary it is
-    body=dict(hydraulic_unit=2,            # a hydraulic unit with its own loss stands on the machine and feeds another part
-              foundation=1,                # the bed stands on concrete, and that on the ground
+    body=dict(hydraulic_unit=2,            # a hydraulic unit with its own loss is mounted on the machine and feeds another part
+              foundation=1,                # the bed is on concrete, and the concrete on the ground
               workpieces=2),               # a workpiece is clamped, as warm as the store, and changed in each pause
     exchange=dict(enclosure_air=1,         # air in an enclosure, warmed while the machine runs, let out as its door opens
                   air_over_height=1,       # the air is the warmer the higher, and the more so at some hours of the day
@@ -39,7 +39,7 @@ WEIGHTS = dict(      # cases of class A of each way, the more the more ordinary 
 GROUPS = {g: list(ways) for g, ways in WEIGHTS.items()}
 GROUP = {w: g for g, ways in GROUPS.items() for w in ways}
 WAYS_A = list(GROUP)
-NOT_STEADY = {"air_over_height", "chiller_follows_room"}      # what stood for long before would be another state
+NOT_STEADY = {"air_over_height", "chiller_follows_room"}      # a machine at rest for long before would have another state
 STEADY = {"foundation"}                # else concrete would begin as warm as the air
 ALONE = {"warm_before"}                # in no case of class D: another fault's times would be moved
 N_RECORDS = {w: [1, 2, 2, 3, 3, 4] for w in WAYS_A + [""]}

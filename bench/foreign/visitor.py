@@ -496,7 +496,7 @@ def window(rng, S):
 
 
 def drives(S):
-    """Names and arrays of what the records tell of the drive, as share of its top."""
+    """Names and arrays of the recorded drives, as shares of their largest values."""
     return [k for k in S.recs[0]["drive"] if any(np.ptp(r["drive"][k]) > 0 for r in S.recs)]
 
 
@@ -893,7 +893,7 @@ def _(rng, S):
 
     def fn(y, x, a):
         u = w[x.rec["index"]]
-        if tau:                                                # held from row to row behind a lag, at rest at t = 0
+        if tau:                                                # held from row to row, with a lag, at rest at t = 0
             z, k_ = np.zeros_like(u), math.exp(-x.rec["dt"] / tau)
             for k in range(len(u) - 1):
                 z[k + 1] = u[k] + (z[k] - u[k]) * k_

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the readings of a record CSV as bad as the model that is to be compared with it.
+"""Adds noise to the readings of a record CSV, as much as the model errs that is compared with it.
 
-    blur.py record.csv out.csv 0.5 5      white noise of 0.5 K on temperatures, 5 um on displacements; always the same
+    blur.py record.csv out.csv 0.5 5      white noise of 0.5 K on temperatures and 5 um on displacements; the same at each call
 
 A diagnosis weighs readings by their noise. Thermometers of 0.02 K against a network that is good to 0.5 K give evidence of 1e5 nats for
 whatever bends the model most; noise of the model's own size lets the causes be weighed as they deserve. Standard library only.

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Fits the network of scenarios/measured/fl_thermal_network.yaml to a part of the record, and judges it by the rest.
 
-    fit_fl_thermal.py first_28h.csv 0 20        fitted to hours 0 to 20, judged by all others
+    fit_fl_thermal.py first_28h.csv 0 20        fits hours 0 to 20 and judges by all others
 
-Least squares, written apart from the program: rows of one minute, the linear network integrated exactly over each (matrix exponential, one for the
-spindle at rest and one for it turning), rows compared as means of five minutes. Capacities are held: with heat and sensitivity free they set scales
-alone. Known beforehand are sizes to a factor of two and sensitivities to 8 um/K; 12 rows count as one, since what is left follows itself for an hour.
+It is a least-squares fit that shares no code with the program. Rows are one minute long, and the linear network is integrated exactly over each (one matrix
+exponential for the spindle at rest and one for it turning). Rows are compared as means of five minutes. Capacities are fixed: with free heats and
+sensitivities they only set scales. Priors are a factor of two for sizes and 8 um/K for sensitivities. Twelve rows count as one, because residuals are
+correlated over an hour.
 """
 import sys
 
@@ -16,7 +17,7 @@ from scipy.optimize import least_squares
 BODIES = ["air", "spindle", "head", "column", "bed", "drive"]
 CAPACITY = np.array([50e3, 50e3, 50e3, 50e3, 50e3, 20e3])  # J/K
 EXPONENT = np.array([2.0, 2.0, 1.5, 2.0, 2.0, 2.0])        # of heat that grows with speed
-TO_HALL = {"air": 104.0, "spindle": 23.8, "head": 27.8, "column": 7.6, "bed": 1.85, "drive": 5.6}  # W/K; guesses, as all that follow
+TO_HALL = {"air": 104.0, "spindle": 23.8, "head": 27.8, "column": 7.6, "bed": 1.85, "drive": 5.6}  # W/K; guesses, like all numbers below
 GROWING = {"spindle": 300.0, "head": 200.0, "column": 200.0, "bed": 7.0}                           # W at 5000 rpm
 WHILE_TURNING = {"spindle": 100.0, "column": 40.0, "bed": 4.0, "drive": 100.0}                      # W at any speed but 0
 SEEN = {"ch1": ["air", "head", "bed", "column"], "ch2": ["air", "head", "bed", "column"], "ch3": ["air", "column", "head"],
@@ -44,7 +45,7 @@ def five_minutes(x):
 
 
 def temperatures(record, x):
-    """What each body is warmer than at the start, a row a minute. The machine starts settled at rest, so idle heat cancels."""
+    """Rise of each body over its start, one row per minute. The machine starts in balance at rest, so idle heat cancels."""
     value = dict(zip(LABELS, np.exp(x)))
     per_body = lambda what: np.array([value.get((what, b), 0.0) for b in BODIES])
     speed, hall_K = record["speed_rpm"], record["t16_degC"] - record["start_degC"]
@@ -69,7 +70,7 @@ def temperatures(record, x):
 
 
 def sensitivities(record, x, part):
-    """Of each displacement to the bodies that it sees, um/K, and its prediction; and what is left, in units of what is missed."""
+    """Sensitivities [um/K] of each displacement to the bodies that it follows, its prediction, and the residual in units of the usual error."""
     t = five_minutes(temperatures(record, x))
     found, predicted, left = {}, {}, []
     for channel, bodies in SEEN.items():
@@ -95,7 +96,7 @@ def main():
     value = dict(zip(LABELS, np.exp(x)))
     for (what, where), number in value.items():
         print(f"{what:8} {where:10} {number:9.4g} {'W/K' if what in ('hall', 'link', 'oil') else 'W'}")
-    # At rest the drive stands above the hall by what its idle heat gives, and the bed by what comes through the link.
+    # At rest the drive is warmer than the hall by its idle heat, and the bed by the heat that comes through the link.
     link, bed, drive = value[("link", "drive-bed")], value[("hall", "bed")], value[("hall", "drive")]
     bed_K = above_hall_K * link / (link + bed)
     print(f"idle heat of the drive {drive * above_hall_K + bed * bed_K:.4g} W: {above_hall_K:.3g} K above the hall, the bed {bed_K:.3g} K")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a simulated record leaves of a measured one, RMS per channel that both have, on the rows of some hours.
+"""Prints the RMS difference between a simulated and a measured record, for each channel in both, on the rows of some hours.
 
     rms_left.py results/run/record.csv first_28h.csv 20 28
 """

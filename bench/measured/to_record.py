@@ -1,26 +1,26 @@
 #!/usr/bin/env python3
-"""Measured records as others publish them -> record CSVs that `driftwright diagnose` reads (docs/reference/record.md, docs/theory/measured.md).
+"""Converts measured records, as others publish them, to record CSVs that `driftwright diagnose` reads (docs/reference/record.md, docs/theory/measured.md).
 
-    to_record.py spindle_22    run1.csv                   out.csv   speed 1000 rpm throughout: the source says none
-    to_record.py lathe         2016-12-30_TM1.csv         out.csv   nominal levels, stopped where the spindle cools
-    to_record.py lathe_no_stop 2016-12-30_TM1.csv         out.csv   the same as if nobody had noted the stop
+    to_record.py spindle_22    run1.csv                   out.csv   speed 1000 rpm throughout; the source gives none
+    to_record.py lathe         2016-12-30_TM1.csv         out.csv   nominal speed levels, at rest where the spindle cools
+    to_record.py lathe_no_stop 2016-12-30_TM1.csv         out.csv   the same without the stop
     to_record.py table_d       -                          out.csv   eight published numbers, at standstill
-    to_record.py incubator     2021-01-22_lid_opening.csv out.csv   at standstill, heater_W beside
-    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   at standstill, bed_degC beside
+    to_record.py incubator     2021-01-22_lid_opening.csv out.csv   at standstill, with heater_W
+    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   at standstill, with bed_degC
     to_record.py printer_good  frame_temp_v_pos_....csv   out.csv   the same without homings off by more than 1 mm
     to_record.py heated_plate  run.csv                    out.csv   100 rpm per volt of lamp drive
-    to_record.py test_house    prbs.csv                   out.csv   at standstill, heater_W beside, sun left out
+    to_record.py test_house    prbs.csv                   out.csv   at standstill, with heater_W, without the sun
     to_record.py test_house_sun prbs.csv                  out.csv   the same, solar_W_m2 too
 
-Columns that drive a machine keep their names: effects `recorded_drive` of the scenario take them. An empty cell stays empty.
-Standard library only.
+Columns that drive a machine keep their names, because effects `recorded_drive` of the scenario use them. An empty cell stays empty.
+The script needs only the standard library.
 """
 
 import csv
 import math
 import sys
 
-# Nominal: the source knows low (BM), medium (TM) and high (CM) only.
+# These speeds are nominal: the source gives only low (BM), medium (TM) and high (CM).
 LATHE_RPM = {"BM": 1000, "TM": 2000, "CM": 3000}
 
 # Li Lianyu et al.: table of a gantry mill, uncompensated; hours from 10-23 08:00, hall in degC, delta X in mm.
@@ -38,7 +38,7 @@ def number(cell):
 
 
 def written(value, digits):
-    """As a cell: empty where it is missing."""
+    """The text of a cell; empty if the value is missing."""
     return "" if math.isnan(value) else f"{value:.{digits}f}"
 
 
@@ -54,8 +54,8 @@ LONGEST_STOP_S = 4 * 3600.0
 
 
 def is_turning(rows):
-    """Per row, false in the one stop of the day: from the highest to the lowest reading of the rear bearing's deepest fall. A fall that is small, that
-    takes longer than a break, or that does not end in a rise of half its size (a night, a day that cools with its hall) is no stop."""
+    """One value per row: false during the one stop of the day, from the highest to the lowest reading of the rear bearing's largest fall. A fall that is small,
+    that takes longer than a break, or that does not end in a rise of half its size (a night, a day that cools with its hall) is no stop."""
     known = [i for i, r in enumerate(rows) if r["spindle_rear_degC"].strip()]
     rear = {i: float(rows[i]["spindle_rear_degC"]) for i in known}
     time_s = [float(r["time_s"]) for r in rows]
@@ -81,8 +81,8 @@ def lathe(path, with_stop):
     rows = read(path)
     level = next(rpm for cycle, rpm in LATHE_RPM.items() if cycle in path)
     turning = is_turning(rows) if with_stop else [True] * len(rows)
-    # All readings from their first one on, the hall about 20 degC: yesterday's warmth is in each body as its own start, and a
-    # scenario has one start for all.
+    # Readings count from the first one, and the hall has about 20 degC: each body starts with its own warmth of the day before, but a
+    # scenario has one start for all bodies.
     names = [n for n in rows[0] if n.endswith("_degC") and n != "ambient_degC"]
     start_s = float(rows[0]["time_s"])
     first = {n: first_of(rows, n) for n in [*names, "ambient_degC", "diameter_um"]}
@@ -100,7 +100,7 @@ def table_d(_):
 
 
 def with_columns(rename, fixed=None, scale=None):
-    """Columns renamed (old: new), constant ones put in (name: value), some scaled (old: factor); others are dropped."""
+    """Renames columns (old: new), adds constant ones (name: value), scales some (old: factor) and drops all others."""
     fixed, scale = fixed or {}, scale or {}
 
     def convert(path):

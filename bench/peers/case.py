@@ -1,4 +1,4 @@
-"""The machine, its load and its readings: what every program of this comparison is given.
+"""The machine, its load and its readings, which every program of this comparison gets.
 
 Column .4 x .5 x 1.5 m with a headstock .3 x .6 x .4 m, two bearing zones (cylinders R = .08 m) that are heated, and a nose
 (R = .05 m) whose end is the tool point. Grey iron. The bottom keeps the ambient temperature and is clamped; all other faces
@@ -23,7 +23,7 @@ SENSORS_m = [(0, -.32, 1.06), (0, -.32, 1.34), (0, -.4, .85), (0, -.6, 1.06), (0
 
 
 def info(folder):
-    """What make_mesh.py wrote about its mesh."""
+    """The description that make_mesh.py wrote of its mesh."""
     with open(folder + "/info.json") as file:
         return json.load(file)
 

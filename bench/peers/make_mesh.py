@@ -2,7 +2,7 @@
 """make_mesh.py NODES FOLDER [ORDER]: one mesh of tetrahedra for all programs.
 
 FOLDER/mesh.msh for Driftwright, mesh.mesh (Medit; corners only, the program adds its own mid-side nodes) for FreeFEM,
-mesh.inc for CalculiX, info.json with what the runs need to know. Sensors and tool point lie on nodes.
+mesh.inc for CalculiX, info.json with the data that the runs need. Sensors and tool point lie on nodes.
 """
 import json
 import os
@@ -83,7 +83,7 @@ def write_calculix(path, x, cells, region, exterior, bottom_nodes, sensors, tip)
     assert outside.sum() == len(exterior)
     with open(path, "w") as file:
         file.write("*NODE, NSET=NALL\n")
-        # CalculiX cuts numbers after 20 characters, and stops at what is left.
+        # CalculiX cuts numbers after 20 characters and then stops at the rest.
         np.savetxt(file, np.column_stack([np.arange(1, len(x) + 1), x]), fmt="%d, %.12g, %.12g, %.12g")
         quadratic = cells.shape[1] == 10
         file.write("*ELEMENT, TYPE=%s, ELSET=EALL\n" % ("C3D10" if quadratic else "C3D4"))
@@ -131,7 +131,7 @@ def main():
     write_medit(folder + "/mesh.mesh", x[corners], renumbered[cells[:, :4]], region, renumbered[facets[:, :3]], surface)
     write_calculix(folder + "/mesh.inc", x, cells, region, facets[surface == case.SURFACES["exterior"]],
                    np.unique(facets[surface == case.SURFACES["bottom"]]), sensors, tip)
-    # A point inside the region it is to be read in: a sensor on a face of two regions belongs to the first that has it.
+    # Each point lies inside its region: a sensor on a face of two regions would belong to the first one.
     region_name = {v: k for k, v in case.REGIONS.items()}
     region_of = [region_name[int(region[np.where((cells == n).any(1))[0][0]])] for n in sensors + [tip]]
     with open(folder + "/info.json", "w") as file:

@@ -2,7 +2,7 @@
 """peer_calculix.py FOLDER [--mode heat|coupled] [--solver "ITERATIVE SCALING"|SPOOLES] [--step SECONDS] [--cap S] [--name NAME]
 
 CalculiX, backward Euler in fixed steps: temperatures alone (*HEAT TRANSFER) or with displacements (*UNCOUPLED
-TEMPERATURE-DISPLACEMENT). Cut short after the cap; the note then says to what the increments done until then project.
+TEMPERATURE-DISPLACEMENT). A run is ended after --cap seconds; the note then gives the time projected from its increments.
 """
 import argparse
 import os

@@ -24,7 +24,7 @@ def rows_of(folder, reference):
         dT_K = du_um = None
         if fine and os.path.exists(table) and run["name"] != reference:
             dT_K, du_um, n = case.differences(fine, case.read_rows(table))
-            if n == 0:  # a run that came to no row has no error to show
+            if n == 0:  # a run without rows has no error
                 dT_K = None
         show = lambda x, digits: "" if x is None else "%.*f" % (digits, x)
         yield [run["name"], run["exit_code"], show(run["wall_s"], 2), show(run["user_s"], 2), show(run["peak_MB"], 0), run["rows"],

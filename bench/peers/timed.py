@@ -1,4 +1,4 @@
-"""Runs a program as a whole process and says what it took."""
+"""Runs a program as a whole process and reports its time and memory."""
 import json
 import os
 import resource
@@ -11,8 +11,8 @@ def run(command, log, cap_s, environment=None, folder=None):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.time()
     with open(log, "w") as file:
-        # GNU time tells the peak of this process alone, getrusage that of the largest child ever.
-        # In the foreground timeout(1) waits for what it kills, so that its CPU time counts.
+        # GNU time gives the peak memory of this process alone, getrusage that of the largest child so far.
+        # With --foreground, timeout(1) waits for the process that it kills, so the CPU time of that process counts.
         process = subprocess.run(["/usr/bin/time", "-f", "%M", "-o", log + ".peak", "timeout", "--foreground", "-s", "KILL", str(cap_s)] + command,
                                  stdout=file, stderr=file, env={**os.environ, **(environment or {})}, cwd=folder)
     wall_s = time.time() - start

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Cases of the paired trial of `plan-test`: the same hidden machine and fault behind the usual test and behind the planned one (README.md).
+"""Cases of the paired trial of `plan-test`: the same hidden machine and fault after the usual test and after the planned one (README.md).
 
     cases.py FOLDER --program driftwright [--cases 75] [--programmes 2000] [--only 3 4]
 
-Machine, fault, its size and all scatter follow from the seed and the case's number alone, before any programme is planned; truth and noise are those of ../foreign, which
-share no line with Driftwright. Per case: scenario.yaml (what `plan-test` is given: the machine as its user knows it and a job), truth.json, usual/ and planned/
+Machine, fault, its size and all scatter depend only on the seed and the case's number, and are drawn before any programme is planned. Truth and noise come from ../foreign, which
+shares no code with Driftwright. Per case: scenario.yaml (what `plan-test` is given: the machine as its user knows it and a job), truth.json, usual/ and planned/
 (a scenario and measured_1.csv each, for `diagnose`).
 """
 import argparse
@@ -28,12 +28,12 @@ from writing import record_csv, scenario
 
 SEED = 20261125
 HOURS, DT = 8.0, 60
-# Machines whose test takes a shift and whose heats do not look at temperature: `diagnose` takes seconds of them.
+# Machines whose test takes a shift and whose heats do not depend on temperature: `diagnose` takes seconds.
 FAMILIES = [families.grinding_spindle, families.printer, families.incubator, families.gantry, families.heater_plate, families.rotary_table, families.hydraulic_unit]
-# What lasts: no programme knows ahead when something happens.
+# Lasting faults only: no programme knows in advance when something happens.
 KINDS = ["hidden_body", "link", "heat_source", "displacement_path", "sensor_place", "convection", "contact", "ambient", "sensor_bias", "sensor_lag", "sensor_drift",
          "clock_offset", "speed_override", "friction_law", "expansion"]
-# What the fault is worth, log-uniform: behind the usual test in even cases, in a record of the job as long as the tests, which favours neither, in odd ones.
+# Evidence of the fault, log-uniform. In even cases it is that of the usual test; in odd cases that of a record of the job of the same length, which favours neither test.
 NATS = (5.0, 30.0)
 
 
@@ -51,7 +51,7 @@ def record_of(name, sections, hall, like):
         for k in values:
             values[k][inside] = drive.get(k, 0.0)
         edge += 60 * minutes
-    for k in values:    # the last row holds what was before it
+    for k in values:    # the last row has the values of the row before it
         values[k][-1] = values[k][-2]
     return Record(name, t, values["speed"], {k[5:]: x for k, x in values.items() if k.startswith("feed ")}, values["power"], hall, {})
 
@@ -96,7 +96,7 @@ def case(index, kind):
 
 
 def measured(c, record):
-    """The CSV of a test; noise is drawn alike for both."""
+    """The CSV of a test; both tests get the same draws of noise."""
     t, u = (a[0] for a in simulate(c["machine"], c["numbers"], record, [c["fault"]], np.array([c["offset"]])))
     rng = np.random.default_rng(c["noise_seed"])
     t = noisy(rng, t, c["noise"]["temperature"], c["noise"]["coloured"], DT)
@@ -105,7 +105,7 @@ def measured(c, record):
 
 
 def planned_sections(path):
-    """Of plan_test's JSON: [minutes, {drive: value}]."""
+    """Sections from the JSON of `plan-test`: [minutes, {drive: value}]."""
     out = []
     for row in json.loads(path.read_text())["programme"]:
         drive = {"speed": row["speed_rpm"], "power": row["cutting_power_W"]}
@@ -138,7 +138,7 @@ def write(folder, c, index, kind, program, programmes):
 
 
 def write_stepped(folder, c):
-    """The stepped test of as many hours, as ISO 230-3 varies speeds: a quarter, half, three quarters, all, rest, of everything at once."""
+    """Writes the stepped test of the same length, as ISO 230-3 varies speeds: all drives at a quarter, half, three quarters and all of their range, then rest."""
     top = {k: float(x.max()) for k, x in drives(c["job"]).items()}
     sections = [(12 * HOURS, {k: share * x for k, x in top.items()}) for share in (0.25, 0.5, 0.75, 1.0, 0.0)]
     (folder / "stepped").mkdir(exist_ok=True)
@@ -147,7 +147,7 @@ def write_stepped(folder, c):
 
 
 def bare_csv(record):
-    """What drives the machine and the hall, without readings."""
+    """The CSV of the drives and the hall, without readings."""
     head, columns = ["time_s", "speed_rpm"], [record.time_s, record.speed]
     for a, f in sorted(record.feeds.items()):
         head.append(f"feed_{a}_mm_min")

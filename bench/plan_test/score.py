@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Causes named behind the planned test against behind the usual one, case by case.
+"""Compares the causes named after the planned test with those after the usual one, case by case.
 
     score.py FOLDER [--list]
 
-Named rightly: a cause of standing `named` whose kind is that of the truth, or a name that says the same of it (../foreign). The difference of two paired shares has the
-interval of Wald with the variance of McNemar's table, and his exact test.
+A cause counts as right if its standing is `named` and its kind is that of the truth, or another name for the same thing (../foreign). The difference of two paired shares has the
+interval of Wald with the variance of McNemar's table, and McNemar's exact test.
 """
 import argparse
 import json
@@ -65,7 +65,7 @@ def main():
     compared("All", cases)
     for sized_by in ("usual", "job"):
         compared(f"Sized by the {sized_by}", [c for c in cases if c["truth"]["sized_by"] == sized_by])
-    compared("All, against the stepped test", cases, "stepped")    # this and what follows was added once the trial had been run
+    compared("All, against the stepped test", cases, "stepped")    # this and the lines below were added after the trial had been run
     for several in (False, True):
         compared("Machines of several drives" if several else "Machines of one drive", [c for c in cases if (c["truth"]["family"] not in ONE_DRIVE) == several])
     for kind in sorted({c["truth"]["kind"] for c in cases}):

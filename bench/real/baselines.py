@@ -1,7 +1,7 @@
-"""Plain predictors that strategies of the program are judged beside, written apart from it. Standard library only.
+"""Simple predictors with which the strategies of the program are compared. They share no code with it and need only the standard library.
 
-Each takes a Case (records.py) and returns, for each judged run, one prediction a row, in the target's unit; or None where the record has not got what
-it needs. What a fit leaves open is decided by leaving out training runs, or eighths of the training rows of a single record.
+Each takes a Case (records.py) and returns, for each judged run, one prediction per row, in the target's unit; or None if the record lacks a
+column that it needs. Settings of a fit are chosen by leaving out training runs, or eighths of the training rows of a single record.
 """
 
 import bisect
@@ -14,7 +14,7 @@ STATE_LAGS_MIN = [0, 5, 10, 20, 40, 80, 160]
 
 
 def held(values):
-    """Missing ones are the last that was there."""
+    """Replaces missing values by the last one before them."""
     result, last = [], next((v for v in values if v is not None), 0.0)
     for v in values:
         last = last if v is None else v
@@ -23,7 +23,7 @@ def held(values):
 
 
 def lagged(time_s, x, lag_s, is_drive):
-    """First-order lag: of a drive from 0, held from row to row; of a temperature from its first reading, by the mean of both ends."""
+    """First-order lag. A drive starts from 0 and is held from row to row; a temperature starts from its first reading and is taken as the mean of both ends."""
     if lag_s == 0.0:
         return list(x)
     state, result = 0.0 if is_drive else x[0], []
@@ -36,7 +36,7 @@ def lagged(time_s, x, lag_s, is_drive):
 
 
 class Runs:
-    """The rows of a case: columns made of a table by `columns(case, table)`, and its target."""
+    """The rows of a case: columns computed from a table by `columns(case, table)`, and the target."""
 
     def __init__(self, case, columns):
         self.case = case
@@ -68,7 +68,7 @@ def target(case, table):
 
 
 def sums(rows):
-    """[1 x y]'[1 x y] of (x, y) rows."""
+    """[1 x y]'[1 x y] summed over rows (x, y)."""
     m = len(rows[0][0]) + 2
     s = [[0.0] * m for _ in range(m)]
     for x, y in rows:
@@ -86,7 +86,7 @@ def plus(a, b, factor):
 
 
 def solve(s, penalty):
-    """Intercept and slopes that minimise |y - b0 - x b|^2 / n + penalty |b deviation(x)|^2; 0 for columns that stand still."""
+    """Intercept and slopes that minimise |y - b0 - x b|^2 / n + penalty |b deviation(x)|^2; 0 for columns that never change."""
     n, m = s[0][0], len(s) - 2
     mean = [s[i][0] / n for i in range(m + 2)]
 
@@ -123,7 +123,7 @@ def apply(fit, x):
 
 
 def left_out(folds, penalty):
-    """RMS over all rows of folds that the rest predicts."""
+    """RMS error over all rows of folds, each predicted from the others."""
     parts = [sums(f) for f in folds]
     total = parts[0]
     for p in parts[1:]:
@@ -157,7 +157,7 @@ def thermometers(case, table):
 
 
 def memories(case, table):
-    """Thermometers, drive, its square and whether it is on, at once and behind lags, and lags of the ambient."""
+    """Thermometers, drive, its square and whether it is on, without lag and with lags, and lags of the ambient."""
     columns = [readings(case, table, n) for n in case.thermometers]
     if case.drive:
         n = held(table.columns[case.drive])
@@ -195,7 +195,7 @@ def by_mean(case):
 
 
 def by_last(case):
-    """The last training run at the same time since its start, its last value beyond its end; of a single record the last training value."""
+    """The value of the last training run at the same time since its start (its last value beyond its end); for a single record the last training value."""
     if len(case.fit) == 1:
         return constant(case, training_values(case)[-1])
     last = case.fit[-1]
@@ -241,7 +241,7 @@ BASELINES = {
 
 
 def rms(case, predicted):
-    """Of target minus prediction over all judged rows."""
+    """Root mean square of target minus prediction over all judged rows."""
     squares = n = 0
     for table, p in zip(case.judge, predicted):
         for t, y, v in zip(table.time_s, target(case, table), p):

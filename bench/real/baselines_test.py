@@ -13,7 +13,7 @@ def case(tables, **more):
 
 
 def table(seed, n=300):
-    """z = 2 + 3 a - b + 5 behind 20 min of turning, a row a minute."""
+    """z = 2 + 3 a - b + 5 times the spindle's turning with a lag of 20 min; one row per minute."""
     rng = random.Random(seed)
     columns = {n: [] for n in ("a_degC", "b_degC", "speed_rpm", "z_um")}
     speed = on = 0.0
@@ -49,17 +49,17 @@ class Baselines(unittest.TestCase):
     def test_run_and_stop_and_memories_find_what_thermometers_miss(self):
         made = case([table(1), table(2), table(3)])
         left = {name: baselines.rms(made, predict(made)) for name, predict in baselines.BASELINES.items()}
-        self.assertLess(left["and run/stop"], 1e-6)   # the very truth
+        self.assertLess(left["and run/stop"], 1e-6)   # exactly the truth
         self.assertLess(left["and memories"], 0.01)
         self.assertGreater(left["thermometers"], 0.5)
-        self.assertGreater(left["mean"], 5.0)         # of a and b alone: 3.2 * 10 / sqrt(12)
+        self.assertGreater(left["mean"], 5.0)         # with a and b alone: 3.2 * 10 / sqrt(12)
 
     def test_a_single_record_is_judged_on_other_rows_than_it_is_fitted_on(self):
         whole = table(4, 600)
         kept = [t >= 18000.0 for t in whole.time_s]
         for i, k in enumerate(kept):
             if k:
-                whole.columns["z_um"][i] = 1000.0     # of which the fit must know nothing
+                whole.columns["z_um"][i] = 1000.0     # rows that the fit must not know
         made = records.Case("made up", "", "z_um", [whole], [whole], ["a_degC"], fit_rows=lambda t: t < 18000.0, judge_rows=lambda t: t >= 18000.0)
         self.assertGreater(baselines.rms(made, baselines.by_mean(made)), 900.0)
         self.assertGreater(baselines.rms(made, baselines.by_ridge(made)), 900.0)

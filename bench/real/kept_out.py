@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What a diagnosis does to each channel of a measured record that it was not given: kept_out.py PROGRAM DATA OUT [RECORD...]
+"""Measures how a diagnosis changes the error of each channel on parts of measured records that it was not given: kept_out.py PROGRAM DATA OUT [RECORD...]
 
-PROGRAM is driftwright, DATA the folder of the records, OUT a folder for what is made on the way (that of score.py serves as well: a diagnosis that is in it is kept);
-RECORD keeps the cases whose record begins so. Prints, a case, the verdict and how long it took, and of every channel that scenario and record both have the RMS error of the scenario as it is written and
-of `extended.yaml` on the part kept out; then both over the channels' noise (as the diagnosis says it), pooled. Worse than 1.05 times as written is said. Standard library only.
+PROGRAM is driftwright, DATA the folder of the records, OUT a folder for intermediate files (it may be that of score.py: a diagnosis in it is used again);
+RECORD limits the run to cases whose record has a name that begins so. For each case the script prints the verdict and its time, and for each channel in both scenario and record the RMS error of the scenario as written and
+of `extended.yaml` on the part kept out; then both divided by the channels' noise (as the diagnosis estimates it), pooled. It reports channels that are worse than 1.05 times as written. It needs only the standard library.
 """
 
 import json

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What models make of rows that were kept out of everything, run free: models.py [--no-diagnosis] PROGRAM DATA OUT [RECORD...]
+"""Measures the errors of models on rows that were kept out of every fit; no reading is fed back: models.py [--no-diagnosis] PROGRAM DATA OUT [RECORD...]
 
-PROGRAM is driftwright, DATA the folder of the records, OUT a folder for what is made on the way; what is there is kept. RECORD keeps the cases whose record begins so.
-A row a channel of each split of a record that has a scenario (scenarios/measured): the scenario as written, calibrated, diagnosed (`extended.yaml`), each of the three with what it
-misses learned beside it (`identify --prior`), and the network from the records alone (`identify`); RMS on the rows that were kept out. Then each over as written, geometric mean, and in how many
-rows it is worse by more than 5 %. Standard library only.
+PROGRAM is driftwright, DATA the folder of the records, OUT a folder for intermediate files; files in it are used again. RECORD limits the run to cases whose record has a name that begins so.
+The table has one row for each channel of each split of a record that has a scenario (scenarios/measured): the scenario as written, calibrated, diagnosed (`extended.yaml`), each of the three with what it
+misses learned beside it (`identify --prior`), and the network from the records alone (`identify`); RMS on the rows that were kept out. Then follow the geometric mean of each divided by that of the scenario as written, and in how many
+rows it is worse by more than 5 %. The script needs only the standard library.
 """
 
 import json
@@ -22,14 +22,14 @@ RUN_AND_STOP = "runs: while_spindle_turns}\n"
 
 
 def fl_thermal(data, fit_h, judge_h, lacks_run_and_stop):
-    """The network of fl_thermal, made by hand; its structure and exponents knew all 28 h. Without its heats of run and stop it is a rough scenario."""
+    """The network of fl_thermal, made by hand; its structure and exponents were chosen with all 28 h. Without its heats of run and stop it is a rough scenario."""
     path = os.path.join(data, "fl_thermal", "first_28h.csv")
     return records.parted("fl_thermal" + (", no run/stop" if lacks_run_and_stop else ""), path, f"fit {fit_h[0]}-{fit_h[1]} h, judge {judge_h[0]}-{judge_h[1]} h",
                           records.between(*fit_h), records.between(*judge_h), "ch3_um", [], ambient="t16_degC", scenario="fl_thermal_network")
 
 
 def scenario_of(case, folder):
-    """The scenario as written: a file of its own where heats of run and stop are left out."""
+    """The scenario as written; a separate file if heats of run and stop are left out."""
     path = os.path.join(score.ROOT, "scenarios", "measured", case.scenario + ".yaml")
     if "no run/stop" not in case.record:
         return path
@@ -40,7 +40,7 @@ def scenario_of(case, folder):
 
 
 def fitted(case, folder):
-    """The records that are fitted to, as the scenario reads them, cut to their rows."""
+    """The records of the fit, as the scenario reads them, cut to their rows."""
     paths = []
     for source in case.fit_files:
         path = score.converted(case, source, os.path.join(folder, "fit_" + os.path.basename(source)))
@@ -53,7 +53,7 @@ def fitted(case, folder):
 
 
 def made(program, verb, options, fit, flag, result, folder):
-    """Path of what a verb writes, and how long it took; None where it failed."""
+    """Path of the file that a verb writes, and its time; None if it failed."""
     out = os.path.join(folder, verb + "_" + os.path.splitext(result)[0] + ("_of_" + os.path.basename(os.path.dirname(options[-1])) if "--prior" in options else ""))
     path, log = os.path.join(out, result), out + ".log"
     if os.path.exists(path):
@@ -70,7 +70,7 @@ def made(program, verb, options, fit, flag, result, folder):
 
 
 def judged(case, program, scenario, folder, name):
-    """{channel: RMS} on the rows that were kept out."""
+    """{channel: RMS} on the kept-out rows."""
     kept = os.path.join(folder, f"judged_{name}.json")
     if os.path.exists(kept):
         return json.load(open(kept, encoding="utf-8"))

@@ -30,7 +30,8 @@ int axis_offset_step(const axis_offset_settings* settings, axis_offset_state* st
   state->is_wrong =
       !is_between(settings->most_rate_um_s, 0.0, LARGEST) || !(settings->sign == 1.0 || settings->sign == -1.0) ||
       !is_between(settings->um_per_count, 1.0 / LARGEST, LARGEST) ||
-      !is_between(settings->unit_um, 1.0 / LARGEST, LARGEST) || !is_between(settings->most_age_s, 1.0 / LARGEST, LARGEST);
+      !is_between(settings->unit_um, 1.0 / LARGEST, LARGEST) || !is_between(settings->most_age_s, 1.0 / LARGEST, LARGEST) ||
+      !is_between(settings->most_um, 0.0, LARGEST);
   if (!is_machine_on) state->offset_um = 0.0;
   if (!state->is_wrong) {
     state->most_rate_um_s = settings->most_rate_um_s;
@@ -44,6 +45,8 @@ int axis_offset_step(const axis_offset_settings* settings, axis_offset_state* st
   is_wanted = is_machine_on && is_enabled && !state->is_late && !state->is_wrong && state->sign == settings->sign &&
               state->um_per_count == settings->um_per_count && state->unit_um == settings->unit_um;
   if (is_wanted && is_between(correction_um, -LARGEST, LARGEST)) target_um = state->sign * correction_um;
+  if (settings->most_um > 0.0 && target_um > settings->most_um) target_um = settings->most_um;
+  if (settings->most_um > 0.0 && target_um < -settings->most_um) target_um = -settings->most_um;
   if (is_between(dt_s, 0.0, LARGEST)) most_um = state->most_rate_um_s * dt_s;
   move_um = target_um - state->offset_um;
   if (move_um > most_um) move_um = most_um;

@@ -18,6 +18,7 @@ typedef struct {
   double um_per_count; /* > 0 */
   double unit_um;      /* um in one unit of the control, 1000 for mm, 25400 for inch; > 0 */
   double most_age_s;   /* the heartbeat must change within this time; > 0 */
+  double most_um;      /* the offset goes no further than this, by size; 0: no limit; >= 0 */
 } axis_offset_settings;
 
 typedef struct {

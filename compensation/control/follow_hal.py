@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Lines of `driftwright follow` on pins of LinuxCNC's HAL, for followed_axis.comp.
+"""Puts the lines of `driftwright follow` on pins of LinuxCNC's HAL, for followed_axis.comp.
 
     loadusr -Wn follow ./follow.sh      # which holds: thermometers | driftwright follow model.json | follow_hal.py --axes drift_y
 
-Pins: follow.AXIS.correction-um (float) and follow.AXIS.trust (float) for each axis ('_' in its name becomes '-'), follow.heartbeat (bit), which turns over
-with each line that tells of a row, follow.is-on (bit). When the lines end, the pins stay and the heartbeat stands still: the watchdog of
-followed_axis then leads the offset back to 0 at its slew limit. The component leaves on SIGTERM, as unloadusr sends it.
+Pins: follow.AXIS.correction-um (float) and follow.AXIS.trust (float) for each axis ('_' in its name becomes '-'), follow.heartbeat (bit), which toggles
+with each line that answers a row, follow.is-on (bit). When the lines end, the pins keep their values and the heartbeat stops: the watchdog of
+followed_axis then returns the offset to 0 at its slew limit. The component leaves on SIGTERM, as unloadusr sends it.
 """
 import argparse
 import json

@@ -29,6 +29,7 @@ pin out float axis_offset_um "of the axis, in force";
 pin out bit heartbeat_is_late "the watchdog has bitten";
 pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
 param rw float most_rate_um_s = 0.5 "slew limit of the offset, um/s; 0 or more";
+param rw float most_um = 0.0 "largest offset by size, um: `correction` of the scenario's `limits`; 0: no limit";
 param rw float sign = -1.0 "-1: the axis moves against the drift; +1: with it. A new one waits until the offset is 0";
 param rw float count_um = 0.1 "um per count, above 0. A new one waits until the offset is 0";
 param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
@@ -39,7 +40,7 @@ function _ fp;
 license "GPL";
 ;;
 FUNCTION(_) {
-  const axis_offset_settings settings = {most_rate_um_s, sign, count_um, machine_unit_um, most_age_s};
+  const axis_offset_settings settings = {most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um};
   const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
   axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
   eoffset_counts = axis.counts;

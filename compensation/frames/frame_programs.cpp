@@ -19,10 +19,15 @@ double search_m(const FrameProgram& p) {
   return 0.5 * p.free_diameter_m + 3e-3;
 }
 
+std::string limit_words(const FrameProgram& p) {
+  if (!std::isfinite(p.most_correction_um)) return "";
+  return fmt::format("; limit of the scenario: no correction above {:g} um", p.most_correction_um);
+}
+
 std::string last_numbers(const FrameProgram& p) {
-  return fmt::format("last: TEMP_SCALE {:.9f}, TEMP_SHIFT {} mm, shift y {} mm, z {} mm, turn {:.7f} deg, tilt {:.7f} deg",
+  return fmt::format("last: TEMP_SCALE {:.9f}, TEMP_SHIFT {} mm, shift y {} mm, z {} mm, turn {:.7f} deg, tilt {:.7f} deg{}",
                      p.frame.x.scale, mm(p.frame.x.shift_m), mm(p.frame.shift_y_m), mm(p.frame.shift_z_m),
-                     kDegrees * p.frame.turn_rad, kDegrees * p.frame.tilt_rad);
+                     kDegrees * p.frame.turn_rad, kDegrees * p.frame.tilt_rad, limit_words(p));
 }
 
 std::string origin_words(const FrameProgram& p) {

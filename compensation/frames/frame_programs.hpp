@@ -5,6 +5,7 @@
 // Each program contains the rings' positions at the reference temperature and computes scale and shift on the control
 // itself. The numbers of the last measurement are in it as comments or as the values in force.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,13 @@ struct FrameProgram {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< of the mesh, in machine coordinates
   double free_diameter_m = 0.044;                      ///< diameter of the ring less that of the stylus ball
   double ball_diameter_m = 6e-3;
-  double feed_mm_min = 300.0;         ///< feed of touches
-  double depth_m = 5e-3;              ///< depth of the stylus in the ring
-  double clearance_m = 50e-3;         ///< height above the ring while moving to it
-  double velocity_m_s = 0.5;          ///< MD32000
-  double slew = 0.01;                 ///< MD32760
-  double low_m = -5.0, high_m = 5.0;  ///< of the compensation table along X
+  double feed_mm_min = 300.0;                                           ///< feed of touches
+  double depth_m = 5e-3;                                                ///< depth of the stylus in the ring
+  double clearance_m = 50e-3;                                           ///< height above the ring while moving to it
+  double velocity_m_s = 0.5;                                            ///< MD32000
+  double slew = 0.01;                                                   ///< MD32760
+  double low_m = -5.0, high_m = 5.0;                                    ///< of the compensation table along X
+  double most_correction_um = std::numeric_limits<double>::infinity();  ///< limit of the scenario, for a comment
   std::string made_by = {};
 };
 

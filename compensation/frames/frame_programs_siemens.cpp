@@ -124,6 +124,7 @@ std::string setting_data(const FrameProgram& p) {
       "; The sign is the scenario's (axis_moves); the manual does not give it. Check: SD43900=0.1, a dial gauge on the axis "
       "at rest must go 0.1 mm\n; toward {}X; else set axis_moves: {} and write this file anew.\n",
       sign_word, p.against_dk ? "by_dk" : "against_dk");
+  if (const std::string limit = limit_words(p); !limit.empty()) text += limit + "\n";
   text += fmt::format(
       "; tan_beta = {:.3f}e-6 /K (T - {:.2f} degC), K0 = {} mm {:+.6f} mm/K (T - T0); write both anew as T changes\n",
       sign * 1e6 * p.control.slope_1_K, p.control.reference_K - kZeroCelsius_K, mm(sign * p.control.k0_m),

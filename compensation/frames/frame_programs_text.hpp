@@ -16,7 +16,11 @@ inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< degrees per r
 /// Length of a touch's path from a ring's centre, ending beyond its wall [m].
 [[nodiscard]] double search_m(const FrameProgram& program);
 
-/// A line with the frame in force, without parentheses, because these end a comment of LinuxCNC.
+/// "; limit of the scenario: no correction above 50 um", or "" without a limit.
+[[nodiscard]] std::string limit_words(const FrameProgram& program);
+
+/// A line with the frame in force, and the limit of corrections if there is one, without parentheses, because these end a
+/// comment of LinuxCNC.
 [[nodiscard]] std::string last_numbers(const FrameProgram& program);
 
 /// A line that names the origin of the positions.

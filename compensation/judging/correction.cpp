@@ -38,10 +38,12 @@ CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> p
 }
 
 CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
-                                 SchedulePolicy policy) {
-  Schedule schedule = plan_cyclogram(
-      run.time_s, predicted_um, run.boundaries_s,
-      {.policy = policy, .tolerance_um = run.tolerance_um, .margin_um = std::min(margin_um, 0.5 * run.tolerance_um)});
+                                 SchedulePolicy policy, const CorrectionLimits& limits) {
+  Schedule schedule = plan_cyclogram(run.time_s, predicted_um, run.boundaries_s,
+                                     {.policy = policy,
+                                      .tolerance_um = run.tolerance_um,
+                                      .margin_um = std::min(margin_um, 0.5 * run.tolerance_um),
+                                      .limits = limits});
   std::vector<double> residual_um;
   for (std::size_t i = 0; i < run.drift_um.size(); ++i) {
     residual_um.push_back(run.drift_um[i] - correction_at(schedule, run.time_s[i]));

@@ -41,9 +41,11 @@ struct CorrectedRun {
 
 /// Corrects by a plan that plan_cyclogram() makes ahead from the prediction, with the policies of the verb `schedule`.
 /// @param margin_um  reserve for the predictor's error; limited to half of the tolerance
+/// @param limits     corrections beyond are held
 /// @throws RangeError, InputError  as plan_cyclogram()
 [[nodiscard]] CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
-                                               SchedulePolicy policy = SchedulePolicy::kMinimal);
+                                               SchedulePolicy policy = SchedulePolicy::kMinimal,
+                                               const CorrectionLimits& limits = {});
 
 /// Starts of a run's operations and its end [s], from the sections of its cyclogram.
 [[nodiscard]] std::vector<double> operation_boundaries_s(std::span<const double> section_durations_s);

@@ -171,6 +171,11 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
               observer = observer.with_sensors(selection.sensors).calibrated(without_others_readings(histories, s));
             }
+            if (p.linearised) {
+              f.model = words_of(*p.linearised);
+              f.reason += fmt::format("{}model {}, in the training runs at most {:.2g} um from the nonlinear one",
+                                      f.reason.empty() ? "" : "; ", f.model, p.linearised->error_um);
+            }
             f.target = s.target;
             f.from_start = true;
             f.predictor = std::make_shared<Observer>(std::move(observer));
@@ -324,6 +329,7 @@ void guard(DeployedPredictor& f, const StrategySettings& s, std::span<const Obse
     readings.push_back(own_rows(s.count_from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
   }
   f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true, reach_of(f, s, folds));
+  limit(*f.fail_safe, s.limits);
 }
 
 /// Fits a strategy, without its errors on left-out rows and without fail-safe.
@@ -369,6 +375,15 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
 }
 
 }  // namespace
+
+std::string words_of(const LinearisedModel& model) {
+  const auto [low, high] = std::minmax_element(model.laws.begin(), model.laws.end(),
+                                               [](const auto& a, const auto& b) { return a.at_K < b.at_K; });
+  const std::string coldest = fmt::format("{:.0f}", low->at_K - 273.15),
+                    hottest = fmt::format("{:.0f}", high->at_K - 273.15);
+  return coldest == hottest ? fmt::format("linearised at {} °C", coldest)
+                            : fmt::format("linearised at {} to {} °C", coldest, hottest);
+}
 
 FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
   const std::vector<Strategy> list = strategies(settings);

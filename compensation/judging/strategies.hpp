@@ -8,14 +8,25 @@
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/sensors/grey_relational.hpp"
+#include "solver/linearise.hpp"
 
 namespace driftwright::compensation {
+
+/// What a model with laws of temperature lost when it was made linear about the training runs.
+struct LinearisedModel {
+  std::vector<solver::LinearisedLaw> laws;  ///< at least one
+  double error_um = 0.0;                    ///< largest difference between the drift of both models over the training runs
+  double drift_um = 0.0;                    ///< largest drift of the nonlinear model in them
+};
+/// "linearised at 24 to 38 °C".
+[[nodiscard]] std::string words_of(const LinearisedModel& model);
 
 /// A linear model of the machine that strategies may use. It need not be exact.
 struct Physics {
   solver::ReducedSystem system;
-  Eigen::VectorXd start;         ///< state at the start of runs with the ambient at `start_ambient_K`
-  double start_ambient_K = 0.0;  ///< minus the reference temperature
+  Eigen::VectorXd start;                           ///< state at the start of runs with the ambient at `start_ambient_K`
+  double start_ambient_K = 0.0;                    ///< minus the reference temperature
+  std::optional<LinearisedModel> linearised = {};  ///< none: the machine's own laws are linear
 };
 
 /// Settings of all strategies.
@@ -28,6 +39,7 @@ struct StrategySettings {
   std::string speed, ambient;       ///< channels; empty: none
   double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
   double drift_um = 1.0;            ///< 1 sigma of the indicator that measured the drift in the training runs
+  CorrectionLimits limits = {};     ///< of the machine; they narrow each fail-safe
   std::optional<Physics> physics;
   std::string without_physics = {};  ///< why there is none; empty: it was not requested
 };

@@ -146,6 +146,30 @@ std::string where_of(const StrategyMatrix& m, const Case& c) {
                      c.failed.empty() ? "" : fmt::format(" with {}", c.failed));
 }
 
+constexpr std::size_t kMostNotKept = 3;  // runs, and failures, that a sentence names
+
+KeptCells kept_cells(const StrategyMatrix& m, const JudgedStrategy& s) {
+  KeptCells cells;
+  std::vector<std::string> runs, failures;
+  for (const Case& c : s.cases) {
+    const bool is_intact = c.failed.empty(), keeps = c.after.peak_abs <= m.settings.tolerance_um;
+    ++(is_intact ? cells.n_intact : cells.n_failed);
+    if (keeps) {
+      ++(is_intact ? cells.n_kept_intact : cells.n_kept_failed);
+      continue;
+    }
+    std::vector<std::string>& list = is_intact ? runs : failures;
+    std::string where = is_intact ? where_of(m, c) : "with " + c.failed;
+    if (std::find(list.begin(), list.end(), where) == list.end()) list.push_back(std::move(where));
+  }
+  cells.n_not_kept = static_cast<int>(runs.size() + failures.size());
+  for (std::vector<std::string>* list : {&runs, &failures}) {
+    list->resize(std::min(list->size(), kMostNotKept));
+    cells.not_kept.insert(cells.not_kept.end(), list->begin(), list->end());
+  }
+  return cells;
+}
+
 template <class F>
 std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, F name) {
   std::vector<std::string> names;
@@ -161,10 +185,20 @@ const char* word(Safety safety) {
   return safety == Safety::kSafe ? "safe to deploy" : safety == Safety::kWithinLimits ? "safe within limits" : "unsafe";
 }
 
+std::string words_of(const KeptCells& cells, double tolerance_um) {
+  std::string words = fmt::format("keeps {:g} µm in {} of {} cells", tolerance_um, cells.n_kept(), cells.n());
+  if (cells.n_failed > 0) words += fmt::format(" ({} of {} with all sensors intact)", cells.n_kept_intact, cells.n_intact);
+  if (cells.not_kept.empty()) return words;
+  words += fmt::format(": not {}", fmt::join(cells.not_kept, ", "));
+  const int n_more = cells.n_not_kept - static_cast<int>(cells.not_kept.size());
+  return n_more > 0 ? fmt::format("{} and {} other{}", words, n_more, n_more == 1 ? "" : "s") : words;
+}
+
 void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const double tolerance = m.settings.tolerance_um;
   const Worst all = worst_of(s, [](const Case&) { return true; });
   if (!all.peak) return;
+  s.cells = kept_cells(m, s);
   const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
   // a small increase while the drift passes through 0 does not count as harm
   const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
@@ -219,7 +253,8 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const std::string worst = fmt::format("{:.1f} µm of {:.1f} µm are left {}", all.peak->after.peak_abs,
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
-  s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
+  s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst
+                           : fmt::format("it {}; {}", words_of(s.cells, tolerance), worst);
   if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
 }
 

@@ -44,6 +44,20 @@ enum class Safety { kSafe, kWithinLimits, kUnsafe };
 /// "safe to deploy", "safe within limits", "unsafe".
 [[nodiscard]] const char* word(Safety safety);
 
+/// In how many cells of the matrix (cyclogram x ambient x failed sensor) a strategy keeps the tolerance.
+struct KeptCells {
+  int n_intact = 0, n_kept_intact = 0;  ///< with all sensors intact
+  int n_failed = 0, n_kept_failed = 0;  ///< with one failed
+  /// Where it does not: "on 'noon' (summer)" for each run, "with t03 stuck" for each failure. At most three of each sort.
+  std::vector<std::string> not_kept = {};
+  int n_not_kept = 0;  ///< runs and failures where it does not, also those that are not listed
+
+  [[nodiscard]] int n() const { return n_intact + n_failed; }
+  [[nodiscard]] int n_kept() const { return n_kept_intact + n_kept_failed; }
+};
+/// "keeps 10 µm in 14 of 63 cells (4 of 9 with all sensors intact): not on 'noon' (summer), with t03 stuck and 2 others".
+[[nodiscard]] std::string words_of(const KeptCells& cells, double tolerance_um);
+
 /// All cases of one strategy.
 struct JudgedStrategy {
   DeployedPredictor fitted;
@@ -54,6 +68,7 @@ struct JudgedStrategy {
   std::string beaten_by;               ///< baseline with a smaller RMS over all intact rows; empty: none, and for baselines
   /// Families (seasons) in which it keeps the tolerance with intact sensors, if not in all.
   std::vector<std::string> limits;
+  KeptCells cells = {};
 };
 
 /// The results of all strategies.
@@ -82,7 +97,7 @@ struct Judgement {
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
 
-/// Sets `safety`, `is_worse_than_nothing`, `why` and `limits` from the cases of a strategy; does nothing without cases.
+/// Sets `safety`, `is_worse_than_nothing`, `why`, `limits` and `cells` from the cases of a strategy; does nothing without cases.
 void give_verdict(const StrategyMatrix& matrix, JudgedStrategy& strategy);
 
 /// The worst values over some cases of a strategy.

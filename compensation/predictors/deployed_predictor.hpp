@@ -26,6 +26,7 @@ struct DeployedPredictor {
   std::vector<std::string> sensors = {};  ///< inputs that may fail: thermometers, including the ambient's
   std::string ambient = {};               ///< channel of the ambient in its training runs; "" without one
   std::string reason = {};                ///< what the fit decided, one sentence; may be empty
+  std::string model = {};                 ///< of one with physics: in which way its model is approximate; may be empty
   std::optional<FailSafe> fail_safe = {};
   /// Half width of the 95 % prediction interval [um]: for each part of the training runs that was left out in turn, the
   /// error that 95 % of its rows do not exceed; the largest of these. None if no part could be left out.

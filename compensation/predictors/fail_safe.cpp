@@ -191,6 +191,12 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   return safe;
 }
 
+void limit(FailSafe& safe, const CorrectionLimits& limits) {
+  safe.lowest_um = std::max(safe.lowest_um, -limits.most_um);
+  safe.highest_um = std::min(safe.highest_um, limits.most_um);
+  safe.most_rate_um_s = std::min(safe.most_rate_um_s, limits.most_step_um / safe.period_s);
+}
+
 int most_replaced(std::size_t n_inputs) {
   return std::max(1, static_cast<int>(n_inputs / 3));
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/machine_limits.hpp"
 #include "base/record.hpp"
 
 namespace driftwright::compensation {
@@ -53,6 +54,10 @@ struct Reach {
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
                                        const std::vector<std::vector<double>>& predicted, bool from_start,
                                        bool is_counted = false, const std::vector<Reach>& reach = {});
+
+/// Narrows clamp and slew limit: no correction larger than `most_um`, and none that changes by more than `most_step_um` from
+/// one reading to the next, which are `period_s` apart.
+void limit(FailSafe& safe, const CorrectionLimits& limits);
 
 /// Readings in which doubted values are replaced by values computed from the other inputs.
 ///

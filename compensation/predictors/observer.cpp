@@ -11,6 +11,7 @@
 #include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "base/median.hpp"
+#include "compensation/predictors/deployed_follower.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -29,7 +30,34 @@ constexpr double kZero = 2.0;               // possible offset of an indicator's
 constexpr double kAmbientJump_K = 3.0;      // an ambient never changes by more from row to row
 constexpr double kAmbientJumpIn_s = 600.0;  // for more distant rows, within this time
 constexpr std::size_t kStepsKept = 512;
-constexpr double kStart_K = 0.1;  // uniform uncertainty of the start state
+constexpr double kStart_K = 0.1;                    // uniform uncertainty of the start state
+constexpr double kAgreesFor_s = kRemembersDoubt_s;  // of agreement, before a sensor, or the model, counts as right again
+constexpr double kGap = 2.5;                        // intervals between rows, beyond which the drive in between is unknown
+const double kUniform = std::sqrt(12.0);            // range of a uniform number over its deviation
+
+/// How long something has agreed with what is expected, and over which expected temperatures: a sensor that is stuck agrees
+/// only as long as nothing moves.
+struct Agreement {
+  double since_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: it does not
+  double low_K = 0.0, high_K = 0.0;
+
+  void take(bool agrees, double t_s, double expected_K) {
+    if (!agrees) {
+      since_s = std::numeric_limits<double>::quiet_NaN();
+    } else if (std::isnan(since_s)) {
+      *this = {t_s, expected_K, expected_K};
+    } else {
+      low_K = std::min(low_K, expected_K);
+      high_K = std::max(high_K, expected_K);
+    }
+  }
+  [[nodiscard]] bool is_long(double t_s, double moved_K) const {
+    return t_s - since_s >= kAgreesFor_s && high_K - low_K > moved_K;  // false for NaN
+  }
+};
+
+/// Deviation of the mean of white innovations of deviation 1.
+const double kMeanDeviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));
 
 }  // namespace
 
@@ -56,10 +84,14 @@ class Observer::Run final : public ObserverFollower {
     belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
+    agreement_.assign(o_.sensors_.size(), {});
+    least_W_.setConstant(n_sources_, std::numeric_limits<double>::infinity());
+    most_W_ = -least_W_;
     dropped_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
     last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     innovation_K_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
+    spread_K_.assign(o_.sensors_.size(), 0.0);
   }
 
   double next(const ObservedRun& run) override {
@@ -68,8 +100,14 @@ class Observer::Run final : public ObserverFollower {
     if (gives_up_) history_.push_back({row_, belief_});
     if (history_.size() > kReturn) history_.pop_front();
     judge_ambient(run, row_);
+    temper_ = with_drift_ || row_ < kWarm ? 1.0 : std::max(1.0, apart() / o_.settings_.most_apart);
     take_row(run, row_);
+    temper_ = 1.0;
     if (!gives_up_) return 1e6 * drift_m(row_++);
+    if (is_ambient_doubted_.back() && has_live_sensor() && row_ >= ambient_doubted_row_ + kReturn &&
+        history_.size() == kReturn)
+      settle_ambient(run);
+    use_again(run.readings.time_s[run.at(row_)]);
     if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
     // with a single sensor it is unknown whether the sensor or the model is wrong
@@ -102,10 +140,13 @@ class Observer::Run final : public ObserverFollower {
     const double third = 2.0 / (9.0 * n);  // Wilson & Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684
     return sum / (n * std::pow(1.0 - third + kChance * std::sqrt(third), 3));
   }
+  [[nodiscard]] bool has_live_sensor() const {
+    return std::any_of(live_.begin(), live_.end(), [](bool is) { return is; });
+  }
   [[nodiscard]] std::size_t n_in_means() const { return std::max<std::size_t>(row_ - means_from_, 1); }
   [[nodiscard]] double deserved_trust() const override {
     if (live_.empty()) return 1.0;  // a model without any sensor to compare with
-    if (std::none_of(live_.begin(), live_.end(), [](bool is) { return is; })) return 0.0;
+    if (!has_live_sensor()) return 0.0;
     const double beyond = apart() / o_.settings_.most_apart;
     return beyond > 1.0 ? 1.0 / beyond : 1.0;
   }
@@ -116,16 +157,37 @@ class Observer::Run final : public ObserverFollower {
   }
   [[nodiscard]] Eigen::VectorXd outputs() const override { return s_.observe(belief_.mean.head(n_), ambient_K_.back()); }
   [[nodiscard]] const std::vector<double>& innovation_K() const override { return innovation_K_; }
-  [[nodiscard]] std::vector<std::string> given_up() const override { return distrusted_; }
+  [[nodiscard]] std::vector<std::string> given_up() const override {
+    std::vector<std::string> names;
+    if (row_ > 0 && is_ambient_doubted_.back()) names.push_back(words_of_ambient());
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      if (!live_[k]) names.push_back(words_of_dropped(k));
+    }
+    return names;
+  }
+  /// All sensors that have been dropped in the run, also those that are used again.
+  [[nodiscard]] const std::vector<std::string>& distrusted() const { return distrusted_; }
 
   /// Does not contain the rows that the filter could return to: a sensor that is dropped soon after a recall counts until
   /// then.
   [[nodiscard]] std::vector<double> memory() const override {
     const auto n = belief_.mean.size();
-    std::vector<double> m = {static_cast<double>(row_), start_ambient_K_, ambient_K_.back(),
-                             static_cast<double>(is_ambient_doubted_.back()), static_cast<double>(is_model_wrong_)};
-    for (std::size_t k = 0; k < live_.size(); ++k)
+    std::vector<double> m = {static_cast<double>(row_),
+                             start_ambient_K_,
+                             ambient_K_.back(),
+                             static_cast<double>(is_ambient_doubted_.back()),
+                             static_cast<double>(ambient_doubted_row_),
+                             ambient_doubted_s_,
+                             static_cast<double>(is_model_wrong_),
+                             last_step_s_};
+    const auto add = [&](const Agreement& a) { m.insert(m.end(), {a.since_s, a.low_K, a.high_K}); };
+    add(model_agreement_);
+    for (std::size_t k = 0; k < live_.size(); ++k) {
       m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
+      add(agreement_[k]);
+    }
+    m.insert(m.end(), least_W_.begin(), least_W_.end());
+    m.insert(m.end(), most_W_.begin(), most_W_.end());
     m.insert(m.end(), start_state_.begin(), start_state_.end());
     m.insert(m.end(), belief_.mean.begin(), belief_.mean.end());
     for (Eigen::Index c = 0; c < n; ++c) {
@@ -136,7 +198,7 @@ class Observer::Run final : public ObserverFollower {
   void recall(std::span<const double> memory) override {
     const auto n = belief_.mean.size();
     const std::size_t n_sensors = live_.size();
-    if (memory.size() != 5 + 4 * n_sensors + static_cast<std::size_t>(n_ + n + n * (n + 1) / 2))
+    if (memory.size() != 11 + 7 * n_sensors + static_cast<std::size_t>(2 * n_sources_ + n_ + n + n * (n + 1) / 2))
       throw std::logic_error("the memory of another observer");
     auto at = memory.begin();
     const auto take = [&] { return *at++; };
@@ -144,15 +206,29 @@ class Observer::Run final : public ObserverFollower {
     start_ambient_K_ = take();
     ambient_K_ = {take()};
     is_ambient_doubted_ = {take() != 0.0};
+    ambient_doubted_row_ = static_cast<std::size_t>(take());
+    ambient_doubted_s_ = take();
     is_model_wrong_ = take() != 0.0;
+    last_step_s_ = take();
+    const auto taken_agreement = [&] {
+      Agreement a;
+      a.since_s = take();
+      a.low_K = take();
+      a.high_K = take();
+      return a;
+    };
+    model_agreement_ = taken_agreement();
     first_ambient_row_ = row_ - 1;
     for (std::size_t k = 0; k < n_sensors; ++k) {
       live_[k] = take() != 0.0;
       dropped_s_[k] = take();
       mean_innovation_[k] = take();
       last_s_[k] = take();
+      agreement_[k] = taken_agreement();
       if (!live_[k]) distrusted_.push_back(words_of_dropped(k));
     }
+    for (double& w : least_W_) w = take();
+    for (double& w : most_W_) w = take();
     start_state_.resize(n_);
     for (double& z : start_state_) z = take();
     for (double& x : belief_.mean) x = take();
@@ -177,6 +253,7 @@ class Observer::Run final : public ObserverFollower {
     Belief belief;
     std::vector<bool> live;
     std::vector<double> dropped_s, mean_innovation, last_s;
+    std::vector<Agreement> agreement;
     double last_drift_s;
     std::vector<std::string> distrusted;
     std::deque<Snapshot> history;
@@ -202,8 +279,8 @@ class Observer::Run final : public ObserverFollower {
     start_state_ = belief_.mean.head(n_);
   }
 
-  /// Decides which ambient to use at a row. A thermometer that jumps does not show the ambient: its last reading is used
-  /// until it returns near it.
+  /// Decides which ambient to use at a row. A thermometer that jumps may not show the ambient: its last reading is used
+  /// until it returns near it, or settle_ambient() believes it.
   void judge_ambient(const ObservedRun& run, std::size_t i) {
     const std::vector<double>& t = run.readings.time_s;
     const double t_s = t[run.at(i)], told_K = run.ambient.at(t_s);
@@ -219,8 +296,11 @@ class Observer::Run final : public ObserverFollower {
     }
     const double most_K = kAmbientJump_K * std::max(1.0, (t_s - t[run.at(i) - 1]) / kAmbientJumpIn_s);
     const bool is_doubted = std::abs(told_K - ambient_K_.back()) > most_K;
-    if (is_doubted && !is_ambient_doubted_.back())
-      distrusted_.push_back(fmt::format("the ambient thermometer from {:.0f} min", t_s / 60.0));
+    if (is_doubted && !is_ambient_doubted_.back()) {
+      ambient_doubted_row_ = i;
+      ambient_doubted_s_ = t_s;
+      distrusted_.push_back(words_of_ambient());
+    }
     ambient_K_.push_back(is_doubted ? ambient_K_.back() : told_K);
     is_ambient_doubted_.push_back(is_doubted);
   }
@@ -231,8 +311,58 @@ class Observer::Run final : public ObserverFollower {
     return is_ambient_doubted_[k] || is_ambient_doubted_[k - 1] ? ambient_K_[k] : run.ambient.at(t_s);
   }
 
+  [[nodiscard]] std::string words_of_ambient() const {
+    return fmt::format("the ambient thermometer from {:.0f} min", ambient_doubted_s_ / 60.0);
+  }
+
+  /// Follows the last rows with the held ambient and with the one that the thermometer has shown since, and keeps what the
+  /// other sensors contradict less.
+  void settle_ambient(const ObservedRun& run) {
+    const Kept before = kept();
+    const auto followed = [&] {
+      belief_ = before.history.front().belief;
+      start_anew(before.history.front().row);
+      squares_ = 0.0;
+      for (std::size_t k = before.history.front().row; k <= row_; ++k) take_row(run, k);
+      return squares_;
+    };
+    const double held = followed();
+    const std::deque<double> held_K = ambient_K_;
+    const std::deque<bool> was_doubted = is_ambient_doubted_;
+    for (std::size_t k = std::max(ambient_doubted_row_, before.history.front().row); k <= row_; ++k) {
+      ambient_K_[k - first_ambient_row_] = run.ambient.at(run.readings.time_s[run.at(k)]);
+      is_ambient_doubted_[k - first_ambient_row_] = false;
+    }
+    if (followed() <= held) {
+      history_.clear();
+      return;
+    }
+    restore(before);
+    ambient_K_ = held_K;
+    is_ambient_doubted_ = was_doubted;
+    ambient_doubted_row_ = row_;  // asked again after as many rows
+  }
+
+  /// A sensor that has agreed again for long enough, over temperatures that moved by more than a stuck one could agree with,
+  /// is used again; so is a model that was found wrong.
+  void use_again(double t_s) {
+    double expected_K = 0.0;
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      expected_K += expected_K_of(k, row_) / static_cast<double>(live_.size());
+      const double moved_K = 2.0 * kFlag * kMeanDeviation * spread_K_[k];
+      if (live_[k] || !agreement_[k].is_long(t_s, moved_K)) continue;
+      live_[k] = true;
+      dropped_s_[k] = std::numeric_limits<double>::quiet_NaN();
+      mean_innovation_[k] = 0.0;
+    }
+    if (live_.empty()) return;
+    model_agreement_.take(apart() <= o_.settings_.most_apart, t_s, expected_K);
+    const double widest_K = *std::max_element(spread_K_.begin(), spread_K_.end());
+    if (is_model_wrong_ && model_agreement_.is_long(t_s, 2.0 * kFlag * kMeanDeviation * widest_K)) is_model_wrong_ = false;
+  }
+
   /// Up to a third of the sensors, at least one: more differing sensors show that the model is wrong. None after the model
-  /// was found wrong in this run, because the sensor that shows its error best would be dropped first.
+  /// was found wrong, until it has agreed for long, because the sensor that shows its error best would be dropped first.
   [[nodiscard]] int may_drop() const {
     if (is_model_wrong_) return 0;
     const auto n_dropped = static_cast<int>(std::count(live_.begin(), live_.end(), false));
@@ -242,32 +372,45 @@ class Observer::Run final : public ObserverFollower {
   /// Follows the last rows without a sensor. If the others then agree with the model, it stays dropped; otherwise the model
   /// is wrong.
   void give_up(const ObservedRun& run, std::size_t sensor) {
-    const Kept before{belief_,       live_,       dropped_s_, mean_innovation_, last_s_,
-                      last_drift_s_, distrusted_, history_,   means_from_};
+    const Kept before = kept();
     drop(run, sensor);
     if (apart() <= o_.settings_.most_apart) return;
+    restore(before);
+    again_row_ = row_ + kWarm;
+  }
+
+  [[nodiscard]] Kept kept() const {
+    return {belief_,    live_,         dropped_s_,  mean_innovation_, last_s_,
+            agreement_, last_drift_s_, distrusted_, history_,         means_from_};
+  }
+  void restore(const Kept& before) {
     belief_ = before.belief;
     live_ = before.live;
     dropped_s_ = before.dropped_s;
     mean_innovation_ = before.mean_innovation;
     last_s_ = before.last_s;
+    agreement_ = before.agreement;
     last_drift_s_ = before.last_drift_s;
     distrusted_ = before.distrusted;
     history_ = before.history;
     means_from_ = before.means_from;
-    again_row_ = row_ + kWarm;
+  }
+  /// Means and times of readings as if none had been taken before a row.
+  void start_anew(std::size_t row) {
+    mean_innovation_.assign(mean_innovation_.size(), 0.0);
+    means_from_ = row;
+    last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
+    last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
   }
 
   /// Returns to before its mean innovation began to grow, and follows the rows since then without it.
   void drop(const ObservedRun& run, std::size_t sensor) {
     live_[sensor] = false;
+    agreement_[sensor] = {};
     dropped_s_[sensor] = run.readings.time_s[run.at(row_)];
     distrusted_.push_back(words_of_dropped(sensor));
     belief_ = history_.front().belief;
-    mean_innovation_.assign(mean_innovation_.size(), 0.0);
-    means_from_ = history_.front().row;
-    last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
-    last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
+    start_anew(history_.front().row);
     for (std::size_t k = history_.front().row; k <= row_; ++k) take_row(run, k);
     history_.clear();
   }
@@ -283,16 +426,19 @@ class Observer::Run final : public ObserverFollower {
     for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
       const double read = run.readings.channels[sensor_channel_[k]].values[at];
       innovation_K_[k] = std::numeric_limits<double>::quiet_NaN();
-      if (!live_[k] || std::isnan(read)) continue;
-      const Eigen::Index output = o_.sensor_output_[k];
+      if (std::isnan(read)) continue;
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
-      h.head(n_) = s_.outputs.state.col(output);
-      const double expected_K = h.dot(belief_.mean) + s_.outputs.ambient(output) * ambient_at(i) + s_.reference_K - 273.15;
+      h.head(n_) = s_.outputs.state.col(o_.sensor_output_[k]);
+      const double expected_K = expected_K_of(k, i);
       const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t_s, last_s_[k]);
-      const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
-      innovation_K_[k] = innovation;
+      const double spread = spread_K_[k] = std::sqrt(h.dot(belief_.covariance * h) + variance);
+      const double innovation = std::clamp(read - expected_K, -kOutlier * spread, kOutlier * spread);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
-      if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
+      agreement_[k].take(std::abs(mean_innovation_[k]) <= kFlag * kMeanDeviation, t_s, expected_K);
+      if (!live_[k]) continue;
+      innovation_K_[k] = innovation;
+      squares_ += innovation * innovation / (spread * spread);
+      if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, temper_ * variance);
     }
     const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[at] : std::nan("");
     if (std::isfinite(drift_um)) {
@@ -309,6 +455,13 @@ class Observer::Run final : public ObserverFollower {
     }
   }
 
+  /// What a sensor is expected to read [degC].
+  [[nodiscard]] double expected_K_of(std::size_t sensor, std::size_t row) const {
+    const Eigen::Index output = o_.sensor_output_[sensor];
+    return s_.outputs.state.col(output).dot(belief_.mean.head(n_)) + s_.outputs.ambient(output) * ambient_at(row) +
+           s_.reference_K - 273.15;
+  }
+
   /// Variance from a reading's white error and the model's own error, which neighbouring readings share. @param last_s
   /// previous time; NaN: none
   [[nodiscard]] double variance_of(double white, double model, double t_s, double& last_s) const {
@@ -320,9 +473,8 @@ class Observer::Run final : public ObserverFollower {
   /// The active sensor with the largest mean innovation, if one exceeds the flag.
   [[nodiscard]] int worst_suspect(std::size_t i) const {
     if (i < kWarm) return -1;
-    const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
     int worst = -1;
-    double most = kFlag * deviation;
+    double most = kFlag * kMeanDeviation;
     for (std::size_t k = 0; k < live_.size(); ++k) {
       if (live_[k] && std::abs(mean_innovation_[k]) > most) {
         most = std::abs(mean_innovation_[k]);
@@ -334,7 +486,10 @@ class Observer::Run final : public ObserverFollower {
 
   void advance(const ObservedRun& run, std::size_t i) {
     double from_s = run.readings.time_s[run.at(i) - 1], section_end_s = run.cyclogram_from_s;
-    const double to_s = run.readings.time_s[run.at(i)];
+    const double to_s = run.readings.time_s[run.at(i)], length_s = to_s - from_s;
+    const bool is_gap = !with_drift_ && length_s > kGap * std::max(o_.settings_.period_s, last_step_s_);
+    if (is_gap) unseen_ = Eigen::MatrixXd::Zero(n_, n_sources_);
+    last_step_s_ = length_s;
     for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
       const bool is_last = c + 1 == run.cyclogram.sections.size();
       section_end_s += run.cyclogram.sections[c].duration_s;
@@ -350,6 +505,8 @@ class Observer::Run final : public ObserverFollower {
       }
       from_s = std::max(from_s, std::min(until_s, to_s));
     }
+    if (is_gap) belief_.covariance.topLeftCorner(n_, n_) += unseen_ * unseen_.transpose();
+    unseen_.resize(0, 0);
   }
 
   const Step& step_of(const effects::Inputs& u, double h_s) {
@@ -410,7 +567,31 @@ class Observer::Run final : public ObserverFollower {
     p.topRightCorner(n_, n_all - n_) = top.rightCols(n_all - n_);
     p.bottomLeftCorner(n_all - n_, n_) = top.rightCols(n_all - n_).transpose();
     p.topLeftCorner(n_, n_) = top.leftCols(n_ + n_factors) * f.transpose();
-    const double walk = o_.settings_.factor_walk * o_.settings_.factor_walk * h_s / 3600.0;
+    forget_factors(n_factors, h_s);
+    for (Eigen::Index s = 0; s < n_sources_; ++s) {
+      const double power_W = now.power_W[static_cast<std::size_t>(s)];
+      least_W_(s) = std::min(least_W_(s), power_W);
+      most_W_(s) = std::max(most_W_(s), power_W);
+    }
+    if (unseen_.size() == 0) return;
+    unseen_ = now.decay * unseen_;
+    for (Eigen::Index s = 0; s < n_sources_; ++s)  // any power between the extremes of this run, the same for the whole gap
+      unseen_.col(s) += now.gain * s_.sources[static_cast<std::size_t>(s)].load * ((most_W_(s) - least_W_(s)) / kUniform);
+  }
+
+  /// Factors change at random. While the drift is measured this is a random walk; later they also return to what was
+  /// learned, so that none comes to be less certain than it was before learning: an Ornstein-Uhlenbeck process with the
+  /// variance `factor`².
+  void forget_factors(Eigen::Index n_factors, double h_s) {
+    Eigen::MatrixXd& p = belief_.covariance;
+    const double walk = std::pow(o_.settings_.factor_walk, 2) * h_s / 3600.0, most = std::pow(o_.settings_.factor, 2);
+    if (!with_drift_ && walk < most) {
+      const double kept = std::sqrt(1.0 - walk / most);
+      auto mean = belief_.mean.segment(n_, n_factors);
+      mean = o_.factors_.mean.head(n_factors) + kept * (mean - o_.factors_.mean.head(n_factors));
+      p.middleRows(n_, n_factors) *= kept;
+      p.middleCols(n_, n_factors) *= kept;
+    }
     p.diagonal().segment(n_, n_factors).array() += walk;
   }
 
@@ -445,6 +626,9 @@ class Observer::Run final : public ObserverFollower {
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
+  double temper_ = 1.0;       // on the variance of readings, while they are further from the model than trust allows
+  double squares_ = 0.0;      // of normalised innovations
+  double last_step_s_ = 0.0;  // between rows
   std::size_t row_ = 0, again_row_ = 0, means_from_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
@@ -452,11 +636,16 @@ class Observer::Run final : public ObserverFollower {
   std::vector<std::string> distrusted_;
   std::deque<double> ambient_K_;  // as used, for the last rows
   std::deque<bool> is_ambient_doubted_;
-  std::size_t first_ambient_row_ = 0;
+  std::size_t first_ambient_row_ = 0, ambient_doubted_row_ = 0;
+  double ambient_doubted_s_ = 0.0;
   bool has_channels_ = false;
   std::vector<double> innovation_K_, dropped_s_;
-  std::vector<double> mean_innovation_;
-  std::vector<double> last_s_;  // of each sensor's last readings
+  std::vector<double> mean_innovation_, spread_K_;
+  std::vector<Agreement> agreement_;
+  Agreement model_agreement_;
+  Eigen::VectorXd least_W_, most_W_;  // of each source in this run
+  Eigen::MatrixXd unseen_;            // effect of each source's unknown power on the state, during a gap
+  std::vector<double> last_s_;        // of each sensor's last readings
   double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
   std::deque<Snapshot> history_;
   std::map<std::vector<double>, Step> steps_;
@@ -524,7 +713,7 @@ Observation Observer::observe(const ObservedRun& run) const {
     seen.deviation_um.push_back(*pass.deviation_um());
     seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs();
   }
-  seen.distrusted = pass.given_up();
+  seen.distrusted = pass.distrusted();
   return seen;
 }
 

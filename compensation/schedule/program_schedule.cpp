@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "compensation/sensors/interpolate.hpp"
@@ -33,9 +34,10 @@ int cost_of(NcEntry entry) {
 
 /// Places of one axis in their order, the start of the program first.
 std::vector<Place> block_ends(const std::vector<NcStep>& steps, const std::vector<std::array<NcEntry, 3>>& entries,
-                              int axis) {
+                              const std::vector<char>& held_steps, int axis) {
   std::vector<Place> places = {{}};
   for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!held_steps.empty() && held_steps[i]) continue;
     const NcEntry entry = entries[i][axis];
     const double start_s = steps[i].start_s;
     if (entry == NcEntry::kNever || !(start_s > places.back().time_s) || !(steps[i].end_s > start_s)) continue;
@@ -60,20 +62,25 @@ class AxisPlanner {
   std::vector<Place> places;
   std::vector<DriftCell> cells;
   std::vector<double> correction_um;
+  std::vector<char> is_held;         // per cell
+  std::vector<HeldCorrection> held;  // without the axis
 
   void plan(const std::vector<std::array<NcEntry, 3>>& entries, const std::map<Key, std::array<bool, 3>>& used) {
-    places = block_ends(steps_, entries, axis_.axis);
-    cells = drift_cells(time_s_, axis_.drift_um, times_of(places, end_s_));
+    places = block_ends(steps_, entries, options_.held_steps, axis_.axis);
+    cells = counted_cells();
     correct(used);
-    if (!options_.split) return;
-    add_parts();
-    cells = drift_cells(time_s_, axis_.drift_um, times_of(places, end_s_));
-    correct(used);
+    if (options_.split) {
+      add_parts();
+      cells = counted_cells();
+      correct(used);
+    }
+    hold_within_limits();
   }
 
   /// The first and last step that take time in a cell.
-  std::pair<std::size_t, std::size_t> steps_of(std::size_t cell) const {
-    const double start_s = cells[cell].start_s, end_s = cells[cell].end_s;
+  std::pair<std::size_t, std::size_t> steps_of(std::size_t cell) const { return steps_of(cells[cell]); }
+  std::pair<std::size_t, std::size_t> steps_of(const DriftCell& cell) const {
+    const double start_s = cell.start_s, end_s = cell.end_s;
     auto first = std::upper_bound(steps_.begin(), steps_.end(), start_s,
                                   [](double t_s, const NcStep& step) { return t_s < step.end_s; });
     auto last =
@@ -88,6 +95,47 @@ class AxisPlanner {
   }
 
  private:
+  /// The cells, whose ranges leave out what happens in held steps; 0 where nothing is left.
+  std::vector<DriftCell> counted_cells() const {
+    std::vector<DriftCell> all = drift_cells(time_s_, axis_.drift_um, times_of(places, end_s_));
+    if (options_.held_steps.empty()) return all;
+    for (DriftCell& cell : all) {
+      const auto [first, last] = steps_of(cell);
+      const auto begin = options_.held_steps.begin() + static_cast<std::ptrdiff_t>(first),
+                 end = options_.held_steps.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+      if (std::find(begin, end, 1) == end) continue;
+      double low_um = std::numeric_limits<double>::infinity(), high_um = -low_um;
+      for (std::size_t i = first; i <= last; ++i) {
+        if (options_.held_steps[i]) continue;
+        const double start_s = std::max(cell.start_s, steps_[i].start_s);
+        while (i < last && !options_.held_steps[i + 1]) ++i;
+        const double end_s = std::min(cell.end_s, steps_[i].end_s);
+        if (!(end_s > start_s)) continue;
+        const DriftCell part = drift_cells(time_s_, axis_.drift_um, std::vector<double>{start_s, end_s}).front();
+        low_um = std::min(low_um, part.low_um);
+        high_um = std::max(high_um, part.high_um);
+      }
+      cell.low_um = std::isfinite(low_um) ? low_um : 0.0;
+      cell.high_um = std::isfinite(high_um) ? high_um : 0.0;
+    }
+    return all;
+  }
+
+  /// Holds corrections beyond a limit, and notes the steps of each stretch.
+  void hold_within_limits() {
+    is_held.assign(cells.size(), 0);
+    for (const HeldCell& cell : hold_within(correction_um, options_.limits)) {
+      is_held[cell.cell] = 1;
+      const auto [first, last] = steps_of(cell.cell);
+      if (cell.cell == 0 || !is_held[cell.cell - 1] || held.back().is_step != cell.is_step)
+        held.push_back({.first = first, .is_step = cell.is_step, .planned_um = cell.planned_um, .held_um = cell.held_um});
+      HeldCorrection& stretch = held.back();
+      stretch.last = last;
+      const auto size_um = [&](double c_um) { return std::abs(stretch.is_step ? c_um - stretch.held_um : c_um); };
+      if (size_um(cell.planned_um) > size_um(stretch.planned_um)) stretch.planned_um = cell.planned_um;
+    }
+  }
+
   void correct(const std::map<Key, std::array<bool, 3>>& used) {
     std::vector<int> cost;
     for (const Place& place : places)
@@ -111,6 +159,7 @@ class AxisPlanner {
       for (std::size_t i = first; i <= last; ++i) {
         const NcStep& step = steps_[i];
         if (!(step.duration_s() > 0.0) || !why_not_divisible(step).empty()) continue;
+        if (!options_.held_steps.empty() && options_.held_steps[i]) continue;
         if (!step.named[axis_.axis] && !step.known[axis_.axis]) continue;
         if (step.kind == NcStepKind::kRapid && !step.named[axis_.axis] && !step.before.absolute) continue;
         const std::vector<DriftCell> own =
@@ -276,7 +325,8 @@ std::vector<LongStretch> long_stretches(const AxisPlanner& planner, const std::v
     for (std::size_t i = first; i <= last; ++i) {
       if (steps[i].duration_s() > steps[longest].duration_s()) longest = i;
     }
-    stretch.not_divisible = why_not_divisible(steps[longest]);
+    stretch.not_divisible =
+        planner.is_held[cell] ? "the correction is held at a limit of the machine" : why_not_divisible(steps[longest]);
     found.push_back(stretch);
   }
   return found;
@@ -322,6 +372,10 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
     }
     schedule.schedules.push_back(schedule_of(planner.cells, planner.correction_um, boundaries_s, axis.tolerance_um));
     planned_stretches.push_back(long_stretches(planner, steps, a, axis.tolerance_um));
+    for (HeldCorrection& held : planner.held) {
+      held.axis = a;
+      schedule.held.push_back(held);
+    }
   }
   std::size_t divided = steps.size();
   for (const auto& [key, change] : changes) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/machine_limits.hpp"
 #include "compensation/schedule/schedule_policy.hpp"
 #include "nc/correction.hpp"
 
@@ -21,8 +22,11 @@ struct ProgramAxis {
 
 struct ProgramScheduleOptions {
   SchedulePolicy policy = SchedulePolicy::kMinimal;
-  bool split = false;          ///< divide blocks that cannot keep the tolerance in one piece
-  double resolution_um = 0.1;  ///< policy minimal: corrections are multiples of it
+  bool split = false;            ///< divide blocks that cannot keep the tolerance in one piece
+  double resolution_um = 0.1;    ///< policy minimal: corrections are multiples of it
+  CorrectionLimits limits = {};  ///< a correction or a change beyond them is not made: the one in force is held
+  /// Per step: whether the correction is held there, and the drift there is of no account. Empty: nowhere.
+  std::vector<char> held_steps = {};
 };
 
 /// A change of the offset of one or more axes.
@@ -52,6 +56,15 @@ struct LongStretch {
   std::string not_divisible = {};  ///< why --split does not help; empty: it helps
 };
 
+/// Blocks in which the correction is held because the planned one is beyond ProgramScheduleOptions::limits.
+struct HeldCorrection {
+  std::size_t first = 0, last = 0;  ///< steps
+  std::size_t axis = 0;             ///< index among the axes
+  bool is_step = false;             ///< the change is too large; false: the correction itself
+  double planned_um = 0.0;          ///< the one furthest beyond the limit
+  double held_um = 0.0;             ///< in force instead
+};
+
 /// The whole plan.
 struct ProgramSchedule {
   std::array<double, 3> initial_um = {0, 0, 0};  ///< corrections before the first motion, by x, y, z
@@ -59,7 +72,8 @@ struct ProgramSchedule {
   std::vector<Schedule> schedules;               ///< per axis; operations end at tool changes
   std::vector<AxisCourse> courses;               ///< per axis
   std::vector<LongStretch> long_stretches;
-  int n_divided = 0;  ///< blocks
+  std::vector<HeldCorrection> held;  ///< per axis, by time
+  int n_divided = 0;                 ///< blocks
 };
 
 /// Plans each axis separately, at the places that nc_entries() allows: rapids that name the axis are preferred to places
@@ -68,6 +82,9 @@ struct ProgramSchedule {
 ///
 /// With `split`, straight blocks in which the tolerance cannot be kept (policy paper: or a multiple is passed and the block
 /// is longer than kPaperReach) may be divided, into as many parts as there are changes.
+///
+/// A correction beyond the limits is not made; the one before stays in force until a planned one is within them. The value
+/// before the program is limited in size alone, as the axis does not cut yet.
 /// @param steps   of the program, with times from 0
 /// @param time_s  of the drifts: from 0 to the end of the program, strictly increasing
 /// @throws InputError  for a drift without value, for an axis that no block commands in G90

@@ -236,6 +236,20 @@ std::vector<double> planned_corrections(std::span<const DriftCell> cells, Schedu
                                           : fewest_changes(cells, tolerance_um, resolution_um, cost);
 }
 
+std::vector<HeldCell> hold_within(std::vector<double>& correction_um, const CorrectionLimits& limits) {
+  constexpr double kAtLimit_um = 1e-6;  // a correction at the limit, by rounding
+  std::vector<HeldCell> held;
+  for (std::size_t k = 0; k < correction_um.size(); ++k) {
+    const double planned_um = correction_um[k], before_um = k > 0 ? correction_um[k - 1] : 0.0;
+    const bool too_large = std::abs(planned_um) > limits.most_um + kAtLimit_um;
+    const bool too_far = k > 0 && std::abs(planned_um - before_um) > limits.most_step_um + kAtLimit_um;
+    if (!too_large && !too_far) continue;
+    held.push_back({.cell = k, .is_step = !too_large, .planned_um = planned_um, .held_um = before_um});
+    correction_um[k] = before_um;
+  }
+  return held;
+}
+
 Schedule plan_cyclogram(std::span<const double> time_s, std::span<const double> drift_um,
                         std::span<const double> boundaries_s, const ScheduleOptions& options) {
   check_drift(time_s, drift_um, boundaries_s);
@@ -246,8 +260,9 @@ Schedule plan_cyclogram(std::span<const double> time_s, std::span<const double> 
         fmt::format("margin {} um must lie in [0, {}) um, below the tolerance", options.margin_um, options.tolerance_um));
   const double kept_um = options.tolerance_um - options.margin_um;
   const std::vector<DriftCell> cells = drift_cells(time_s, drift_um, grid_s(boundaries_s, options.resolution_s));
-  return schedule_of(cells, planned_corrections(cells, options.policy, kept_um, options.resolution_um), boundaries_s,
-                     kept_um);
+  std::vector<double> correction_um = planned_corrections(cells, options.policy, kept_um, options.resolution_um);
+  (void)hold_within(correction_um, options.limits);
+  return schedule_of(cells, correction_um, boundaries_s, kept_um);
 }
 
 Schedule schedule_of(std::span<const DriftCell> cells, std::span<const double> correction_um,

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/machine_limits.hpp"
 #include "compensation/schedule/schedule.hpp"
 
 namespace driftwright::compensation {
@@ -68,6 +69,19 @@ enum class SchedulePolicy {
                                                       double tolerance_um, double resolution_um,
                                                       std::span<const int> cost = {});
 
+/// A cell whose planned correction is beyond a limit.
+struct HeldCell {
+  std::size_t cell = 0;
+  bool is_step = false;     ///< the change is too large; false: the correction itself
+  double planned_um = 0.0;  ///< what was planned
+  double held_um = 0.0;     ///< the correction of the cell before, which is used instead; 0 in the first
+};
+
+/// Replaces each correction beyond the limits by the one of the cell before, until a planned one is within them. The first
+/// cell is limited in size alone: nothing cuts before it.
+/// @param correction_um  per cell; changed in place
+std::vector<HeldCell> hold_within(std::vector<double>& correction_um, const CorrectionLimits& limits);
+
 /// The paper's notation of such a plan: changes as increments, per operation.
 /// @param correction_um  per cell
 /// @param boundaries_s   starts of the operations and the end of the last; the cells cover them
@@ -77,9 +91,10 @@ enum class SchedulePolicy {
 struct ScheduleOptions {
   SchedulePolicy policy = SchedulePolicy::kMinimal;
   double tolerance_um = 10.0;
-  double margin_um = 0.0;      ///< part of the tolerance kept in reserve for the predictor's error
-  double resolution_um = 0.1;  ///< minimal: corrections are multiples of it
-  double resolution_s = 1.0;   ///< changes are at whole multiples of it, counted from the operation's start
+  double margin_um = 0.0;        ///< part of the tolerance kept in reserve for the predictor's error
+  double resolution_um = 0.1;    ///< minimal: corrections are multiples of it
+  double resolution_s = 1.0;     ///< changes are at whole multiples of it, counted from the operation's start
+  CorrectionLimits limits = {};  ///< corrections beyond are held: hold_within()
 };
 
 /// Plans the corrections of a cyclogram's predicted drift, as plan_program() does for an NC program, for tolerance - margin.

@@ -32,7 +32,7 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
                     f"--user-data-dir={folder}/profile", "--window-size=1200,1300", f"--screenshot={HERE}/view.png", f"file://{folder}/twin.html"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
-    # The page beside a followed machine, behind the rows of an afternoon.
+    # The page of a followed machine, after the rows of an afternoon.
     sys.path.insert(0, str(HERE.parent.parent / "tests"))
     from browser import Browser
     subprocess.run([PROGRAM, "predict", "scenarios/fp3_spindle.yaml", "--cyclogram", "chaotic", "-o", f"{folder}/chaotic", "--quiet"], check=True, cwd=HERE.parent.parent)

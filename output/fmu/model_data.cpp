@@ -76,9 +76,10 @@ std::string observer_text(const FmuModel& model) {
          fmt::format("static const int sensor_output[] = {{{}}};\n",
                      o.sensor_output.empty() ? "0" : fmt::format("{}", fmt::join(o.sensor_output, ", "))) +
          fmt::format(
-             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {:a}, {:a}, {:a}, {:a}, {:a}, {:a}, {:a},\n"
+             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {:a}, {:a}, {:a}, {:a}, {:a}, {:a}, {:a}, "
+             "{:a},\n"
              "  factor_mean, factor_covariance}};\n",
-             o.sensors.size(), o.drift_output, s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor_walk,
+             o.sensors.size(), o.drift_output, s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk,
              s.longest_step_s, s.drift_um);
 }
 

@@ -102,7 +102,7 @@ class Machine:
         return core.cyclogram_of_speeds("rows", [float(r[0]) for r in rows], [float(r[1]) for r in rows])
 
     def predict(self, cyclogram, start="", after_pause="", model=""):
-        """The drift ahead of a run, as `driftwright predict` tells it."""
+        """The drift before a run, as `driftwright predict` computes it."""
         return _table(self._machine.predict(self.cyclogram(cyclogram), core.PredictOptions(str(start), after_pause, model)))
 
     def predict_all(self, cyclograms, start="", after_pause="", model=""):

@@ -13,6 +13,7 @@
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
+#include "scenarios/reader/read_limits.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -284,6 +285,11 @@ schema::Key topics_key() {
                           "where `follow` takes each channel's numbers from (docs/how-to/follow.md)");
 }
 
+schema::Key limits_key() {
+  return schema::optional("limits", schema::map(machine_limits_schema()),
+                          "of the machine and its corrections; beyond them nothing is planned and nothing corrected");
+}
+
 schema::Map machine_scenario_schema() {
   using namespace schema;
   return {
@@ -312,6 +318,7 @@ schema::Map machine_scenario_schema() {
            schema::optional("study", schema::map(study_schema(true)), "what is fitted and what it is judged by"),
            columns_key(),
            topics_key(),
+           limits_key(),
            schema::optional("validation", schema::map(validation_schema()), "what strategies are judged on by `validate`"),
            schema::optional("programme", schema::map(programme_schema()),
                             "what predictors of drift are judged on by `validate`"),
@@ -328,7 +335,7 @@ schema::Map records_scenario_schema() {
   return {.name = "scenario (of records alone)",
           .keys = {name_key(),
                    schema::compulsory("study", schema::map(study_schema(false)), "what is fitted and what it is judged by"),
-                   columns_key(), topics_key()},
+                   columns_key(), topics_key(), limits_key()},
           .about = "A scenario without `machine` is about measured records alone (see `scenarios/spindle_22.yaml`)."};
 }
 
@@ -388,6 +395,8 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
         fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
                     scenario.path, cyclogram.name, n_outputs, kMostOutputs));
   }
+  for (const Cyclogram::Section& section : cyclogram.sections)
+    require_speed_within_limits(scenario, section.drive.speed_rpm, fmt::format("cyclogram '{}'", cyclogram.name));
   const Cyclogram felt = felt_run_as_far_as_known(*scenario.machine, cyclogram).cyclogram;
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
@@ -406,6 +415,15 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
   }
 }
 
+void require_speed_within_limits(const Scenario& scenario, double speed_rpm, const std::string& who) {
+  constexpr double kRounding = 1.0 + 1e-9;  // of units: 2000 rpm through 1/s and back
+  if (!(speed_rpm > scenario.limits.speed_rpm * kRounding)) return;
+  throw InputError(
+      fmt::format("{}: {} turns the spindle at {:g} rpm, but `limits` allows {:g} rpm at most; lower the speed, "
+                  "or raise `speed` of `limits` if the machine may turn so fast",
+                  scenario.path, who, speed_rpm, scenario.limits.speed_rpm));
+}
+
 const std::vector<schema::Map>& scenario_schemas() {
   static const std::vector<schema::Map> both = {machine_scenario_schema(), records_scenario_schema()};
   return both;
@@ -422,6 +440,7 @@ Scenario read_scenario(const ConfigMap& top) {
   scenario.path = in.file();
   scenario.name = in.name("name");
   const bool has_machine = in.description().when_key == "machine";
+  if (const auto limits = in.optional_map("limits")) scenario.limits = read_machine_limits(*limits);
   if (has_machine) {
     scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");

@@ -13,6 +13,7 @@
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "base/fields_format.hpp"
+#include "base/machine_limits.hpp"
 #include "compensation/sensors/grey_relational.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/reader/programme.hpp"
@@ -105,6 +106,7 @@ struct Scenario {
   std::optional<MachineModel> machine;  ///< absent in a scenario about measured records alone
   std::optional<ColumnMap> columns;     ///< format of the records given to verbs; absent: as in docs/reference/record.md
   std::map<std::string, std::string> topics;  ///< by the channels' headers: where `follow` gets their numbers
+  MachineLimits limits;
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;
   std::optional<Study> study;
@@ -121,14 +123,19 @@ struct Scenario {
 /// The schemas of a scenario file: with a machine, or about records alone.
 [[nodiscard]] const std::vector<schema::Map>& scenario_schemas();
 
-/// Checks whether a cyclogram can be run on the scenario's machine: that every law is defined at every speed, and that
-/// there are not too many outputs. read_scenario() checks the scenario's own. @throws InputError
+/// Checks whether a cyclogram can be run on the scenario's machine: that no speed is above `limits`, that every law is
+/// defined at every speed, and that there are not too many outputs. read_scenario() checks the scenario's own.
+/// @throws InputError
 void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
 
 /// @throws InputError  with file, line and key
 [[nodiscard]] Scenario read_scenario(const std::string& path);
 /// The same from the top map of a scenario, which may have been edited.
 [[nodiscard]] Scenario read_scenario(const ConfigMap& in);
+
+/// Checks a speed that is asked for against `limits`. @param who  what asks for it, such as "--speed-limit"
+/// @throws InputError  above it
+void require_speed_within_limits(const Scenario& scenario, double speed_rpm, const std::string& who);
 
 /// The scenario's machine, or its study. @param verb  verb that needs it. @throws InputError  if there is none
 [[nodiscard]] const MachineModel& require_machine(const Scenario& scenario, const std::string& verb);

@@ -56,7 +56,7 @@ typedef struct {
   const int* sensor_output; /* of each sensor, index of the output that it reads */
   int drift_output;
   double period_s; /* from sample to sample */
-  double reading_K, model_K, model_holds_s, factor_walk, longest_step_s, drift_um;
+  double reading_K, model_K, model_holds_s, factor, factor_walk, longest_step_s, drift_um;
   const double* factor_mean;       /* of the sources, the exchanges and the drift, minus 1 */
   const double* factor_covariance; /* by rows */
 } observer_data;

@@ -260,6 +260,25 @@ static void add_product(int n, int m, int columns, const double* a, int stride, 
   }
 }
 
+/* Factors change at random and return to what was learned. */
+static void forget_factors(const view* v, double h_s) {
+  const int n = thermal.n, f = n_factors(), all = n_all();
+  const double walk = observer.factor_walk * observer.factor_walk * h_s / 3600.0, most = observer.factor * observer.factor;
+  double *const p = v->covariance, *const factor = v->mean + n;
+  int i, j;
+  if (walk < most) {
+    const double kept = sqrt(1.0 - walk / most);
+    for (i = 0; i < f; ++i) {
+      factor[i] = observer.factor_mean[i] + kept * (factor[i] - observer.factor_mean[i]);
+      for (j = 0; j < all; ++j) {
+        p[(n + i) * all + j] *= kept;
+        p[j * all + n + i] *= kept;
+      }
+    }
+  }
+  for (i = 0; i < f; ++i) p[(n + i) * all + n + i] += walk;
+}
+
 /* Mean and covariance over h with this drive and ambient. */
 static int step(const view* v, workshop* w, const double* drive, double ambient_K, double h_s) {
   const int n = thermal.n, f = n_factors(), all = n_all(), width = n + f;
@@ -319,7 +338,7 @@ static int step(const view* v, workshop* w, const double* drive, double ambient_
       p[i * all + j] = sum;
     }
   }
-  for (i = n; i < width; ++i) p[i * all + i] += observer.factor_walk * observer.factor_walk * h_s / 3600.0;
+  forget_factors(v, h_s);
   return 1;
 }
 
@@ -392,8 +411,8 @@ static int take_row(const view* v, workshop* w, int i) {
     variance = observer.reading_K * observer.reading_K;
     variance +=
         observer.model_K * observer.model_K * (observer.model_holds_s > since_s ? observer.model_holds_s / since_s : 1.0);
-    innovation = read - expected;
     spread = sqrt(spread2(v, gradient, thermal.n) + variance);
+    innovation = fmin(fmax(read - expected, -kOutlier * spread), kOutlier * spread);
     v->mean_innovation[k] = kMemory * v->mean_innovation[k] + (1.0 - kMemory) * innovation / spread;
     if (fabs(innovation) < kOutlier * spread) correct(v, w, gradient, thermal.n, innovation, variance);
   }

@@ -1,0 +1,170 @@
+#include "findings/cause_section.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/rivals.hpp"
+#include "findings/cause_words.hpp"
+#include "findings/diagnosis_words.hpp"
+
+namespace driftwright::findings {
+namespace {
+
+using diagnosis::StatedQuantity;
+using output::Section;
+using output::Table;
+using output::Text;
+
+constexpr std::size_t kMostCauses = 4;        // with a section of their own; tables have all
+constexpr std::size_t kMostAlternatives = 3;  // in a sentence
+
+/// The instruments that a cause is about; none if it acts on the machine.
+std::vector<std::string> instruments_of(const diagnosis::Diagnosis& d, std::size_t cause) {
+  const std::optional<StatedQuantity> quantity = quantity_of_cause(d, cause);
+  if (quantity != StatedQuantity::kReading && quantity != StatedQuantity::kDisplacement) return {};
+  std::vector<std::string> names;
+  std::string rest = d.causes[cause].where;
+  for (std::size_t end = rest.find(','); end != std::string::npos; end = rest.find(',')) {
+    names.push_back(rest.substr(0, end));
+    rest.erase(0, end + 1);
+  }
+  names.push_back(rest);
+  return names;
+}
+
+Text sentence(std::string words) {
+  return {.words = std::move(words), .detail = true};  // the terminal has the answer and the tables
+}
+
+Section one_cause(const diagnosis::Diagnosis& d, std::size_t i) {
+  const diagnosis::Cause& c = d.causes[i];
+  const std::optional<StatedQuantity> quantity = quantity_of_cause(d, i);
+  Section section{.title =
+                      fmt::format("{}. {} ({})", i + 1, difference_text(quantity, c.where), diagnosis::word(c.standing))};
+  add(section, sentence(cause_sentence(d, i)));
+  add(section, sentence(look_text(quantity, c.where)));
+  return section;
+}
+
+void add_certainty(Section& section, const diagnosis::Diagnosis& d, std::size_t i) {
+  const diagnosis::Cause& c = d.causes[i];
+  add(section, sentence(sure_sentence(d, i)));
+  const std::string others = alternatives_text(c, kMostAlternatives);
+  if (!others.empty())
+    add(section,
+        sentence(fmt::format("What else it could be: {}. These records cannot distinguish {}{}.", others,
+                             c.alternatives.size() == 1 ? "the two" : "them", d.experiment ? "; the test below can" : "")));
+  else if (!is_moved_number(d, i) && c.doubt.empty())
+    add(section, sentence("What else it could be: nothing else in the catalogue explains these records nearly as well."));
+}
+
+/// The statistics of one cause.
+Section one_cause_statistics(const diagnosis::Diagnosis& d, std::size_t i) {
+  const diagnosis::Cause& c = d.causes[i];
+  Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where)};
+  if (!is_moved_number(d, i) && d.ended_at.empty())
+    add(section,
+        Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
+                         std::abs(c.kept_out_nats), c.kept_out_nats < 0.0 ? "less" : "more")});
+  if (c.n_searched > 0)
+    add(section,
+        Text{fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
+                         c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
+                         c.n_again == 0              ? "in none of them"
+                         : c.n_again == c.n_searched ? "each time"
+                                                     : fmt::format("{} of them", c.n_again))});
+  Table table{
+      .title =
+          c.alternatives.empty()
+              ? "Nine tenths of the odds are with this effect at this place; those in the row are of this law of it alone"
+          : c.odds.kind < diagnosis::kSure
+              ? fmt::format("The data cannot distinguish it from the others; its kind has {:.0f} % of the odds",
+                            100.0 * c.odds.kind)
+              : fmt::format("Its kind has {:.0f} % of the odds; the data do not show where it is", 100.0 * c.odds.kind),
+      .columns = {{.title = "effect"},
+                  {.title = "where"},
+                  {.title = "law"},
+                  {.title = "numbers (95 % interval)"},
+                  {.title = "gain", .unit = "nats"},
+                  {.title = "odds", .unit = "%"}}};
+  const auto add_row = [&](const diagnosis::Cause& x) {
+    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain, std::round(100.0 * x.share)});
+  };
+  add_row(c);
+  for (const diagnosis::Cause& a : c.alternatives) add_row(a);
+  add(section, std::move(table));
+  return section;
+}
+
+}  // namespace
+
+std::size_t lead_cause(const diagnosis::Diagnosis& d) {
+  const auto lead = std::max_element(d.causes.begin(), d.causes.end(),
+                                     [](const auto& a, const auto& b) { return a.standing < b.standing; });
+  return static_cast<std::size_t>(lead - d.causes.begin());
+}
+
+const diagnosis::Prediction* with_causes(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d) {
+  for (const diagnosis::Prediction* readings : {&d.search.fit.prediction, &d.extended}) {
+    if (readings->size() == m.runs.size()) return readings;
+  }
+  return nullptr;
+}
+
+std::string with_causes_text(const diagnosis::Diagnosis& d) {
+  if (d.search.findings.empty()) return "simulated with its numbers fitted";
+  return d.search.findings.size() == 1 ? "simulated with the cause" : "simulated with the causes";
+}
+
+std::optional<ShownChannel> channel_of_cause(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
+                                             std::size_t cause, const std::vector<ShownChannel>& but) {
+  const diagnosis::Prediction* after = with_causes(m, d);
+  if (!after) return std::nullopt;
+  return clearest_channel(m, d, after, instruments_of(d, cause), but);
+}
+
+std::string alternatives_text(const diagnosis::Cause& cause, std::size_t most) {
+  std::vector<std::string> list;
+  for (const diagnosis::Cause& a : cause.alternatives) {
+    if (list.size() < most) list.push_back(fmt::format("{} at {} ({:.0f} %)", a.effect, a.where, 100.0 * a.share));
+  }
+  if (list.empty()) return "";
+  const std::size_t n_more = cause.alternatives.size() - list.size();
+  return fmt::format("{}{}", fmt::join(list, ", "),
+                     n_more > 0 ? fmt::format(" and {}", counted(n_more, "other", "others")) : "");
+}
+
+Section causes_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
+                       const std::optional<ShownChannel>& shown) {
+  Section section{.title = d.causes.size() == 1 ? "The cause" : "The causes, one by one"};
+  std::vector<ShownChannel> drawn;
+  if (shown) drawn.push_back(*shown);
+  const std::size_t n_shown = std::min(kMostCauses, d.causes.size());
+  for (std::size_t i = 0; i < n_shown; ++i) {
+    Section cause = one_cause(d, i);
+    const bool is_at_top = shown && i == lead_cause(d);
+    const std::optional<ShownChannel> channel = is_at_top ? std::nullopt : channel_of_cause(m, d, i, drawn);
+    if (channel && std::find(drawn.begin(), drawn.end(), *channel) == drawn.end()) {
+      add(cause, channel_figure(m, d, *channel, with_causes(m, d), with_causes_text(d)));
+      drawn.push_back(*channel);
+    }
+    add_certainty(cause, d, i);
+    section.sections.push_back(std::move(cause));
+  }
+  if (n_shown < d.causes.size())
+    section.sections.push_back(
+        {.blocks = {sentence(
+             fmt::format("{} in the table below.", counted(d.causes.size() - n_shown, "more cause is", "more are")))}});
+  return section;
+}
+
+Section cause_statistics(const diagnosis::Diagnosis& d) {
+  Section section{.title = d.causes.empty() ? "" : "Statistics of the causes", .detail = true};
+  for (std::size_t i = 0; i < d.causes.size(); ++i) section.sections.push_back(one_cause_statistics(d, i));
+  return section;
+}
+
+}  // namespace driftwright::findings
