@@ -34,18 +34,16 @@ constexpr std::size_t kMostKnown = 64;
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 constexpr double kEvenOdds = 0.5;     // that nothing is wrong
 
-/// Fits several hypotheses in parallel.
-/// @param numbers  start of scatter. @param of_interest, slopes  as Fitter::fit_others()
+/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as Fitter::fit_others()
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                         const Eigen::VectorXd& numbers, double of_interest = Fitter::kAny,
-                         Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew) {
+                         double of_interest = Fitter::kAny, Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew) {
   std::vector<Fit> fits(hypotheses.size());
   for_each_index(
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
-        const auto& [hypothesis, claims] = hypotheses[i];
+        const auto& [hypothesis, start] = hypotheses[i];
         const auto fit = [&] {
-          fits[i] = fitter.fit_others(hypothesis, joined(numbers, claims), kNothingHeld, workspace, of_interest, slopes);
+          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest, slopes);
         };
         if (!has_solution(fit)) fits[i] = Fit{};  // a state without solution is no explanation
       });
@@ -54,7 +52,7 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
 
 /// Fits one hypothesis from the last settled scatter.
 Fit fit_one(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims) {
-  return fit_all(fitter, {{hypothesis, claims}}, fitter.settled()).front();
+  return fit_all(fitter, {{hypothesis, joined(fitter.settled(), claims)}}).front();
 }
 
 /// Inputs of a search; the list of names grows during the search.
@@ -189,12 +187,6 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
   return labels.size();
 }
 
-/// Whether a fit has moved the scenario's numbers by more than a sigma of their priors.
-bool have_moved(const Fitter& fitter, const Fit& fit) {
-  const Eigen::Index n = fitter.n_nuisance();
-  return n > 0 && (fit.x.head(n).array() / fitter.nuisance_sd().array()).abs().maxCoeff() > 1.0;
-}
-
 /// Full fits of laws on top of a hypothesis.
 struct Trials {
   const Ground& ground;
@@ -216,9 +208,6 @@ struct Trials {
   }
   void fit(std::span<const Score> laws) {
     const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - ground.fitter.n_nuisance());
-    // Numbers that were fitted without the claim have absorbed its effect, and from there no slope may lead to their right values; then they start at the scenario's values.
-    Eigen::VectorXd start = base_fit.x.head(ground.fitter.n_nuisance());
-    if (have_moved(ground.fitter, base_fit)) start.setZero();
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
     std::vector<double> hoped;
     for (const Score& s : laws) {
@@ -226,11 +215,12 @@ struct Trials {
       if (const FittedClaim* fit = known ? known->find(tried) : nullptr) {
         fitted.push_back({tried.back(), fit->fit, s.gain, fit->is_rough});
       } else {
-        jobs.emplace_back(std::move(tried), joined(base_x, s.start));
+        // Numbers that were fitted without the claim have absorbed its effect: they start at their values by linear theory with the claim.
+        jobs.emplace_back(std::move(tried), joined(s.beside, joined(base_x, s.start)));
         hoped.push_back(s.gain);
       }
     }
-    std::vector<Fit> fits = fit_all(ground.fitter, jobs, start, base_fit.misfit, Fitter::Slopes::kKept);
+    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit, Fitter::Slopes::kKept);
     for (std::size_t i = 0; i < jobs.size(); ++i)
       fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();
@@ -540,9 +530,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
     ground.candidates = former->candidates;
     ground.names = former->names;
     ground.said = former->said;
-    former_fit = fit_all(fitter, {{former->hypothesis, former->fit.claim_x(fitter.n_nuisance())}},
-                         former->fit.x.head(fitter.n_nuisance()))
-                     .front();
+    former_fit = fit_all(fitter, {{former->hypothesis, former->fit.x}}).front();
   }
   KnownFits known;
   double best_value = best_fit.log_evidence;
