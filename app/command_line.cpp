@@ -75,6 +75,12 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
       ->allow_extra_args(false);
   verb->add_option("--target", options.target,
                    "displacement (a column of the records) to predict; only needed if the scenario has no block `study`");
+  CLI::Option* probe = verb->add_option("--probe", options.probe,
+                                        "time between two probings of the corrected axis, such as '60 min'; shows what each "
+                                        "strategy then leaves [not probed]");
+  verb->add_option("--probe-noise", options.probe_noise, "noise of one probing, 1 sigma")
+      ->needs(probe)
+      ->capture_default_str();
 }
 
 /// Adds the options for the state in which a prediction begins.
@@ -229,8 +235,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       "--watch", options.watch,
       "file of limits written by --calibrate-watch; `follow` raises an alarm if the machine no longer behaves like the "
       "model (observer only) [the limits in the model's file, which `validate` computes]");
-  verb->add_flag("--no-watch", options.no_watch, "raises no alarms; a row of an observer then takes half of the time")
-      ->excludes(watch);
+  verb->add_flag("--no-watch", options.no_watch, "raises no alarms; an observer is not watched")->excludes(watch);
   CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
                                             "file to write: limits for --watch, computed by simulation; no rows are read")
                                ->excludes(watch)

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/quantity.hpp"
 #include "compensation/control/control_files.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "findings/strategy_section.hpp"
@@ -37,6 +38,23 @@ Json watch_of(const JudgedStrategy& s, const StrategyMatrix& m, const Listener& 
   return limits ? follow::limits_json(*limits) : Json(nullptr);
 }
 
+/// The speeds and ambients that a driven predictor was fitted and judged on.
+std::optional<output::Covered> covered_by(const JudgedStrategy& s, const StrategyMatrix& m) {
+  if (!s.fitted.predictor->is_driven()) return std::nullopt;
+  const double zero_degC = s.fitted.predictor->reference_K() - kZeroCelsius_K;
+  output::Covered c{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto take = [&](const ObservedRun& run) {
+    for (const auto& section : run.cyclogram.sections) c.most_rpm = std::max(c.most_rpm, section.drive.speed_rpm);
+    for (double K : run.ambient.value) {
+      c.low_degC = std::min(c.low_degC, K + zero_degC);
+      c.high_degC = std::max(c.high_degC, K + zero_degC);
+    }
+  };
+  for (const ObservedRun& run : m.training) take(run);
+  for (const JudgedRunOfMachine& r : m.runs) take(r.run);
+  return c.high_degC >= c.low_degC ? std::optional(c) : std::nullopt;
+}
+
 }  // namespace
 
 void write_models(const compensation::StrategyMatrix& m, const std::vector<effects::Effect>& effects,
@@ -50,10 +68,11 @@ void write_models(const compensation::StrategyMatrix& m, const std::vector<effec
       judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
     judged["with_failed_sensors"] = m.settings.fails_at.has_value();
     judged.update(output::section_json({.blocks = {findings::strategies_table(m, {&s})}})["strategies"][0]);
-    folder.write_text(
-        fmt::format("models/{}.json", name),
-        output::predictor_json({s.fitted, std::move(judged), watch_of(s, m, listener)}, effects, folder.made_by()).dump(1) +
-            "\n");
+    folder.write_text(fmt::format("models/{}.json", name),
+                      output::predictor_json({s.fitted, std::move(judged), watch_of(s, m, listener), covered_by(s, m)},
+                                             effects, folder.made_by())
+                              .dump(1) +
+                          "\n");
     const std::optional<output::DeployedModel> formula = formula_of(s);
     if (!formula) continue;
     folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));

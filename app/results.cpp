@@ -53,7 +53,9 @@ void refuse_implausible(const std::string& scenario_path, const output::Document
 
 output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name) {
   const std::string target = options.out.empty() ? "results/" + scenario_name : options.out;
-  return {target, options.force, output::Provenance{kVersion, clean_name(options.scenario)}};
+  std::string shown = clean_name(target);
+  while (shown.size() > 1 && shown.ends_with('/')) shown.pop_back();
+  return {target, options.force, output::Provenance{kVersion, clean_name(options.scenario), shown}};
 }
 
 std::filesystem::path checked_results(const CommonOptions& options, const std::string& scenario_name) {

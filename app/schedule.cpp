@@ -16,6 +16,7 @@
 #include "findings/schedule_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "scenarios/reader/unusual.hpp"
+#include "studies/known_speed.hpp"
 #include "studies/planner.hpp"
 
 namespace driftwright::app {
@@ -64,26 +65,10 @@ std::string between(const ScheduleVerbOptions& options, const scenarios::Schedul
   return settings.between_s > 0.0 ? fmt::format("{} s", settings.between_s) : "";
 }
 
-/// The highest speed [rpm] that the scenario knows: of its cyclograms, or at which a law states its heat or growth; 0:
-/// none.
-double known_speed_rpm(const scenarios::Scenario& scenario) {
-  double top_rpm = 0.0;
-  for (const Cyclogram& c : scenario.cyclograms) {
-    for (const auto& section : c.sections) top_rpm = std::max(top_rpm, section.drive.speed_rpm);
-  }
-  for (const effects::Effect& e : scenario.machine->effects) {
-    for (std::size_t k = 0; k < e.values.size(); ++k) {
-      if (e.kind->parameters[k].name == std::string_view("at_speed") && std::isfinite(e.values[k]))
-        top_rpm = std::max(top_rpm, e.values[k]);
-    }
-  }
-  return top_rpm;
-}
-
 /// The limits of the scenario, with its own defaults for speed and feed.
 MachineLimits limits_for(const scenarios::Scenario& scenario, const scenarios::ScheduleSettings& settings) {
   MachineLimits limits = scenario.limits;
-  const double top_rpm = known_speed_rpm(scenario);
+  const double top_rpm = studies::known_speed_rpm(scenario);
   if (std::isinf(limits.speed_rpm) && top_rpm > 0.0) limits.speed_rpm = top_rpm;  // 0: no law or cyclogram has a speed
   if (std::isinf(limits.feed_m_s) && settings.nc.rapid_m_s) limits.feed_m_s = *settings.nc.rapid_m_s;
   return limits;

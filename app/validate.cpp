@@ -4,6 +4,7 @@
 
 #include "app/model_files.hpp"
 #include "app/results.hpp"
+#include "base/option_quantity.hpp"
 #include "findings/programme_section.hpp"
 #include "findings/strategy_section.hpp"
 #include "output/document_csv.hpp"
@@ -18,6 +19,15 @@ void write_strategies(const compensation::StrategyMatrix& matrix, const scenario
                       output::ResultsFolder& folder, const Listener& listener) {
   folder.write_text("strategies.csv", output::table_csv(findings::cases_table(matrix), folder.made_by()));
   write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder, listener);
+}
+
+std::optional<compensation::Probing> probing_of(const RecordOptions& options) {
+  if (options.probe.empty()) return std::nullopt;
+  const compensation::Probing p{option_quantity("--probe", options.probe, "s"),
+                                option_quantity("--probe-noise", options.probe_noise, "um")};
+  if (!(p.every_s > 0.0) || !(p.noise_um > 0.0))
+    throw InputError(fmt::format("--probe '{}' and --probe-noise '{}' must be above 0", options.probe, options.probe_noise));
+  return p;
 }
 
 /// What strategies are judged on where the scenario does not say it, in words for the user.
@@ -50,7 +60,7 @@ std::string only_target(const scenarios::Scenario& scenario) {
 }
 
 /// The strategies of `validation`, the predictors of `programme`, or both.
-void validate_machine(const scenarios::Scenario& scenario, const std::string& note, const CommonOptions& options) {
+void validate_machine(const scenarios::Scenario& scenario, const std::string& note, const RecordOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   std::vector<Cyclogram> asked;
@@ -71,9 +81,10 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
                             .subtitle = model.words()};
   std::string seconds;
   if (scenario.validation) {
-    const compensation::StrategyMatrix matrix = studies::validate_strategies(scenario, model, progress.listener());
+    const compensation::StrategyMatrix matrix =
+        studies::validate_strategies(scenario, model, probing_of(options), progress.listener());
     write_strategies(matrix, scenario, folder, progress.listener());
-    document.body.sections.push_back(findings::strategy_section(matrix));
+    document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
     if (!note.empty())
       document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
   }
@@ -127,12 +138,12 @@ void validate(const RecordOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const compensation::StrategyMatrix matrix =
-      studies::validate_on_records(scenario, std::move(records), progress.listener());
+      studies::validate_on_records(scenario, std::move(records), probing_of(options), progress.listener());
   warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
   write_strategies(matrix, scenario, folder, progress.listener());
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + ": strategies judged on records they were not fitted on"};
-  document.body.sections.push_back(findings::strategy_section(matrix));
+  document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
   document.body.sections.push_back({.blocks = {output::Notes{.key = "warnings", .sort = "warning", .lines = warnings}}});
   finish(document, folder, progress, options);
 }

@@ -138,6 +138,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
 
 struct RecordOptions : CommonOptions, studies::RecordPaths {
   std::string target;  ///< displacement of the records; empty: that of the scenario's `study`
+  std::string probe, probe_noise = "1 um";  ///< time between two probings, "60 min"; empty: the axis is not probed
 };
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);

@@ -47,6 +47,16 @@ std::string not_known(const std::string& word, const std::vector<std::string>& a
                      did_you_mean(word, allowed));
 }
 
+/// Advice for a number with a decimal comma in braces, as in {capacity: 5,6 kJ/K}, where YAML reads "6 kJ/K" as a key; ""
+/// for all others.
+std::string after_a_comma(const std::string& number, const std::vector<std::string>& keys) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (number.empty() || !std::all_of(number.begin() + (number[0] == '-' ? 1 : 0), number.end(), is_digit)) return "";
+  const auto rest =
+      std::find_if(keys.begin(), keys.end(), [&](const std::string& k) { return !k.empty() && is_digit(k[0]); });
+  return rest == keys.end() ? "" : fmt::format("; decimals need a point: {}.{}", number, *rest);
+}
+
 }  // namespace
 
 ConfigMap ConfigMap::read_file(const std::string& path) {
@@ -55,7 +65,10 @@ ConfigMap ConfigMap::read_file(const std::string& path) {
 
 ConfigMap ConfigMap::of_tree(ConfigNodePtr root) {
   if (!root->is_map()) {
-    throw InputError(fmt::format("{}: the file holds no map of keys, but must be a scenario", root->source->path));
+    throw InputError(
+        fmt::format("{}: this is not a scenario, which must be a YAML file with keys such as `name:` and `machine:`. "
+                    "Records are given by options such as --measured and --train",
+                    root->source->path));
   }
   std::shared_ptr<const ConfigSource> source = root->source;
   return {std::move(source), std::move(root), ""};
@@ -316,11 +329,12 @@ int ConfigMap::integer(const std::string& key) const {
 
 double ConfigMap::read_quantity(const ConfigNode& node, const std::string& key, const schema::Value& as) const {
   double value = 0.0;
+  std::string text;
   try {
-    const std::string text = scalar(node, key);
+    text = scalar(node, key);
     value = as.unit == "degC" ? parse_temperature_K(text) : parse_quantity(text, as.unit);
   } catch (const RangeError& e) {
-    throw InputError(node.where(path_of(key)), e.what());
+    throw InputError(node.where(path_of(key)), e.what() + after_a_comma(text, keys()));
   }
   if ((value >= as.low && value <= as.high) || (as.or_zero && value == 0.0)) return value;
   throw InputError(node.where(path_of(key)),

@@ -139,7 +139,7 @@ bool guess_numbers(const LoggerSheet& sheet, bool may_go_back, GuessedColumns& g
       if (before && number) ++(*number > *before ? n_on : n_back);
       before = number;
     }
-    if (!are_numbers || !before || n_back > (may_go_back ? n_on / kRowsInOrder : 0)) continue;
+    if (!are_numbers || !before || n_back > (may_go_back ? std::max<std::size_t>(1, n_on / kRowsInOrder) : 0)) continue;
     used.insert(c);
     guessed.map.time.columns = {place(sheet, c)};
     guessed.map.time.unit = is_of_time ? words.unit : *before > 1e12 ? "ms" : "s";

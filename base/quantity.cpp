@@ -86,6 +86,11 @@ Quantity split(const std::string& text, const std::string& wanted) {
   if (end == begin) throw RangeError(fmt::format("'{}' is not a number with a unit, such as '1 {}'", text, wanted));
   if (!std::isfinite(number)) throw RangeError(fmt::format("'{}' is not a finite number", text));
   std::string unit(end);
+  if (unit.size() > 1 && unit[0] == ',' && unit[1] >= '0' && unit[1] <= '9') {
+    std::string meant = text;
+    meant[static_cast<std::size_t>(end - begin)] = '.';
+    throw RangeError(fmt::format("decimals need a point: {}, not {}", meant, text));
+  }
   unit.erase(0, unit.find_first_not_of(" \t"));
   return {number, unit};
 }

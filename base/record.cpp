@@ -70,7 +70,12 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
         "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
         "{t_housing: {column: NAME, unit: degC}}}");
   }
-  throw InputError(where, fmt::format("the first column is '{}'; it must be time_s, time_min or time_h", header));
+  throw InputError(
+      where,
+      fmt::format(
+          "the first column is '{}'; it must be time_s, time_min or time_h, as in every record CSV. `driftwright import "
+          "FILE` makes a record of a logger's file",
+          header));
 }
 
 }  // namespace
@@ -121,9 +126,12 @@ Record read_record_csv(const std::string& path) {
         if (std::any_of(cells[i].begin(), cells[i].end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }))
           throw InputError(where(i), fmt::format("column {:?} has a control character in its name", cells[i]));
         if (channel.unit.empty()) {
-          throw InputError(where(i),
-                           fmt::format("column '{}' names no unit; it must be called '<channel>_<unit>' with one of {}",
-                                       cells[i], fmt::join(unit_table(), ", ")));
+          throw InputError(
+              where(i),
+              fmt::format("column '{}' names no unit; it must be called '<channel>_<unit>', such as speed_rpm, t01_degC or "
+                          "drift_y_um, or be assigned by the key `columns` of the scenario "
+                          "(docs/reference/record.md). Units: {}",
+                          cells[i], fmt::join(unit_table(), ", ")));
         }
         if (record.find(channel.header())) {
           throw InputError(where(i), fmt::format("column '{}' appears twice", channel.header()));

@@ -157,7 +157,9 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
       for (std::size_t c = 0; c < n_claims; ++c) {
         if (((kept >> c) & 1U) != 0)
           held.why_not_written[c] =
-              "searches without the kept-out rows found what predicts these worse than the scenario's own numbers do";
+              "when the search was repeated without some rows, what it found predicted these rows worse than the scenario "
+              "with only "
+              "its own numbers fitted";
       }
       kept = 0;
     }

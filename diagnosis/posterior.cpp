@@ -277,6 +277,7 @@ Posterior joined(const std::vector<Posterior>& posteriors) {
   }
   std::stable_sort(all.stated.begin(), all.stated.end(),
                    [](const Stated& a, const Stated& b) { return a.probability > b.probability; });
+  if (!all.stated.empty()) all.nothing = std::min(all.nothing, 1.0 - all.stated.front().probability);
   return all;
 }
 

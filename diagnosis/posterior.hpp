@@ -74,7 +74,7 @@ class StatedBeside {
 };
 
 /// Statements of several posteriors, each quantity and place once with its largest probability; the probability of
-/// nothing is that of the first.
+/// nothing is that of the first, but no more than the likeliest statement leaves.
 [[nodiscard]] Posterior joined(const std::vector<Posterior>& posteriors);
 
 }  // namespace driftwright::diagnosis

@@ -78,7 +78,7 @@ std::optional<std::string> displacement_finding(const MeasuredChannel& c, const 
   if (!(std::abs((read * model).mean()) > kFollowsTwin * read_m * model_m)) return std::nullopt;
   if (may_be_turned && rms(read + model) < kTurned * read_m) {
     return fmt::format(
-        "{}_{} looks turned in sign: it runs against what the scenario says, and minus its readings would meet that to "
+        "{}_{} seems to have the wrong sign: with the opposite sign its readings agree with the simulation to "
         "{:.0f} %; it is left out until its sign, or the scenario's, is mended",
         c.name, c.recorded_unit, 100.0 * rms(read + model) / read_m);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/inquiry.hpp"
 #include "diagnosis/verdict.hpp"
 #include "findings/cause_section.hpp"
 #include "findings/cause_words.hpp"
@@ -18,6 +19,7 @@ using diagnosis::Standing;
 
 constexpr std::size_t kMostRivals = 3;    // in a sentence
 constexpr std::size_t kMostMeasured = 3;  // records that a command lists
+constexpr double kClearlyLess = 0.95;     // ratio of errors on kept-out readings
 
 bool is_of_few(const Compared& compared) {
   return 2 * compared.n <= compared.of;
@@ -51,9 +53,14 @@ std::string gain_clause(const Diagnosis& d, const std::string& file) {
   if (!d.ended_at.empty() || !d.written.keeps_numbers || !(d.misses.as_written > 0.0) || !(d.misses.extended > 0.0))
     return "";
   return fmt::format(
-      "with {} the simulation misses kept-out readings by {:.1f} times their noise, with the scenario as it is by {:.1f} "
-      "times",
+      "on readings that were kept out of the fit the error of {} is {:.1f} times their noise, that of the scenario as it is "
+      "{:.1f} times",
       file, d.misses.extended, d.misses.as_written);
+}
+
+/// Whether a fit was judged and predicts no better than the scenario as it is.
+bool gains_nothing(const Diagnosis& d) {
+  return !gain_clause(d, "").empty() && !(d.misses.extended < kClearlyLess * d.misses.as_written);
 }
 
 std::string with_capital(std::string text) {
@@ -96,6 +103,14 @@ std::string wrong_all_over_text(const Diagnosis& d) {
       n_moved, n_own);
 }
 
+bool writes_a_number(const Diagnosis& d) {
+  return std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return e.is_written; });
+}
+
+bool writes_a_cause(const Diagnosis& d) {
+  return std::any_of(d.causes.begin(), d.causes.end(), [](const auto& c) { return c.is_written; });
+}
+
 std::string cause_text(const Diagnosis& d) {
   const std::size_t lead = lead_cause(d);
   const diagnosis::Cause& c = d.causes[lead];
@@ -106,7 +121,10 @@ std::string cause_text(const Diagnosis& d) {
                        c.doubt.empty() ? "It is not certain." : fmt::format("It is only suspected, since {}.", c.doubt));
   const std::string gain = gain_clause(d, "extended.yaml");
   if (is_moved_number(d, lead)) return what + (gain.empty() ? "" : " " + with_capital(gain) + ".");
-  return fmt::format("{} This is {}{}.", what, sure_text(c.probability), gain.empty() ? "" : "; " + gain);
+  const bool is_of_numbers = writes_a_number(d) && !writes_a_cause(d);
+  return fmt::format("{} This is {}.{}{}", what, sure_text(c.probability),
+                     gain.empty() ? "" : " " + with_capital(gain) + ".",
+                     gain.empty() || !is_of_numbers ? "" : " The fit of the scenario's own numbers alone gains this.");
 }
 
 std::string text_of(const Diagnosis& d) {
@@ -117,7 +135,8 @@ std::string text_of(const Diagnosis& d) {
     case diagnosis::Verdict::kConsistent: {
       std::string gain;
       if (d.misses.as_written > 0.0)
-        gain = fmt::format(" It misses kept-out readings by {:.1f} times their noise.", d.misses.as_written);
+        gain = fmt::format(" On readings that were kept out of the fit its error is {:.1f} times their noise.",
+                           d.misses.as_written);
       return fmt::format(
           "The simulation explains the measurement within what is known of its numbers; none of {} candidates "
           "is needed.{}",
@@ -150,6 +169,28 @@ std::string command_of(const std::string& verb, const std::string& scenario, con
   return fmt::format("`{}{}`", text, also);
 }
 
+/// What extended.yaml contains where no cause is written. @param again  the command that diagnoses with it
+std::string numbers_step(const Diagnosis& d, const std::string& again) {
+  if (!writes_a_number(d)) return "extended.yaml is the scenario as it was; \"Causes\" gives the reason.";
+  const diagnosis::Estimate* most = nullptr;
+  for (const diagnosis::Estimate& e : d.calibrated) {
+    if (e.is_written && std::abs(e.deviation) > diagnosis::kTooFar &&
+        (!most || std::abs(e.deviation) > std::abs(most->deviation)))
+      most = &e;
+  }
+  if (!most)
+    return fmt::format(
+        "extended.yaml contains no cause, only the scenario's own numbers as fitted (\"Causes\" gives the reason). {} shows "
+        "what is left.",
+        again);
+  return fmt::format(
+      "extended.yaml contains no further effect, but the scenario's own numbers as fitted (\"Causes\" gives the reason). "
+      "One of them may be the cause: {} moved to {}{}, by {:+.1f} sigmas. Compare the file with the scenario "
+      "(extended.diff); {} should answer `consistent`.",
+      most->name, fmt::format("{:.4g}", most->value),
+      most->unit.empty() || most->unit == "1" ? "" : " " + output::shown_unit(most->unit), most->deviation, again);
+}
+
 std::string test_text(const studies::MeasuredTwin& m, const diagnosis::Experiment& e) {
   return fmt::format(
       "{}Run this test and record it: {}. Then {} distinguishes them.",
@@ -161,19 +202,31 @@ std::string test_text(const studies::MeasuredTwin& m, const diagnosis::Experimen
 
 }  // namespace
 
-output::Verdict answer_of(const Diagnosis& d, const Compared& compared) {
+std::string displacements_left_out_text(const studies::MeasuredTwin& m, const Compared& compared) {
+  std::string text;
+  for (const auto& [name, why] : compared.doubted) {
+    const auto is_it = [&name = name](const auto& sensor) { return sensor.name == name; };
+    const auto& sensors = m.scenario.machine->sensors;
+    if (std::none_of(sensors.begin(), sensors.end(), is_it))
+      text += fmt::format("{}{} was not compared: {}.", text.empty() ? "" : " ", name, why);
+  }
+  return text;
+}
+
+output::Verdict answer_of(const Diagnosis& d, const Compared& compared, const std::string& left_out) {
   using Kind = output::Verdict::Kind;
-  const Kind kind = d.verdict == diagnosis::Verdict::kConsistent && !is_of_few(compared) ? Kind::kGood
-                    : d.verdict == diagnosis::Verdict::kUnexplained                      ? Kind::kBad
-                                                                                         : Kind::kNeutral;
-  const std::string first = is_of_few(compared) ? compared_text(compared) : "";
+  const bool is_good = d.verdict == diagnosis::Verdict::kConsistent && !is_of_few(compared) && left_out.empty();
+  const Kind kind = is_good ? Kind::kGood : d.verdict == diagnosis::Verdict::kUnexplained ? Kind::kBad : Kind::kNeutral;
+  std::string first = is_of_few(compared) ? compared_text(compared) : "";
+  if (!left_out.empty()) first += (first.empty() ? "" : " ") + left_out;
   return {.key = "",
           .kind = kind,
           .title = title_of(d, compared),
           .text = first.empty() ? text_of(d) : fmt::format("{} {}", first, text_of(d))};
 }
 
-std::vector<std::string> next_steps(const studies::MeasuredTwin& m, const Diagnosis& d, const Compared& compared) {
+std::vector<std::string> next_steps(const studies::MeasuredTwin& m, const Diagnosis& d, const Compared& compared,
+                                    const output::Provenance& made_by) {
   if (!d.ended_at.empty()) return {"Run the same command again and let it finish."};
   std::vector<std::string> steps;
   if (d.verdict == diagnosis::Verdict::kInsufficientData)
@@ -207,44 +260,51 @@ std::vector<std::string> next_steps(const studies::MeasuredTwin& m, const Diagno
   if (d.experiment) {
     steps.push_back(test_text(m, *d.experiment));
   } else if (d.written.keeps_numbers && d.verdict != diagnosis::Verdict::kUnexplained) {
-    const bool has_cause = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& c) { return c.is_written; });
-    if (has_cause)
-      steps.push_back(fmt::format("extended.yaml is the scenario with what was found; {} should answer `consistent`.",
-                                  command_of("diagnose", "extended.yaml", m)));
-    else
-      steps.emplace_back("extended.yaml holds fitted numbers and none of the causes, for the reason under \"Causes\".");
+    const std::string again = command_of("diagnose", output::path_in_results(made_by, "extended.yaml"), m);
+    steps.push_back(
+        writes_a_cause(d)
+            ? fmt::format("extended.yaml is the scenario with what was found; {} should answer `consistent`.", again)
+            : numbers_step(d, again));
   }
   return steps;
 }
 
-output::Verdict calibration_answer(const Diagnosis& d, const std::string& warning) {
+output::Verdict calibration_answer(const Diagnosis& d, const std::string& warning, const std::string& left_out) {
   const std::string gain = gain_clause(d, "calibrated.yaml");
   const std::string gained = gain.empty() ? "" : with_capital(gain) + ".";
-  const auto n_numbers = d.calibrated.size();
-  if (warning.empty())
+  const std::string first = left_out.empty() ? "" : left_out + " ";
+  if (warning.empty()) {
+    const bool keeps = gains_nothing(d);
     return {.key = "",
-            .kind = output::Verdict::Kind::kGood,
-            .title = "The scenario's numbers explain the measurement",
-            .text = fmt::format("The fit of {} explains the records within what is known of them. {}",
-                                counted(n_numbers, "number", "numbers"), gained)};
+            .kind = left_out.empty() ? output::Verdict::Kind::kGood : output::Verdict::Kind::kNeutral,
+            .title = keeps ? "The scenario explains the measurement as it is" : "The fitted numbers explain the measurement",
+            .text = fmt::format("{}{}All fitted numbers ({}) stay within what is known of them. {}", first,
+                                keeps ? "The fit gains nothing on readings that were kept out of it. " : "",
+                                d.calibrated.size(), gained)};
+  }
   const char* what_follows = d.written.keeps_numbers ? "The fitted numbers have absorbed an error that is elsewhere."
                                                      : "Therefore no number is written.";
-  return {.key = "",
-          .kind = output::Verdict::Kind::kBad,
-          .title = "The numbers alone do not explain the measurement",
-          .text = fmt::format("{} {}", gained.empty() ? "Something other than the scenario's numbers is wrong." : gained,
-                              what_follows)};
+  return {
+      .key = "",
+      .kind = output::Verdict::Kind::kBad,
+      .title = "The numbers alone do not explain the measurement",
+      .text = fmt::format("{}{} {}", first,
+                          gained.empty() ? "Something other than the scenario's numbers is wrong." : gained, what_follows)};
 }
 
 std::vector<std::string> steps_after_calibration(const studies::MeasuredTwin& m, const Diagnosis& d,
-                                                 const std::string& warning) {
+                                                 const std::string& warning, const output::Provenance& made_by) {
   if (!warning.empty())
     return {fmt::format("Find what is wrong first: {}.", command_of("diagnose", m.scenario.path, m)),
             d.written.keeps_numbers ? "Do not use calibrated.yaml before." : "calibrated.yaml is the scenario as it was."};
+  const bool keeps = gains_nothing(d);
+  const std::string calibrated = output::path_in_results(made_by, "calibrated.yaml");
   return {
-      "Use calibrated.yaml in place of the scenario.",
-      "Record another day with another duty cycle; `driftwright diagnose calibrated.yaml --measured NEW.csv` should answer "
-      "`consistent`."};
+      keeps ? "Keep the scenario: calibrated.yaml predicts no better."
+            : fmt::format("Use {} in place of the scenario.", calibrated),
+      fmt::format("Record another day with another duty cycle (NEW.csv). Then `driftwright diagnose {} --measured NEW.csv` "
+                  "should answer `consistent`.",
+                  keeps ? m.scenario.path : calibrated)};
 }
 
 }  // namespace driftwright::findings

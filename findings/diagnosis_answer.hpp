@@ -7,15 +7,24 @@
 
 namespace driftwright::findings {
 
-/// The answer of `diagnose`. If half of the channels or fewer were compared, it says so first and is not shown as good.
-[[nodiscard]] output::Verdict answer_of(const diagnosis::Diagnosis& d, const Compared& compared);
+/// Displacements and tilts of the scenario that were recorded but not compared because their data is wrong, sentences; ""
+/// if there are none.
+[[nodiscard]] std::string displacements_left_out_text(const studies::MeasuredTwin& m, const Compared& compared);
+
+/// The answer of `diagnose`. If half of the channels or fewer were compared, or a displacement was not, it says so first and
+/// is not shown as good. @param left_out  as displacements_left_out_text() says it
+[[nodiscard]] output::Verdict answer_of(const diagnosis::Diagnosis& d, const Compared& compared,
+                                        const std::string& left_out = "");
 /// What to look at on the machine and which test or command comes next, up to three sentences.
+/// @param made_by  names the folder of results in the commands
 [[nodiscard]] std::vector<std::string> next_steps(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                                                  const Compared& compared);
+                                                  const Compared& compared, const output::Provenance& made_by);
 
 /// The answer of `calibrate`. @param warning  as calibration_warning() says it
-[[nodiscard]] output::Verdict calibration_answer(const diagnosis::Diagnosis& d, const std::string& warning);
+[[nodiscard]] output::Verdict calibration_answer(const diagnosis::Diagnosis& d, const std::string& warning,
+                                                 const std::string& left_out = "");
 [[nodiscard]] std::vector<std::string> steps_after_calibration(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                                                               const std::string& warning);
+                                                               const std::string& warning,
+                                                               const output::Provenance& made_by);
 
 }  // namespace driftwright::findings

@@ -67,11 +67,13 @@ Section compared_data(const std::vector<diagnosis::MeasuredRun>& runs) {
   Section section{.key = "compared"};
   put(section, "channels", compared.n);
   put(section, "of", compared.of);
-  if (compared.left_out.empty()) add(section, no_items("left_out"));
-  for (const auto& [name, why] : compared.left_out) {
-    Section item{.key = "left_out", .item = output::Item{"name", name}};
-    put(item, "why", why);
-    section.sections.push_back(std::move(item));
+  if (compared.n == compared.of) add(section, no_items("left_out"));
+  for (const auto* list : {&compared.left_out, &compared.doubted}) {
+    for (const auto& [name, why] : *list) {
+      Section item{.key = "left_out", .item = output::Item{"name", name}};
+      put(item, "why", why);
+      section.sections.push_back(std::move(item));
+    }
   }
   return section;
 }

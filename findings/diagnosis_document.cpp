@@ -88,7 +88,8 @@ Table statements_table(const diagnosis::Diagnosis& d, double least) {
     if (s.probability < least) continue;
     table.rows.push_back({diagnosis::words(s.says), size_text(s), diagnosis::records_text(s.says), s.probability});
   }
-  table.rows.push_back({"nothing", "", "", d.statements.nothing});
+  table.rows.push_back(
+      {"nothing is missing (judged on its own; the rows need not add to 100 %)", "", "", d.statements.nothing});
   return table;
 }
 
@@ -385,7 +386,7 @@ Section common_numbers(const DiagnosisFindings& found, bool verdict) {
   if (verdict) add(section, Value{.words = "verdict", .datum = diagnosis::word(d.verdict)});
   add(section,
       Value{.words = "compared",
-            .datum = compared.left_out.empty()
+            .datum = compared.n == compared.of
                          ? fmt::format("all of {}", counted(static_cast<std::size_t>(compared.n), "channel", "channels"))
                          : compared_text(compared)});
   if (const std::string one_mesh = studies::one_mesh_text(found.measured); !one_mesh.empty())
@@ -436,7 +437,7 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   const Compared compared = compared_of(m.runs);
   output::Document document = begin("diagnosis", found, made_by);
   Section& body = document.body;
-  add(body, answer_of(d, compared));
+  add(body, answer_of(d, compared, displacements_left_out_text(m, compared)));
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
 
@@ -444,7 +445,7 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   const std::optional<ShownChannel> shown =
       d.causes.empty() ? clearest_channel(m, d, nullptr) : channel_of_cause(m, d, lead_cause(d));
   body.sections.push_back(picture_section(found, shown, after, with_causes_text(d)));
-  body.sections.push_back(output::next_section(next_steps(m, d, compared)));
+  body.sections.push_back(output::next_section(next_steps(m, d, compared, made_by)));
   if (!d.causes.empty()) body.sections.push_back(causes_section(m, d, shown));
   if (d.experiment)
     body.sections.push_back(experiment_section(*d.experiment));
@@ -484,7 +485,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   output::Document document = begin("calibration", found, made_by);
   Section& body = document.body;
   const std::string warning = calibration_warning(d);
-  add(body, calibration_answer(d, warning));
+  add(body, calibration_answer(d, warning, displacements_left_out_text(m, compared_of(m.runs))));
   add(body, Value{.key = "warning", .datum = warning});
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
@@ -492,7 +493,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
 
   const diagnosis::Prediction* after = d.written.keeps_numbers ? &d.extended : nullptr;
   body.sections.push_back(picture_section(found, clearest_channel(m, d, after), after, "simulated with its numbers fitted"));
-  body.sections.push_back(output::next_section(steps_after_calibration(m, d, warning)));
+  body.sections.push_back(output::next_section(steps_after_calibration(m, d, warning, made_by)));
   add_causes_data(body, d.causes);
 
   Section numbers{.title = "The numbers"};

@@ -84,15 +84,15 @@ std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
            "what drove the machine within it matters to them "
            "still. Another record would judge it.";
   std::string text = fmt::format(
-      "All channels together, the misses of kept-out rows are {:.2f} times the noise as written and {:.2f} with the "
-      "scenario's "
-      "own numbers fitted alone",
+      "Error on kept-out rows, all channels together, in units of the noise: {:.2f} with the scenario as written, {:.2f} "
+      "with "
+      "only its own numbers fitted",
       m.as_written, m.calibrated);
   if (!std::isnan(m.named)) text += fmt::format("; {:.2f} with the named causes beside these", m.named);
   text += fmt::format("; {:.2f} with all that is written", m.extended);
   if (!std::isnan(m.found) && std::abs(m.found - m.extended) > 0.005 * m.extended)
     text +=
-        fmt::format(". What the searches without these rows found, whether or not it is written, leaves {:.2f}", m.found);
+        fmt::format("; {:.2f} with all that the searches without these rows found, whether or not it is written", m.found);
   std::vector<std::string> open;
   for (const auto& g : d.gain) {
     if (std::isnan(g.rmse_before)) open.push_back(channel_text(g.name, g.unit));
@@ -135,7 +135,7 @@ std::string calibration_warning(const diagnosis::Diagnosis& d) {
   if (!d.written.keeps_numbers) reasons.push_back("no number is written: " + d.written.why_nothing);
   if (reasons.empty()) return "";
   if (!d.written.keeps_numbers) return fmt::format("{}. `diagnose` looks for what is wrong.", fmt::join(reasons, "; "));
-  return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
+  return fmt::format("{}. The fitted numbers have absorbed an error that is elsewhere; `diagnose` looks for it.",
                      fmt::join(reasons, "; "));
 }
 

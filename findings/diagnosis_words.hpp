@@ -20,7 +20,9 @@ namespace driftwright::findings {
 /// Channels of records that were compared with the scenario, each counted once.
 struct Compared {
   int n = 0, of = 0;
-  std::vector<std::pair<std::string, std::string>> left_out;  ///< name, why
+  std::vector<std::pair<std::string, std::string>> left_out;  ///< columns that the scenario has no name for: name, why
+  std::vector<std::pair<std::string, std::string>> doubted =
+      {};  ///< channels of the scenario whose data is wrong: name, why
 };
 [[nodiscard]] Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs);
 /// "1 of 6 channels of the records is in the scenario; ..." if some are left out, else "".

@@ -197,13 +197,14 @@ output::Verdict verdict_of_network(const Identified& n) {
     count += 1.0;
   }
   const double share = std::exp(kept / std::max(count, 1.0));
-  return {
-      .kind = share < 0.5 ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
-      .title = fmt::format("{} bodies leave {:.0f} % of what was measured on rows that were kept out, {:.0f} % on their own",
-                           n.bodies.size(), 100.0 * share, 100.0 * std::exp(own / std::max(count, 1.0))),
-      .text = share < 0.5 ? "Geometric mean over the channels of root mean square left over standard deviation."
-                          : "Drive and ambient that were recorded explain less than half: something else drives "
-                            "this machine, or the record holds too few changes of the drive."};
+  return {.kind = share < 0.5 ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
+          .title = fmt::format("{} bodies leave {:.0f} % of the measured variation on rows that were kept out of the fit, "
+                               "{:.0f} % on the rows of the fit",
+                               n.bodies.size(), 100.0 * share, 100.0 * std::exp(own / std::max(count, 1.0))),
+          .text = share < 0.5 ? "The percentage is the RMS error of a channel divided by its standard deviation, as "
+                                "geometric mean over the channels."
+                              : "Drive and ambient that were recorded explain less than half: something else drives "
+                                "this machine, or the record holds too few changes of the drive."};
 }
 
 output::Verdict verdict_of_extension(const Identified& n) {

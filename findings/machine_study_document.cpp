@@ -34,7 +34,8 @@ Verdict verdict(const scenarios::Study& settings, const studies::MachineStudy& s
       failing.push_back(fmt::format("{} by {} ({:.1f} µm)", c->predictor, c->actuator, c->after.peak_abs));
   }
   const std::string text = fmt::format(
-      "{} on '{}', which no strategy was fitted on: {:.1f} µm before correction, {:.1f} µm after {} by {}.{}",
+      "{} on '{}', a duty cycle that no strategy was fitted to: {:.1f} µm before correction, {:.1f} µm after correction by "
+      "{} through {}.{}",
       settings.target, settings.judge, best->before.peak_abs, best->after.peak_abs, best->predictor, best->actuator,
       failing.empty() ? "" : fmt::format(" Not inside {:g} µm: {}.", settings.tolerance_um, fmt::join(failing, ", ")));
   return {.kind = best->inside_tolerance ? Verdict::Kind::kGood : Verdict::Kind::kBad,
@@ -288,8 +289,8 @@ output::Document document_of(const studies::MachineStudy& study, const scenarios
   add(body, Value{.key = "target", .datum = settings.target});
   add(body, Value{.key = "tolerance_um", .datum = settings.tolerance_um});
   add(body, Value{.key = "energy_balance_gap", .datum = study.worst_energy_gap});
-  add(body, corrections_table(study));
   add(body, residual_plot(settings.target, scenario, study));
+  add(body, corrections_table(study));
   body.sections.push_back(model_section(model));
   if (study.axis_loop)
     body.sections.push_back(axis_loop_section(*scenario.axis_loop, *study.axis_loop, settings.tolerance_um,

@@ -88,30 +88,36 @@ Verdict verdict_of(const Placement& p) {
       n_words(n), left.regression_um, left.observer_um, p.drift_um);
   const std::size_t n_enough = enough(p);
   if (n_enough < n) {
-    text += fmt::format(" {} would be enough: after that, no further one takes off a tenth.", n_words(n_enough));
+    text += fmt::format(" {} would be enough: further ones reduce the error by less than a tenth each.", n_words(n_enough));
   } else if (n_enough < p.chosen.left.size()) {
-    text += fmt::format(" After {} no further one takes off a tenth: stop there.", n_words(n_enough));
+    text += fmt::format(" Stop after {}: further ones reduce the error by less than a tenth each.", n_words(n_enough));
   } else if (n_enough > 1) {
-    text += fmt::format(" Even the last of {} takes off a tenth.", n_enough);
+    text += fmt::format(" Even the last of {} reduces the error by a tenth.", n_enough);
   }
   return {.kind = Verdict::Kind::kGood, .title = fmt::format("{} placed", n_words(n)), .text = text};
 }
 
 /// Where to mount them, which test to run, and with which commands.
-std::vector<std::string> steps_after_placement(const Placement& p, const scenarios::Scenario& scenario) {
+std::vector<std::string> steps_after_placement(const Placement& p, const scenarios::Scenario& scenario,
+                                               const output::Provenance& made_by) {
+  const std::string placed = output::path_in_results(made_by, "placed.yaml");
   const std::size_t n_new = p.names.size();
   std::vector<std::string> steps;
   if (n_new > 0)
     steps.push_back(
-        fmt::format("Mount {} at the points of the table below; placed.yaml is the scenario with {}, sensors.yaml "
-                    "holds {} alone.",
-                    n_words(n_new), n_new == 1 ? "it" : "them", n_new == 1 ? "its entry" : "the entries"));
+        fmt::format("Mount {} at the {} of the table below. {} is the scenario with {}; sensors.yaml contains only {}.",
+                    n_words(n_new), p.mesh.n_nodes() > 0 ? "points" : "bodies", placed, n_new == 1 ? "it" : "them",
+                    n_new == 1 ? "its entry" : "the entries"));
   const int least = studies::least_test(
       p.tests, p.options.placed_for == PlacedFor::kObserver ? &Residual::observer_um : &Residual::regression_um);
-  if (least >= 0) steps.push_back(fmt::format("Record a test: {}.", p.tests[static_cast<std::size_t>(least)].programme));
+  if (least >= 0)
+    steps.push_back(fmt::format("Run this test and record it: {}.", p.tests[static_cast<std::size_t>(least)].programme));
   const std::string target = scenario.study || p.channels.empty() ? "" : " --target " + p.channels.front();
-  steps.push_back(fmt::format(
-      "Then judge strategies on it: `driftwright validate placed.yaml --train TEST.csv --test ANOTHER_DAY.csv{}`.", target));
+  steps.push_back(
+      fmt::format("Then test strategies on another day: `driftwright validate {} --train TEST.csv --test "
+                  "ANOTHER_DAY.csv{}`. TEST.csv is "
+                  "the record of the test.",
+                  placed, target));
   return steps;
 }
 
@@ -288,9 +294,11 @@ output::Picture told_picture(const Placement& p, const scenarios::MachineModel& 
     const studies::Spot& s = p.spots[static_cast<std::size_t>(spot)];
     marks.push_back({s.sensor, s.at_m});
   }
-  return {.title = fmt::format("What one thermometer would leave of the drift, as designed for {}; {:.2f} µm without any. "
-                               "Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
-                               told_for_words(p.options.placed_for), p.told_nothing_um, p.options.n),
+  return {.title = fmt::format(
+              "Error of the drift in µm that a single thermometer at each point would leave, estimated by the search "
+              "criterion for {}; {:.2f} µm without a thermometer. "
+              "Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
+              told_for_words(p.options.placed_for), p.told_nothing_um, p.options.n),
           .svg = output::draw_machine({.mesh = &p.mesh,
                                        .field = output::PictureField{"drift left by one thermometer there [µm]", p.told_um},
                                        .marks = marks})};
@@ -313,7 +321,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(picture, curve_plot(p, &Residual::observer_um, "observer"));
   add(picture, curve_plot(p, &Residual::regression_um, "regression"));
   body.sections.push_back(std::move(picture));
-  body.sections.push_back(output::next_section(steps_after_placement(p, scenario)));
+  body.sections.push_back(output::next_section(steps_after_placement(p, scenario, made_by)));
 
   output::Section numbers{.title = "The numbers"};
   add(numbers, places_table(p, entries));
@@ -327,18 +335,19 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
                      .datum = p.without.observer_um,
                      .unit = "um",
                      .digits = output::decimals(2)});
-  add(numbers,
-      Value{.key = "enough", .words = "thermometers after which no more take off a tenth each", .datum = enough(p)});
+  add(numbers, Value{.key = "enough",
+                     .words = "number after which further thermometers reduce the error by less than a tenth each",
+                     .datum = enough(p)});
   if (p.own) {
     add(numbers,
         Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
     add(numbers, Value{.key = "own.observer_um",
-                       .words = "these leave to the observer",
+                       .words = "error that these leave, with the observer",
                        .datum = p.own->left.front().observer_um,
                        .unit = "um",
                        .digits = output::decimals(2)});
     add(numbers, Value{.key = "own.regression_um",
-                       .words = "to the regression",
+                       .words = "error that these leave, with a regression",
                        .datum = p.own->left.front().regression_um,
                        .unit = "um",
                        .digits = output::decimals(2)});

@@ -9,29 +9,42 @@
 
 namespace driftwright::findings {
 Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs) {
-  std::map<std::string, std::string> left_out;
+  std::map<std::string, std::string> left_out, doubted;
   std::set<std::string> names;
   for (const diagnosis::MeasuredRun& run : runs) {
     for (const auto& [name, why] : run.left_out) left_out[name] = why;
     for (const diagnosis::MeasuredChannel& c : run.channels) names.insert(c.name);
+    for (const diagnosis::DataFinding& f : run.findings) {
+      if (f.leaves_out) doubted.try_emplace(f.channel, f.what);
+    }
   }
   Compared compared{.n = static_cast<int>(names.size()), .of = 0, .left_out = {}};
-  for (auto& [name, why] : left_out) {
-    if (!names.contains(name)) compared.left_out.emplace_back(name, why);
+  for (const auto& [name, why] : left_out) {
+    if (!names.contains(name) && !doubted.contains(name)) compared.left_out.emplace_back(name, why);
   }
-  compared.of = compared.n + static_cast<int>(compared.left_out.size());
+  for (const auto& [name, why] : doubted) {
+    if (!names.contains(name)) compared.doubted.emplace_back(name, why);
+  }
+  compared.of = compared.n + static_cast<int>(compared.left_out.size() + compared.doubted.size());
   return compared;
 }
 
 std::string compared_text(const Compared& compared) {
-  if (compared.left_out.empty()) return "";
+  if (compared.n == compared.of) return "";
   std::vector<std::string> names;
-  for (const auto& [name, why] : compared.left_out) names.push_back(name);
-  return fmt::format(
-      "{} of {} channels of the records {} compared; left out: {}. A channel is compared where the scenario has a sensor or "
-      "displacement of its name; "
-      "`columns` renames.",
-      compared.n, compared.of, compared.n == 1 ? "is" : "are", fmt::join(names, ", "));
+  for (const auto* list : {&compared.doubted, &compared.left_out}) {
+    for (const auto& [name, why] : *list) names.push_back(name);
+  }
+  std::string text = fmt::format("{} of {} channels of the records {} compared; left out: {}.", compared.n, compared.of,
+                                 compared.n == 1 ? "is" : "are", fmt::join(names, ", "));
+  if (!compared.doubted.empty())
+    text += fmt::format(" \"The data themselves\" says what is wrong with {}.",
+                        compared.doubted.size() == 1 ? compared.doubted.front().first : "those that the scenario has");
+  if (!compared.left_out.empty())
+    text +=
+        " A channel is compared where the scenario has a sensor or displacement of its name; "
+        "`columns` renames.";
+  return text;
 }
 
 std::pair<std::string, double> shown_unit(const diagnosis::Stated& stated) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "compensation/predictors/formula_predictor.hpp"
+#include "findings/cause_words.hpp"
 #include "findings/columns.hpp"
 #include "findings/iso230_3_section.hpp"
 #include "output/drift_model_files.hpp"
@@ -89,8 +90,8 @@ output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<
   const std::string& target = m.settings.strategies.target;
   const Record counted = scored_readings(r.run, target, m.settings.strategies.count_from_start);
   output::Plot plot{
-      .title =
-          fmt::format("{}{}: {} and what strategies take it for", r.name, r.season.empty() ? "" : ", " + r.season, target),
+      .title = fmt::format("{}{}: {}, {} and predicted", r.name, r.season.empty() ? "" : ", " + r.season, target,
+                           r.season.empty() ? "measured" : "true"),
       .x_label = "time [min]",
       .y_label = target + " [µm]",
       .series = {
@@ -335,16 +336,15 @@ output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen
   std::string text;
   if (intact.peak)
     text = fmt::format(
-        "At worst it leaves {:.1f} µm of {} where {:.1f} µm are without correction ({}); the tolerance is "
-        "{:g} µm.",
-        intact.peak->after.peak_abs, m.settings.strategies.target, intact.peak->before.peak_abs,
-        name_of(m.runs[intact.peak->run]), m.settings.tolerance_um);
+        "{} it leaves at most {:.1f} µm of {}; without correction that run has {:.1f} µm ({}). The tolerance is {:g} µm.",
+        failed.peak ? "With all sensors intact" : "In the judged runs", intact.peak->after.peak_abs,
+        m.settings.strategies.target, intact.peak->before.peak_abs, name_of(m.runs[intact.peak->run]),
+        m.settings.tolerance_um);
+  if (failed.peak) text += fmt::format(" With one failed sensor it leaves at most {:.1f} µm.", failed.peak->after.peak_abs);
   if (chosen.safety == Safety::kUnsafe)
     text += fmt::format(" Why it is not safe: {}.", chosen.why);
   else if (chosen.safety == Safety::kWithinLimits)
     text += fmt::format(" It keeps the tolerance in: {}.", fmt::join(chosen.limits, ", "));
-  else if (failed.peak)
-    text += fmt::format(" With one failed sensor it leaves {:.1f} µm at most.", failed.peak->after.peak_abs);
   return {.kind = chosen.safety == Safety::kUnsafe ? Kind::kBad
                   : chosen.safety == Safety::kSafe ? Kind::kGood
                                                    : Kind::kNeutral,
@@ -371,34 +371,73 @@ std::string choice_text(const StrategyMatrix& m, const JudgedStrategy& chosen) {
       word(chosen.safety), chosen.why);
 }
 
+/// Whether a chiller of the machine switches, which `place` refuses.
+bool has_chiller(const scenarios::MachineModel& machine) {
+  return std::any_of(machine.effects.begin(), machine.effects.end(), [](const effects::Effect& e) {
+    return e.kind->key == "coolant" && e.has("cooling_power") && e["cooling_power"] > 0.0;
+  });
+}
+
+/// What to do with a chosen strategy that is not safe.
+std::vector<std::string> steps_without(const StrategyMatrix& m, const JudgedStrategy& chosen,
+                                       const scenarios::Scenario& scenario, const std::string& path) {
+  const bool is_kept_intact = std::all_of(chosen.cases.begin(), chosen.cases.end(), [&](const Case& c) {
+    return !is_intact(c) || c.after.peak_abs <= m.settings.tolerance_um;
+  });
+  std::vector<std::string> steps = {
+      is_kept_intact
+          ? "Do not use it on the machine. It keeps the tolerance with all sensors intact, but not if a sensor fails: the "
+            "picture with one failed sensor shows which kind of failure. Mount a further thermometer, or use a strategy "
+            "that "
+            "the table below calls safe."
+          : "Do not use it on the machine. It fails with all sensors intact: the orange cells of its row in the picture "
+            "show "
+            "in which runs. Add such runs to the training runs and run `driftwright validate` again."};
+  if (!scenario.machine) return steps;
+  steps.push_back(fmt::format("`driftwright plan-test {}` plans the missing test.", path));
+  if (!has_chiller(*scenario.machine))
+    steps.back() += fmt::format(" `driftwright place {}` finds places for thermometers.", path);
+  return steps;
+}
+
+/// The command that shows the correction of a chosen strategy on a run it has not seen.
+std::string correction_step(const StrategyMatrix& m, const scenarios::Scenario& scenario, const std::string& path,
+                            const std::string& file) {
+  const bool is_of_records =
+      std::any_of(m.training.begin(), m.training.end(), [](const ObservedRun& r) { return !r.rows.file.empty(); });
+  const bool has_axis = scenario.axis_loop && scenario.axis_loop->displacement == m.settings.strategies.target;
+  // without `study` of its own the scenario does not say what `compensate` corrects
+  const bool has_study = scenario.study && !scenario.study->where.file.empty();
+  return fmt::format(
+      "The file of this strategy is {}. {}`driftwright compensate {} --model {} --through {}` {}shows its correction on "
+      "another {} before you use it on the machine.",
+      file, has_study ? "" : "Add the key `study` to the scenario. Then ", path, file,
+      is_of_records ? "none --measured ANOTHER_DAY.csv"
+      : has_axis    ? "injector"
+                    : "none",
+      is_of_records ? "(ANOTHER_DAY.csv: a record that was not used here) " : "", is_of_records ? "record" : "cyclogram");
+}
+
 /// What to do with the chosen strategy. @param chosen  null: none
-std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrategy* chosen) {
+std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrategy* chosen,
+                                    const scenarios::Scenario& scenario, const output::Provenance& made_by) {
   if (!chosen)
     return {
         "Add training runs, at least two with different cyclograms (`--train`, or `train` under `validation`): parts of "
         "them are left out in turn to choose a strategy."};
-  const std::string file = "models/" + model_file_name(chosen->fitted.name) + ".json";
-  if (chosen->safety == Safety::kUnsafe)
-    return {
-        "Do not use it on the machine. The orange cells of the picture show in which cyclograms and seasons it fails: add "
-        "such runs to the training runs and run `driftwright validate` again.",
-        "`driftwright plan-test SCENARIO` plans the test that is still missing, `driftwright place SCENARIO` the "
-        "thermometers."};
-  const bool is_of_records =
-      std::any_of(m.training.begin(), m.training.end(), [](const ObservedRun& r) { return !r.rows.file.empty(); });
-  return {
-      fmt::format("{} holds it. `driftwright compensate SCENARIO --model {} --through {}` shows its correction on another "
-                  "{} before it goes on the machine.",
-                  file, file, is_of_records ? "none --measured ANOTHER_DAY.csv" : "injector",
-                  is_of_records ? "record" : "cyclogram"),
-      fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
-                  chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
+  const std::string path = made_by.scenario.empty() ? "SCENARIO" : made_by.scenario;
+  if (chosen->safety == Safety::kUnsafe) return steps_without(m, *chosen, scenario, path);
+  const std::string file = output::path_in_results(made_by, "models/" + model_file_name(chosen->fitted.name) + ".json");
+  return {correction_step(m, scenario, path, file),
+          fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
+                      chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
 }
 
 /// The matrix in few columns, for people.
 Table short_table(const StrategyMatrix& m) {
-  Table table{.title = fmt::format("What strategies leave of {}, fitted on {} runs, judged on {} others",
-                                   m.settings.strategies.target, m.training.size(), m.runs.size()),
+  Table table{.title = fmt::format("Error of {} that each strategy leaves (fitted to {}, judged on {})",
+                                   m.settings.strategies.target, counted(m.training.size(), "run", "runs"),
+                                   counted(m.runs.size(), "other", "others")),
               .columns = {{.title = "strategy"}, um_column("", "largest residual")}};
   for (output::Column column : {um_column("", "with a failed sensor"), um_column("", "RMS", 2)})
     table.columns.push_back(column);
@@ -422,7 +461,7 @@ output::Bars left_bars(const StrategyMatrix& m) {
   return bars;
 }
 
-/// The drift of the run that is hardest for few sensors, and what strategies take it for.
+/// The drift of the run that is hardest for few sensors, and what strategies predict of it.
 void add_course(Section& section, const StrategyMatrix& m) {
   const Contrast c = contrast(m);
   if (!c.simple || !c.chosen) return;
@@ -485,8 +524,9 @@ Section conditions_of(const StrategyMatrix& m) {
 Table strategies_table(const StrategyMatrix& m, const std::vector<const JudgedStrategy*>& strategies) {
   const auto for_failures = [&](const char* title) { return has_failures(m) ? title : ""; };
   Table table{.key = "strategies",
-              .title = fmt::format("What strategies leave of {}, fitted on {} runs, judged on {} others",
-                                   m.settings.strategies.target, m.training.size(), m.runs.size()),
+              .title = fmt::format("Error of {} that each strategy leaves (fitted to {}, judged on {})",
+                                   m.settings.strategies.target, counted(m.training.size(), "run", "runs"),
+                                   counted(m.runs.size(), "other", "others")),
               .columns = {{.key = "name", .title = "strategy"},
                           um_column("worst_peak_um", "largest residual"),
                           percent_column("worst_left_percent", "left of the peak"),
@@ -560,12 +600,45 @@ std::string model_file_name(const std::string& strategy) {
 
 namespace {
 
+/// What is left with probings beside each correction; without rows where nothing was probed.
+Table probing_table(const StrategyMatrix& m) {
+  Table table{.key = "probing"};
+  const std::optional<Probing>& probing = m.settings.strategies.probing;
+  if (!probing) return table;
+  table.title = fmt::format("With a probing every {:.4g} min, noise {:.3g} µm", probing->every_s / 60.0, probing->noise_um);
+  table.caption =
+      "Sensors intact, rows of all judged runs. The residual is taken for a random process that fades; its deviation and "
+      "time constant are those of the parts of the training runs that were left out. 'no correction' is the last probing "
+      "alone.";
+  table.columns = {
+      {.key = "name", .title = "strategy"},
+      um_column("overall_rms_um", "RMS without", 2),
+      um_column("probed_rms_um", "RMS with", 2),
+      um_column("probed_worst_peak_um", "largest residual with"),
+      um_column("residual_deviation_um", "deviation", 2),
+      {.key = "residual_time_constant_min", .title = "time constant", .unit = "min", .digits = output::significant(3)}};
+  for (const JudgedStrategy& s : m.strategies) {
+    double squares = 0.0, n = 0.0, peak_um = 0.0;
+    for (const Case& c : s.cases) {
+      if (!c.failed.empty() || !c.probed) continue;
+      squares += c.probed->n * c.probed->rmse * c.probed->rmse;
+      n += c.probed->n;
+      peak_um = std::max(peak_um, c.probed->peak_abs);
+    }
+    if (n == 0.0) continue;
+    table.rows.push_back({s.fitted.name, overall_rms(s), std::sqrt(squares / n), peak_um, s.fitted.residual->deviation_um,
+                          s.fitted.residual->time_constant_s / 60.0});
+  }
+  return table;
+}
+
 Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) {
   Section section{.title = "The numbers"};
   if (chosen) add(section, output::Text{choice_text(m, *chosen)});
   if (const std::string axis = axis_text(m); !axis.empty()) add(section, output::Text{axis});
   if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
   add(section, short_table(m));
+  if (Table probing = probing_table(m); !probing.rows.empty()) add(section, std::move(probing));
   if (const LinearisedModel* linearised = linearised_of(m))
     add(section, output::Text{fmt::format(
                      "Films or heat of this machine follow temperatures. Strategies with physics use a model that is {}, "
@@ -577,7 +650,8 @@ Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) 
     if (s.is_worse_than_nothing && !s.fitted.is_baseline) harmful.push_back(s.fitted.name);
   }
   if (!harmful.empty())
-    add(section, output::Text{fmt::format("Worse than nothing in some case: {}.", fmt::join(harmful, "; "))});
+    add(section, output::Text{fmt::format("These strategies leave more than no correction in some case: {}.",
+                                          fmt::join(harmful, "; "))});
   Table left_out{.key = "left_out",
                  .title = "Left out",
                  .columns = {{.key = "name", .title = "strategy"}, {.key = "why", .title = "why"}}};
@@ -623,7 +697,7 @@ Section strategy_details(const StrategyMatrix& m) {
 
 }  // namespace
 
-Section strategy_section(const StrategyMatrix& m) {
+Section strategy_section(const StrategyMatrix& m, const scenarios::Scenario& scenario, const output::Provenance& made_by) {
   Section section = conditions_of(m);
   section.key = "validation";
   const JudgedStrategy* chosen = chosen_strategy(m);
@@ -639,7 +713,7 @@ Section strategy_section(const StrategyMatrix& m) {
   }
   add(section, intact_map(m));
   add_course(section, m);
-  section.sections.push_back(output::next_section(steps_with(m, chosen)));
+  section.sections.push_back(output::next_section(steps_with(m, chosen, scenario, made_by)));
   section.sections.push_back(strategy_numbers(m, chosen));
   section.sections.push_back(strategy_details(m));
   return section;

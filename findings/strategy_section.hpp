@@ -3,12 +3,15 @@
 
 #include "compensation/judging/strategy_matrix.hpp"
 #include "output/document.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::findings {
 
 /// Section `validation`: whether the chosen strategy may go on the machine, the remaining error of each strategy by family and
 /// season as a picture, what to do next, the numbers; folded what only an expert needs.
-[[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix);
+/// @param made_by  names the scenario and the folder of results in the commands of "What to do next"
+[[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix,
+                                               const scenarios::Scenario& scenario, const output::Provenance& made_by);
 
 /// The conditions that all strategies were judged under: target, tolerance, training runs.
 [[nodiscard]] output::Section conditions_of(const compensation::StrategyMatrix& matrix);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/quantity.hpp"
 #include "follow/state_json.hpp"
@@ -10,6 +12,7 @@
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
+#include "studies/known_speed.hpp"
 #include "studies/prediction.hpp"
 
 namespace driftwright::follow {
@@ -34,12 +37,20 @@ void require_streamable(const MachineModel& machine) {
   }
 }
 
+/// `speed` of `limits`, else a fifth above all that the scenario says something of; beyond, laws may have no value.
+double most_speed_rpm(const scenarios::Scenario& scenario) {
+  constexpr double kRoom = 1.2;
+  if (std::isfinite(scenario.limits.speed_rpm)) return scenario.limits.speed_rpm;
+  const double known_rpm = studies::known_speed_rpm(scenario);
+  return known_rpm > 0.0 ? kRoom * known_rpm : std::numeric_limits<double>::infinity();
+}
+
 class FollowedMachine final : public Followed {
  public:
   FollowedMachine(const scenarios::Scenario& scenario, const FollowOptions& options, const Listener& listener)
       : path_(scenario.path),
         machine_(*scenario.machine),
-        most_speed_rpm_(scenario.limits.speed_rpm),
+        most_speed_rpm_(most_speed_rpm(scenario)),
         tolerances_(scenario.solver.transient) {
     require_streamable(machine_);
     scenarios::Scenario asked = scenario;
@@ -74,9 +85,17 @@ class FollowedMachine final : public Followed {
   [[nodiscard]] std::vector<WantedChannel> wanted() const override {
     return {{"speed", "rpm", path_}, {ambient_, "degC", path_}};
   }
-  void begin(const std::vector<Channel>& channels) override { run_.emplace(channels, ambient_, machine_.reference_K, true); }
+  void begin(const std::vector<Channel>& channels) override {
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      if (channels[k].name == "speed" && channels[k].unit == "rpm") speed_ = k;
+    }
+    run_.emplace(channels, ambient_, machine_.reference_K, true);
+  }
 
-  bool take(double run_s, const std::vector<double>& values, double step_s) override {
+  bool take(double run_s, const std::vector<double>& as_read, double step_s) override {
+    std::vector<double> values = as_read;
+    is_too_fast_ = values[speed_] > most_speed_rpm_;
+    if (is_too_fast_) values[speed_] = std::numeric_limits<double>::quiet_NaN();  // the model goes on with the last one
     const double ambient_before_K = run_->ambient_K();
     const bool is_first = run_->n_rows() == 0;
     if (!run_->add(run_s, values)) return false;
@@ -89,7 +108,7 @@ class FollowedMachine final : public Followed {
     const Eigen::VectorXd outputs = observed();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       axes_[a].predicted_um = 1e6 * outputs[output_[a]];
-      if (is_too_fast()) {
+      if (is_too_fast_) {
         stages_[a].wait(step_s);  // the correction is held, and fades if that lasts
       } else {
         stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
@@ -114,7 +133,7 @@ class FollowedMachine final : public Followed {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
       if (has_begun()) axes[a].doubted = run_->older_than(stages_[a].most_age_s());
-      if (has_begun() && is_too_fast() &&
+      if (has_begun() && is_too_fast_ &&
           std::find(axes[a].doubted.begin(), axes[a].doubted.end(), "speed") == axes[a].doubted.end())
         axes[a].doubted.emplace_back("speed");
     }
@@ -143,9 +162,6 @@ class FollowedMachine final : public Followed {
   }
 
  private:
-  /// True while the spindle turns faster than `limits` of the scenario allows.
-  [[nodiscard]] bool is_too_fast() const { return run_->drive().speed_rpm > most_speed_rpm_; }
-
   /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
     MachineModel here = machine_;
@@ -186,7 +202,9 @@ class FollowedMachine final : public Followed {
 
   std::string path_, ambient_;
   MachineModel machine_;
-  double most_speed_rpm_;  // of `limits`
+  double most_speed_rpm_;
+  bool is_too_fast_ = false;  // in the last row
+  std::size_t speed_ = 0;     // channel
   solver::TransientOptions tolerances_;
   std::optional<scenarios::Model> model_;
   std::optional<solver::Propagator> exact_;  // for a linear reduced model

@@ -9,6 +9,7 @@
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
 #include "base/file_bytes.hpp"
+#include "base/quantity.hpp"
 #include "compensation/predictors/deployed_follower.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "effects/effect.hpp"
@@ -22,6 +23,8 @@ namespace driftwright::follow {
 namespace {
 
 using namespace compensation;
+
+constexpr double kRoom = 0.2, kLeastRoom_K = 3.0;  // beyond what was judged, as the fail-safe allows beyond training
 
 /// Why a law of an observer cannot be followed on a stream; "" if it can.
 std::string why_not(const effects::Effect& e) {
@@ -116,17 +119,27 @@ class FollowedPredictor final : public Followed {
 
   void begin(const std::vector<Channel>& channels) override {
     const bool is_driven = d().predictor->is_driven();
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      if (channels[k].name == "speed" && channels[k].unit == "rpm") speed_ = k;
+    }
     run_.emplace(channels, is_driven ? d().ambient : "", d().predictor->reference_K(), is_driven);
   }
 
-  bool take(double run_s, const std::vector<double>& values, double step_s) override {
+  bool take(double run_s, const std::vector<double>& as_read, double step_s) override {
+    const std::vector<double> values = without_impossible_drive(as_read);
+    if (is_too_soon(run_s, step_s)) {
+      run_->between(run_s, values);
+      stage_.take(axis_.predicted_um, step_s, run_->drive_age_s());
+      return true;
+    }
     if (!run_->add(run_s, values)) return false;
     const FollowedCorrection c = follower_.next(run_->run());
     if (watch_) (void)watch_->next(run_->run());
-    trust_ = c.trust;
+    const double covered = share_covered();
+    trust_ = c.trust * covered;
     axis_.interval_um = c.interval_um;
-    axis_.predicted_um = c.correction_um;
-    stage_.take(c.correction_um, step_s, run_->drive_age_s());
+    axis_.predicted_um = c.correction_um * covered;
+    stage_.take(axis_.predicted_um, step_s, run_->drive_age_s());
     return true;
   }
   void wait(double step_s) override { stage_.wait(step_s); }
@@ -140,6 +153,7 @@ class FollowedPredictor final : public Followed {
     if (!(axis.trust > 0.0)) axis.interval_um.reset();
     if (axis.interval_um) *axis.interval_um += std::abs(axis.predicted_um - axis.correction_um);
     axis.doubted = follower_.doubted();
+    if (has_begun() && share_covered() < 1.0) axis.doubted.emplace_back("speed or ambient: beyond those it was judged on");
     if (has_begun()) {
       for (std::string& name : run_->older_than(stage_.most_age_s())) axis.doubted.push_back(std::move(name));
     }
@@ -188,6 +202,34 @@ class FollowedPredictor final : public Followed {
                     path_, d().name, why.empty() ? "" : " (" + why + ")"));
   }
 
+  /// Whether a row comes sooner than an observer wants it: it takes rows as far apart as those it was fitted on, because
+  /// its memory and its doubts count in rows.
+  [[nodiscard]] bool is_too_soon(double run_s, double step_s) const {
+    return observer_ && has_begun() && run_->since_row_s(run_s) + 0.5 * step_s < observer_->period_s();
+  }
+
+  /// How far a value is within a range: 1 in it and a fifth of its width beyond, 0 another width further; as the fail-safe
+  /// has it.
+  [[nodiscard]] static double share_within(double value, double low, double high, double least_room) {
+    const double width = std::max(high - low, least_room), room = std::max(kRoom * width, least_room);
+    const double beyond = std::max({low - room - value, value - high - room, 0.0});
+    return std::max(0.0, 1.0 - beyond / width);
+  }
+  [[nodiscard]] double speed_covered(double rpm) const { return share_within(rpm, 0.0, file_.covered->most_rpm, 1.0); }
+  /// Trust that speed and ambient of the last row justify.
+  [[nodiscard]] double share_covered() const {
+    if (!file_.covered) return 1.0;
+    const double ambient_degC = run_->ambient_K() + d().predictor->reference_K() - kZeroCelsius_K;
+    return speed_covered(run_->drive().speed_rpm) *
+           share_within(ambient_degC, file_.covered->low_degC, file_.covered->high_degC, kLeastRoom_K);
+  }
+  /// A speed so far beyond those it was judged on that nothing is known there is no reading: laws have no value there.
+  [[nodiscard]] std::vector<double> without_impossible_drive(std::vector<double> values) const {
+    if (!file_.covered || !speed_ || !(values[*speed_] >= 0.0) || speed_covered(values[*speed_]) > 0.0) return values;
+    values[*speed_] = std::numeric_limits<double>::quiet_NaN();
+    return values;
+  }
+
   [[nodiscard]] const DeployedPredictor& d() const { return file_.predictor; }
 
   std::string path_;
@@ -198,6 +240,7 @@ class FollowedPredictor final : public Followed {
   std::optional<LiveRun> run_;
   std::optional<Watch> watch_;
   AxisCorrection axis_;
+  std::optional<std::size_t> speed_;  // channel
   double trust_ = 0.0;
 };
 

@@ -13,7 +13,7 @@
 namespace driftwright::follow {
 namespace {
 
-constexpr std::size_t kLongestLine = 1'000'000;  // a longer line is cut, and is no row
+constexpr std::size_t kLongestSourceLine = 1'000'000;  // a longer line is cut, and is no row
 
 }  // namespace
 
@@ -39,7 +39,7 @@ LineSource::Got LineSource::next(std::string& line, double wait_s) {
       rest_.erase(0, begin_);
       begin_ = 0;
     }
-    if (rest_.size() > kLongestLine) {
+    if (rest_.size() > kLongestSourceLine) {
       line = std::move(rest_);
       rest_ = {};
       return Got::kLine;

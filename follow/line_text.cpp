@@ -1,29 +1,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "follow/json_words.hpp"
 #include "follow/session.hpp"
 
 namespace driftwright::follow {
 namespace {
 
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-std::string quoted(const std::vector<std::string>& texts) {
+std::string list_of(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& text : texts) all.push_back(quoted(text));
   return fmt::format("[{}]", fmt::join(all, ","));
 }
 
-/// Nine digits, which keep a picometre of the largest corrections.
-std::string number(double x) {
-  return std::isfinite(x) ? fmt::format("{:.9g}", x == 0.0 ? 0.0 : x) : "null";
-}
-std::string number(const std::optional<double>& x) {
+std::string number_or_null(const std::optional<double>& x) {
   return x ? number(*x) : "null";
 }
 
@@ -32,21 +22,21 @@ std::string number(const std::optional<double>& x) {
 std::string line_text(const FollowLine& l) {
   std::string axes;
   for (const AxisCorrection& a : l.axes) {
-    axes +=
-        fmt::format(R"({}{}:{{"correction_um":{},"interval_95_um":{},"trust":{},"predicted_um":{})", axes.empty() ? "" : ",",
-                    quoted(a.name), number(a.correction_um), number(a.interval_um), number(a.trust), number(a.predicted_um));
-    if (a.deviation_um) axes += fmt::format(R"(,"deviation_um":{})", number(a.deviation_um));
+    axes += fmt::format(R"({}{}:{{"correction_um":{},"interval_95_um":{},"trust":{},"predicted_um":{})",
+                        axes.empty() ? "" : ",", quoted(a.name), number(a.correction_um), number_or_null(a.interval_um),
+                        number(a.trust), number(a.predicted_um));
+    if (a.deviation_um) axes += fmt::format(R"(,"deviation_um":{})", number(*a.deviation_um));
     if (!a.verdict.empty()) axes += fmt::format(R"(,"verdict":{})", quoted(a.verdict));
     if (a.watch_level) axes += fmt::format(R"(,"watch_level":{:.4g})", *a.watch_level);
     if (!a.alarm.empty()) axes += fmt::format(R"(,"alarm":{})", quoted(a.alarm));
-    axes += fmt::format(R"(,"doubted":{}}})", quoted(a.doubted));
+    axes += fmt::format(R"(,"doubted":{}}})", list_of(a.doubted));
   }
   std::string text =
       fmt::format(R"({{"time_s":{},"run_s":{},"state":{})", l.time_s ? fmt::format("{:.12g}", *l.time_s) : "null",
                   l.run_s ? fmt::format("{:.12g}", *l.run_s) : "null", quoted(l.state));
   if (!l.why.empty()) text += fmt::format(R"(,"why":{})", quoted(l.why));
   text += fmt::format(R"(,"axes":{{{}}})", axes);
-  if (!l.faults.empty()) text += fmt::format(R"(,"faults":{})", quoted(l.faults));
+  if (!l.faults.empty()) text += fmt::format(R"(,"faults":{})", list_of(l.faults));
   return text + "}";
 }
 

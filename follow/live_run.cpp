@@ -32,7 +32,7 @@ LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& ambien
   ambient_ = find(ambient, "degC");
 }
 
-bool LiveRun::add(double run_s, const std::vector<double>& values) {
+void LiveRun::hear(double run_s, const std::vector<double>& values) {
   const auto value = [&](std::size_t channel) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
@@ -53,7 +53,23 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
     if (const double feed = value(feed_[a]); !std::isnan(feed)) drive_.feed_m_s[a] = std::abs(feed) / 60e3;
   }
   if (const double power_W = value(cutting_); !std::isnan(power_W)) drive_.cutting_power_W = power_W;
+}
 
+/// A section of the drive before the last values, up to a time.
+void LiveRun::add_section(double time_s) {
+  if (!(time_s > section_end_s_)) return;
+  run_.cyclogram.sections.push_back({time_s - section_end_s_, before_});
+  section_end_s_ = time_s;
+  ++n_new_sections_;
+}
+
+void LiveRun::between(double run_s, const std::vector<double>& values) {
+  hear(run_s, values);
+  add_section(run_s - start_s_);
+}
+
+bool LiveRun::add(double run_s, const std::vector<double>& values) {
+  hear(run_s, values);
   Record& readings = run_.readings;
   if (readings.time_s.empty()) {
     if (std::isnan(ambient_K_) || (wants_drive_ && !has_drive_)) return false;
@@ -62,7 +78,11 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   }
   forget();
   const double time_s = run_s - start_s_;
-  if (!readings.time_s.empty()) run_.cyclogram.sections.push_back({time_s - readings.time_s.back(), before_});
+  const bool is_first = readings.time_s.empty();
+  if (!is_first) add_section(time_s);
+  section_end_s_ = time_s;
+  n_sections_.push_back(n_new_sections_);
+  n_new_sections_ = 0;
   readings.time_s.push_back(time_s);
   for (std::size_t k = 0; k < values.size(); ++k) readings.channels[k].values.push_back(values[k]);
   run_.ambient.time_s.push_back(time_s);
@@ -90,7 +110,12 @@ void LiveRun::forget() {
   for (Channel& c : readings.channels) drop(c.values);
   drop(run_.ambient.time_s);
   drop(run_.ambient.value);
-  drop(run_.cyclogram.sections);  // one after each row
+  std::ptrdiff_t sections = 0;
+  for (std::ptrdiff_t i = 1; i <= n; ++i) sections += static_cast<std::ptrdiff_t>(n_sections_[static_cast<std::size_t>(i)]);
+  drop(n_sections_);
+  n_sections_.front() = 0;
+  std::vector<Cyclogram::Section>& list = run_.cyclogram.sections;
+  list.erase(list.begin(), list.begin() + sections);
   run_.n_forgotten += static_cast<std::size_t>(n);
   run_.cyclogram_from_s = readings.time_s.front();
 }
@@ -124,6 +149,9 @@ void LiveRun::recall(const State& s) {
   for (std::size_t k = 0; k < s.values.size(); ++k) run_.readings.channels[k].values = {s.values[k]};
   run_.ambient = {{s.time_s}, {s.ambient_K}};
   run_.cyclogram.sections.clear();
+  section_end_s_ = s.time_s;
+  n_sections_ = {0};
+  n_new_sections_ = 0;
 }
 
 }  // namespace driftwright::follow

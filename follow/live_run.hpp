@@ -1,6 +1,8 @@
 #pragma once
 // The rows that were taken, as a run for predictors: readings, drive and ambient, as far back as predictors look.
 
+#include <deque>
+
 #include "compensation/predictors/observed_run.hpp"
 #include "follow/stream_row.hpp"
 
@@ -17,6 +19,10 @@ class LiveRun {
   /// Takes a row; a missing drive or ambient keeps its last value.
   /// @return false if drive or ambient is still unknown, so that the run has not begun
   bool add(double run_s, const std::vector<double>& values);
+  /// Takes speed, feeds and cutting power alone, of a row that comes sooner than the predictor wants one.
+  void between(double run_s, const std::vector<double>& values);
+  /// Time since the last row that was added.
+  [[nodiscard]] double since_row_s(double run_s) const { return run_s - start_s_ - run_.readings.time_s.back(); }
 
   [[nodiscard]] compensation::ObservedRun& run() { return run_; }
   [[nodiscard]] const compensation::ObservedRun& run() const { return run_; }
@@ -45,9 +51,14 @@ class LiveRun {
 
  private:
   void forget();
+  void hear(double run_s, const std::vector<double>& values);
+  void add_section(double time_s);
 
   compensation::ObservedRun run_;
   double reference_C_, ambient_K_, top_rpm_ = 0.0, start_s_ = 0.0;
+  double section_end_s_ = 0.0;                                  // of the last section, in the run
+  std::deque<std::size_t> n_sections_;                          // that each row has added; 0 of the first
+  std::size_t n_new_sections_ = 0;                              // since the last row
   double now_s_ = 0.0, speed_at_s_ = 0.0, ambient_at_s_ = 0.0;  ///< by the guard's time
   bool wants_drive_, has_drive_ = false;
   std::size_t speed_, cutting_, ambient_;  ///< indices of channels; kNone if missing

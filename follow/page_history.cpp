@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "follow/json_words.hpp"
 #include "output/base64.hpp"
 
 namespace driftwright::follow {
@@ -14,18 +12,10 @@ namespace {
 constexpr std::size_t kMostPoints = 3000, kMostEntries = 200;
 constexpr double kWindow_s = 12.0 * 3600.0;
 
-std::string number(double x) {
-  return std::isfinite(x) ? fmt::format("{:.9g}", x == 0.0 ? 0.0 : x) : "null";
-}
-
 std::string numbers(const std::vector<double>& all) {
   std::vector<std::string> texts;
   for (double x : all) texts.push_back(number(x));
   return fmt::format("{}", fmt::join(texts, ","));
-}
-
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace

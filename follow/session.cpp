@@ -13,7 +13,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kOn = 0.99, kOff = 0.01;  // limits of trust
-constexpr const char* kFormat = "driftwright follow 1";
+constexpr const char* kStateFormat = "driftwright follow 1";
 
 }  // namespace
 
@@ -130,15 +130,15 @@ Json Session::state() const {
   Json models = Json::array(), channels = Json::array();
   for (const Model& m : models_) models.push_back({{"file", m.path}, {"hash", m.hash}, {"state", m.followed->state()}});
   for (const Channel& c : channels_) channels.push_back(c.header());
-  return {{"format", kFormat},
+  return {{"format", kStateFormat},
           {"channels", std::move(channels)},
           {"guard", state_json(guard_.state())},
           {"models", std::move(models)}};
 }
 
 void Session::recall(const Json& j) {
-  if (output::value<std::string>(j, "format") != kFormat)
-    throw InputError(fmt::format("this file holds no state of `follow` (key `format` must be \"{}\")", kFormat));
+  if (output::value<std::string>(j, "format") != kStateFormat)
+    throw InputError(fmt::format("this file holds no state of `follow` (key `format` must be \"{}\")", kStateFormat));
   const auto channels = output::value<std::vector<std::string>>(j, "channels");
   std::vector<std::string> here;
   for (const Channel& c : channels_) here.push_back(c.header());

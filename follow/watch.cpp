@@ -86,11 +86,12 @@ std::string Watch::words(std::size_t scale) const {
   order.resize(std::min(order.size(), kNamed));
   std::vector<std::string> parts;
   for (std::size_t k : order) {
-    const double m = mean(static_cast<Eigen::Index>(k));
+    const double now = follower_->deviation_K()[k], m = std::isfinite(now) ? now : mean(static_cast<Eigen::Index>(k));
     parts.push_back(fmt::format("{} is {:.2f} K {} than the model expects", limits_.sensors[k], std::abs(m),
                                 m > 0.0 ? "warmer" : "colder"));
   }
-  return fmt::format("{} (mean over {:.0f} min)", fmt::join(parts, ", "), kWatchedOver_s[scale] / 60.0);
+  return fmt::format("{} (the mean over {:.0f} min is beyond its limit)", fmt::join(parts, ", "),
+                     kWatchedOver_s[scale] / 60.0);
 }
 
 std::vector<double> Watch::memory() const {

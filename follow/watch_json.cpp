@@ -9,13 +9,13 @@ namespace {
 
 using output::Json;
 
-constexpr const char* kFormat = "driftwright watch 1";
+constexpr const char* kWatchFormat = "driftwright watch 1";
 
 WatchLimits limits_of_file(const Json& j, const std::string& model_hash) {
-  if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
+  if (!j.is_object() || output::value<std::string>(j, "format") != kWatchFormat)
     throw InputError(fmt::format(
         "this file holds no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them",
-        kFormat));
+        kWatchFormat));
   if (!is_whole(j))
     throw InputError(
         "key `hash` does not fit what the file holds: it was damaged or changed, or is of a version that wrote none; "
@@ -63,7 +63,7 @@ Json limits_json(const WatchLimits& limits) {
 }
 
 Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
-  Json j = {{"format", kFormat}, {"model_hash", model_hash}};
+  Json j = {{"format", kWatchFormat}, {"model_hash", model_hash}};
   j.update(limits_json(limits));
   return with_hash(std::move(j));
 }

@@ -11,7 +11,7 @@ std::vector<JudgedStrategy> judge(const std::string& scenario_file, const std::v
   (void)scenarios::require_study(scenario, "judge");
   if (train.empty() || test.empty()) throw InputError("judge: records to train on and records to test on are both required");
   const compensation::StrategyMatrix matrix =
-      studies::validate_on_records(scenario, studies::read_records(scenario, {.train = train, .test = test}), listener);
+      studies::validate_on_records(scenario, studies::read_records(scenario, {.train = train, .test = test}), {}, listener);
   std::vector<JudgedStrategy> strategies;
   for (const compensation::JudgedStrategy& s : matrix.strategies) {
     JudgedStrategy& plain = strategies.emplace_back();

@@ -105,9 +105,9 @@ std::string written(const Datum& datum) {
 }
 
 std::string shown_unit(const std::string& unit) {
-  static const std::map<std::string, std::string> kShown = {{"um", "µm"},         {"degC", "°C"},   {"urad", "µrad"},
-                                                            {"m2", "m²"},         {"um/K", "µm/K"}, {"um/degC", "µm/K"},
-                                                            {"mm_min", "mm/min"}, {"percent", "%"}};
+  static const std::map<std::string, std::string> kShown = {
+      {"um", "µm"},         {"degC", "°C"},   {"urad", "µrad"},         {"m2", "m²"}, {"um/K", "µm/K"}, {"um/degC", "µm/K"},
+      {"mm_min", "mm/min"}, {"percent", "%"}, {"W/(m^2 K)", "W/(m² K)"}};
   const auto found = kShown.find(unit);
   return found == kShown.end() ? unit : found->second;
 }

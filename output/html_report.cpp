@@ -11,6 +11,19 @@
 namespace driftwright::output::html {
 namespace {
 
+/// Text with what is between two grave accents as code: commands, files and keys.
+std::string prose(const std::string& text) {
+  std::string out;
+  std::size_t from = 0;
+  for (;;) {
+    const std::size_t open = text.find('`', from);
+    const std::size_t close = open == std::string::npos ? open : text.find('`', open + 1);
+    if (close == std::string::npos) return out + escaped(text.substr(from));
+    out += escaped(text.substr(from, open - from)) + "<code>" + escaped(text.substr(open + 1, close - open - 1)) + "</code>";
+    from = close + 1;
+  }
+}
+
 constexpr std::string_view kStyle = R"css(
 :root { color-scheme: light dark; --text: #1d2329; --soft: #5b6670; --line: #d9dee3; --page: #ffffff; --card: #f5f7f9;
   --good: #00704f; --bad: #b34700; --neutral: #005f94; }
@@ -25,6 +38,7 @@ header p { color: var(--soft); margin: 6px 0 0; max-width: none; overflow-wrap: 
 h2 { font-size: 20px; line-height: 1.3; margin: 40px 0 12px; }
 h3 { font-size: 17px; line-height: 1.3; margin: 28px 0 8px; }
 p { margin: 12px 0; max-width: 46em; }
+code { font: 0.92em ui-monospace, SFMono-Regular, Menlo, monospace; overflow-wrap: anywhere; }
 .verdict { margin: 20px 0; padding: 14px 18px; background: var(--card); border-left: 6px solid var(--tone);
   border-radius: 4px; }
 .verdict strong { color: var(--tone); font-size: 18px; }
@@ -102,14 +116,14 @@ std::string html(const Heading& heading) {
   return fmt::format("<h{0}>{1}</h{0}>\n", heading.level, escaped(heading.text));
 }
 std::string html(const Paragraph& paragraph) {
-  return fmt::format("<p>{}</p>\n", escaped(paragraph.text));
+  return fmt::format("<p>{}</p>\n", prose(paragraph.text));
 }
 std::string html(const Preformatted& text) {
   return fmt::format("<pre>{}</pre>\n", escaped(text.text));
 }
 
 std::string html(const FoldBegin& fold) {
-  return fmt::format("<details class=\"part\"><summary>{}</summary>\n", escaped(fold.title));
+  return fmt::format("<details class=\"part\"><summary>{}</summary>\n", prose(fold.title));
 }
 std::string html(const FoldEnd&) {
   return "</details>\n";
@@ -118,7 +132,7 @@ std::string html(const FoldEnd&) {
 std::string html(const Verdict& verdict) {
   const char* kind = verdict.kind == Verdict::Kind::kGood ? "good" : verdict.kind == Verdict::Kind::kBad ? "bad" : "neutral";
   return fmt::format("<div class=\"verdict {}\"><strong>{}</strong>{}</div>\n", kind, escaped(verdict.title),
-                     verdict.text.empty() ? "" : fmt::format("<p>{}</p>", escaped(verdict.text)));
+                     verdict.text.empty() ? "" : fmt::format("<p>{}</p>", prose(verdict.text)));
 }
 
 constexpr std::size_t kWide = 8;  // most columns that fit a page at normal size
@@ -138,9 +152,9 @@ std::string html(const Table& table) {
   std::string out;
   const std::string& fold = table.title.empty() ? table.caption : table.title;
   const bool folds = table.folded && !fold.empty(), has_caption = !table.caption.empty() && !(folds && table.title.empty());
-  if (folds) out += fmt::format("<details><summary>{}</summary>\n", escaped(fold));
+  if (folds) out += fmt::format("<details><summary>{}</summary>\n", prose(fold));
   out += fmt::format("<div class=\"table{}\"><table>\n", n_columns > kWide ? " wide" : "");
-  if (has_caption) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
+  if (has_caption) out += fmt::format("<caption>{}</caption>\n", prose(table.caption));
   if (has_headers) out += "<thead><tr>";
   for (std::size_t c = 0; c < table.headers.size(); ++c) {
     out += fmt::format("<th{}>{}</th>", attribute[c], escaped(table.headers[c]));
@@ -148,7 +162,7 @@ std::string html(const Table& table) {
   out += has_headers ? "</tr></thead>\n<tbody>\n" : "<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], prose(row[c]));
     out += "</tr>\n";
   }
   return out + (folds ? "</tbody></table></div></details>\n" : "</tbody></table></div>\n");

@@ -119,6 +119,10 @@ PredictorFile file_of(const Json& j) {
   require_guards(d);
   file.judged = value<Json>(j, "judged");
   if (j.contains("watch")) file.watch = j["watch"];
+  if (j.contains("covered") && !j["covered"].is_null()) {
+    const Json& c = j["covered"];
+    file.covered = {finite(c, "most_rpm"), finite(c, "low_degC"), finite(c, "high_degC")};
+  }
   require_whole(j);
   return file;
 }
@@ -143,6 +147,10 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
             {"interval_95_um", d.interval_um ? Json(*d.interval_um) : Json(nullptr)},
             {"judged", file.judged},
             {"watch", file.watch},
+            {"covered", file.covered ? Json{{"most_rpm", file.covered->most_rpm},
+                                            {"low_degC", file.covered->low_degC},
+                                            {"high_degC", file.covered->high_degC}}
+                                     : Json(nullptr)},
             {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
             {"predictor", kind}};
   j[kind] = std::move(made);

@@ -10,6 +10,12 @@
 
 namespace driftwright::output {
 
+/// The speeds and ambient temperatures of the runs that a predictor was fitted and judged on.
+struct Covered {
+  double most_rpm = 0.0;
+  double low_degC = 0.0, high_degC = 0.0;
+};
+
 struct PredictorFile {
   compensation::DeployedPredictor predictor;
   /// The conditions under which it was judged, and the verdict, as `validate` wrote them (docs/how-to/validation.md);
@@ -17,6 +23,7 @@ struct PredictorFile {
   nlohmann::ordered_json judged;
   /// Limits of the watch of an observer (follow/watch_json.hpp); null: none.
   nlohmann::ordered_json watch = nullptr;
+  std::optional<Covered> covered = {};  ///< of a predictor that is driven by speed and ambient
 };
 
 /// @param effects  effects of the machine whose model it uses; empty for a predictor without a model

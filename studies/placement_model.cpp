@@ -39,10 +39,12 @@ std::vector<std::string> lumped_nodes(const scenarios::MachineModel& machine) {
 void linearise(solver::ReducedSystem& system, const Eigen::VectorXd& start, const scenarios::Scenario& scenario,
                const std::vector<const Cyclogram*>& cyclograms) {
   if (!system.thermostats.empty())
-    throw InputError(scenario.machine->where,
-                     fmt::format("thermostat '{}' switches; places are chosen on a linear model, which cannot "
-                                 "follow it",
-                                 system.thermostats.front().name));
+    throw InputError(
+        scenario.machine->where,
+        fmt::format("`place` cannot treat this machine: thermostat '{}' switches on and off, and places are chosen with a "
+                    "linear model. Run it on a copy of the scenario in which the `coolant` has no `set_point`, "
+                    "`cooling_power` and `hysteresis`",
+                    system.thermostats.front().name));
   const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const Cyclogram work{.name = "work", .sections = {{kAtWork_s, mean_drive(cyclograms)}}};
   Eigen::VectorXd state = start;

@@ -115,7 +115,7 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
         .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
     for (std::size_t k = 0; k < files.size(); ++k) {
       if (as_read[k].time_s == file.record.time_s && as_read[k].at(target).values == file.record.at(target).values)
-        throw InputError(fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once",
+        throw InputError(fmt::format("{} and {} contain the same run; one run can be trained on or judged by, once",
                                      files[k].path, file.path));
     }
     if (!scenario.study->count_from_start && part.is_whole()) {
@@ -197,13 +197,12 @@ std::string words_of_cut(const RecordPart& part, const ReadFile& file, const std
     at.push_back(fmt::format("{:.2f} h", hours(file, runs[r].first)));
     if (runs[r].history < runs[r].first) going_on.push_back(at.back());
   }
-  return fmt::format(
-      "{} is cut into {} runs where the drive starts anew after a rest, at {}{}", part.words, runs.size(),
-      fmt::join(at, ", "),
-      going_on.empty()
-          ? ""
-          : fmt::format("; the machine is not back in balance at {}: what follows goes on from what came before",
-                        fmt::join(going_on, ", ")));
+  return fmt::format("{} is cut into {} runs where the drive starts anew after a rest, at {}{}", part.words, runs.size(),
+                     fmt::join(at, ", "),
+                     going_on.empty()
+                         ? ""
+                         : fmt::format("; at {} the machine is still warm, so the later run continues the earlier one",
+                                       fmt::join(going_on, ", ")));
 }
 
 }  // namespace

@@ -261,6 +261,7 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
 }
 
 compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const scenarios::Model& model,
+                                                 const std::optional<compensation::Probing>& probing,
                                                  const Listener& listener) {
   const Validation& v = *scenario.validation;
   StrategyTraining training = strategy_training(scenario, model);
@@ -283,6 +284,7 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
                {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
   compensation::MatrixSettings settings;
   settings.strategies = std::move(training.settings);
+  settings.strategies.probing = probing;
   settings.tolerance_um = v.tolerance_um;
   settings.fails_at = v.fails_at;
   settings.fails_in = v.seasons.front().name;
@@ -291,7 +293,9 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
   return compensation::judge_strategies(settings, std::move(training.runs), std::move(judged));
 }
 
-compensation::StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records, const Listener& listener) {
+compensation::StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records,
+                                                 const std::optional<compensation::Probing>& probing,
+                                                 const Listener& listener) {
   const scenarios::Study& study = *scenario.study;
   const std::vector<Record> training = own_records(records.train);
   compensation::MatrixSettings settings;
@@ -303,6 +307,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = study.count_from_start;
   how.limits = scenario.limits.correction;
+  how.probing = probing;
   how.image = study.image;
   how.speed = speed_channel(training.front());
   how.ambient = records.ambient;

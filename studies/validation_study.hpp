@@ -13,7 +13,9 @@ namespace driftwright::studies {
 /// may use is scattered by `model_scatter`. Drift counts from the start of each run.
 /// @throws InputError  for effects that change readings only, and as judge_strategies()
 [[nodiscard]] compensation::StrategyMatrix validate_strategies(const scenarios::Scenario& scenario,
-                                                               const scenarios::Model& model, const Listener& listener);
+                                                               const scenarios::Model& model,
+                                                               const std::optional<compensation::Probing>& probing,
+                                                               const Listener& listener);
 
 /// The data that strategies are fitted on: the training cyclograms in the first season, as instruments read them, and
 /// what is known about the machine.
@@ -35,6 +37,7 @@ struct StrategyTraining {
 /// Judges strategies on measured records (record_study.hpp). Strategies with physics take part if the scenario has a
 /// machine that can be made linear (linear_physics.hpp), drift counts from the start of each record, and the records contain the drive.
 [[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
+                                                               const std::optional<compensation::Probing>& probing,
                                                                const Listener& listener);
 
 /// The reason why a model of the machine cannot follow a measured run: its drive is unknown, or it begins out of balance

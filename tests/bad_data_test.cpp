@@ -137,7 +137,7 @@ TEST(ForeignUnits, ADisplacementTurnedInSignIsNamed) {
   Bench b;
   b.channel(2).value *= -1.1;  // and the scenario is off, too
   leave_out_foreign_units(b.runs, *b.twin);
-  EXPECT_THAT(b.told(), HasSubstr("nose_um looks turned in sign"));
+  EXPECT_THAT(b.told(), HasSubstr("nose_um seems to have the wrong sign"));
   EXPECT_EQ(b.runs[0].find("nose"), nullptr);
   Bench half;  // half as much the other way is no sign: something is wrong with the model
   half.channel(2).value *= -0.5;

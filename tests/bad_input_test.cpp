@@ -313,7 +313,7 @@ TEST(BadCommand, ARecordCannotTrainAndJudgeOrTrainTwice) {
         "--train " + a + " --test " + copy, "--train " + b + " --test " + a + " --test " + copy}) {
     const CommandOutcome outcome = run_program("validate scenarios/spindle_22.yaml " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_THAT(outcome.output, HasSubstr("hold the same run")) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr("contain the same run")) << arguments;
   }
   for (const std::string& arguments :
        {"--train " + b + ":0s..0.9s --test " + b, "--train " + b + ":0s..0.6s --train " + b + ":0.5s.. --test " + a}) {

@@ -195,6 +195,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"list: [{a: 1, a: 2}]\n", nothing, "appears twice"},
         Bad{"list: [{}]\n", get<&ConfigMap::maps, kList>, ":1:8: key 'a' is missing"},
         Bad{"name: 1\nlength: 80\n", length, ":2:9: '80' has no unit"},
+        Bad{"length: 0,8 m\n", length, "decimals need a point: 0.8 m, not 0,8 m"},
+        Bad{"{length: 0,8 m}\n", length, "decimals need a point: 0.8 m"},
         Bad{"length: .nan m\n", length, ":1:9: '.nan m' is not a number"},
         Bad{"length: nan m\n", length, "not a finite number"},
         Bad{"length: 2 m\n", length, "outside what is allowed, 0 to 1 m"},
@@ -216,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"part: 3\n", get<&ConfigMap::map, kPart>, "this must be a map of keys"},
         Bad{"list: {}\n", get<&ConfigMap::maps, kList>, "this must be a list of maps"},
         Bad{"name: ''\n", get<kTextOf, kName>, "the value is empty"}, Bad{"a: [1\n", nothing, "not valid YAML"},
-        Bad{"- a\n", nothing, "no map of keys"}, Bad{"[a, b]: 1\n", nothing, "a key must be a word"}));
+        Bad{"- a\n", nothing, "this is not a scenario"}, Bad{"[a, b]: 1\n", nothing, "a key must be a word"}));
 
 TEST(ConfigMap, RefusesAMissingFile) {
   EXPECT_THAT([] { (void)ConfigMap::read_file("/nowhere/x.yaml"); },

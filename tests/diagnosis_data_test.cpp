@@ -194,7 +194,7 @@ TEST(Reports, OfStrategiesAreReadFromTheTop) {
   compensation::JudgedStrategy strategy;
   strategy.fitted.name = "ridge, all sensors";
   strategy.safety = compensation::Safety::kSafe;
-  strategy.why = "never more than 2.0 µm left";
+  strategy.why = "it leaves at most 2.0 µm of the drift";
   compensation::Case c;
   c.before = {.rmse = 10.0, .peak_abs = 20.0, .mean = 5.0, .n = 10};
   c.after = {.rmse = 1.0, .peak_abs = 2.0, .mean = 0.1, .n = 10};
@@ -202,11 +202,13 @@ TEST(Reports, OfStrategiesAreReadFromTheTop) {
   m.strategies = {strategy};
   m.choice = {.name = strategy.fitted.name, .why = "the smallest error"};
   output::Document document{.title = "mill"};
-  document.body.sections.push_back(strategy_section(m));
+  document.body.sections.push_back(strategy_section(m, {}, {}));
   expect_read_from_the_top(document);
   const std::string terminal = output::document_text(document);
-  EXPECT_THAT(terminal,
-              StartsWith("mill\n  Safe to use on the machine: ridge, all sensors: At worst it leaves 2.0 µm of nose"));
+  EXPECT_THAT(
+      terminal,
+      StartsWith(
+          "mill\n  Safe to use on the machine: ridge, all sensors: In the judged runs it leaves at most 2.0 µm of nose"));
   EXPECT_THAT(terminal, HasSubstr("--model models/ridge_all_sensors.json"));
 }
 
@@ -216,13 +218,14 @@ TEST(Reports, AnswerInWordsForSomebodyAtTheMachine) {
   EXPECT_EQ(answer.title, "The cause is named");
   EXPECT_EQ(
       answer.text,
-      "The movement of nose is not what the scenario says: step, in monday; shift 5 µm. This is very likely (97 %); with "
-      "extended.yaml the simulation misses kept-out readings by 1.0 times their noise, with the scenario as it is by "
-      "5.0 times.");
-  const std::vector<std::string> steps = next_steps(found.measured, found.d, compared_of(found.measured.runs));
+      "The movement of nose is not what the scenario says: step, in monday; shift 5 µm. This is very likely (97 %). On "
+      "readings that were kept out of the fit the error of extended.yaml is 1.0 times their noise, that of the scenario as "
+      "it is 5.0 times.");
+  const std::vector<std::string> steps =
+      next_steps(found.measured, found.d, compared_of(found.measured.runs), {"", "", "results/mill"});
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps[0], "Look at the indicator of nose: its mount, what it touches, and its input at the logger.");
-  EXPECT_THAT(steps[1], HasSubstr("`driftwright diagnose extended.yaml --measured monday.csv`"));
+  EXPECT_THAT(steps[1], HasSubstr("`driftwright diagnose results/mill/extended.yaml --measured monday.csv`"));
   const std::string page = output::document_html(diagnosis_document(found.findings("extended.yaml"), {})).page;
   EXPECT_THAT(page, AllOf(HasSubstr("nose in monday: measured and simulated"), HasSubstr("simulated with the cause"),
                           HasSubstr("All that might be missing: 2 possibilities")));

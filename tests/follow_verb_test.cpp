@@ -1,5 +1,6 @@
 // `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 /// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient warms.
@@ -277,6 +279,160 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
                "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");
   write_file("grows.yaml", grows);
   refused("grows.yaml", "true |", "spindle_growth nose_z");
+}
+
+/// Two bodies with thermometers. @param power_W  of the heat at 2000 rpm
+std::string two_bodies(double power_W, const char* interval) {
+  return fmt::format(R"(name: two_bodies
+reference_temperature: 20 degC
+machine: {{generator: lumped}}
+effects:
+  - {{type: node, node: spindle, capacity: 8 kJ/K}}
+  - {{type: node, node: head, capacity: 40 kJ/K}}
+  - {{type: heat_source, node: spindle, power: {} W, at_speed: 2000 rpm, exponent: 1}}
+  - {{type: link, node: spindle, to: head, conductance: 15 W/K}}
+  - {{type: link, node: spindle, to: ambient, conductance: 2 W/K}}
+  - {{type: link, node: head, to: ambient, conductance: 12 W/K}}
+start: ambient
+ambient: [[0 h, 20 degC], [9 h, 21 degC]]
+sensors: [{{name: t_spindle, node: spindle}}, {{name: t_head, node: head}}, {{name: t_ambient, node: ambient}}]
+displacements: [{{name: nose_z, sensitivities: [{{node: spindle, sensitivity: 3 um/K}}, {{node: head, sensitivity: 2 um/K}}]}}]
+cyclograms:
+  monday: [[60 min, 2000 rpm], [60 min, 0 rpm], [60 min, 1000 rpm]]
+  tuesday: [[90 min, 1500 rpm], [40 min, 0 rpm], [50 min, 2000 rpm]]
+  wednesday: [[40 min, 1800 rpm], [20 min, 0 rpm], [60 min, 1200 rpm]]
+solver: {{model: reduced, output_interval: {}}}
+)",
+                     power_W, interval);
+}
+
+class FollowedObserver : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const auto folder = temporary_folder();
+    const std::string yaml = write_file("two_bodies.yaml", two_bodies(150.0, "1 min"));
+    const CommandOutcome judged =
+        run_program("validate " + yaml + " -o " + (folder / "judged").string() + " --force --quiet");
+    ASSERT_EQ(judged.exit_code, 0) << judged.output;
+  }
+  /// What the machine of a power does, at rows of an interval, as lines of CSV with the header first.
+  static std::vector<std::string> rows(double power_W, const char* interval) {
+    const auto folder = temporary_folder() / "truth";
+    const std::string yaml = write_file("truth.yaml", two_bodies(power_W, interval));
+    const CommandOutcome done =
+        run_program("predict " + yaml + " --cyclogram wednesday -o " + folder.string() + " --force --quiet");
+    EXPECT_EQ(done.exit_code, 0) << done.output;
+    std::vector<std::string> lines;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().filename() != "record.csv") continue;
+      std::istringstream text(read_text(entry.path()));
+      for (std::string line; std::getline(text, line);) {
+        if (!line.starts_with("#")) lines.push_back(line);
+      }
+    }
+    return lines;
+  }
+  static std::size_t column(const std::vector<std::string>& rows, const std::string& name) {
+    std::istringstream header(rows.front());
+    std::string cell;
+    for (std::size_t c = 0; std::getline(header, cell, ','); ++c) {
+      if (cell == name) return c;
+    }
+    throw std::logic_error("no column " + name);
+  }
+  static std::vector<std::string> cells_of(const std::string& row) {
+    std::istringstream text(row);
+    std::vector<std::string> cells;
+    for (std::string one; std::getline(text, one, ',');) cells.push_back(one);
+    return cells;
+  }
+  static std::string row_of(const std::vector<std::string>& cells) {
+    std::string row;
+    for (const std::string& one : cells) row += (row.empty() ? "" : ",") + one;
+    return row;
+  }
+  static Followed followed(const std::vector<std::string>& rows) {
+    std::string text;
+    for (const std::string& row : rows) text += row + "\n";
+    write_file("rows.csv", text);
+    return follow("judged/models/observer.json --slew '10 um/s'", "cat rows.csv |");
+  }
+};
+
+// Power 2.5 times as large, at rows of a minute, of ten seconds and of one: trust falls, and calm errors are rare.
+TEST_F(FollowedObserver, AWrongModelLosesTrustHoweverOftenRowsCome) {
+  for (const char* interval : {"1 min", "10 s", "1 s"}) {
+    const std::vector<std::string> all = rows(375.0, interval);
+    const Followed f = followed(all);
+    ASSERT_EQ(f.exit_code, 0) << f.words;
+    ASSERT_EQ(f.lines.size() + 1, all.size());
+    const std::size_t drift = column(all, "nose_z_um");
+    const double first_um = std::stod(cells_of(all[1])[drift]);
+    double least_trust = 1.0;
+    std::size_t n_calm_and_wrong = 0;
+    for (std::size_t i = 0; i < f.lines.size(); ++i) {
+      const Json& axis = f.lines[i]["axes"]["nose_z"];
+      const double off_um = std::stod(cells_of(all[i + 1])[drift]) - first_um - axis["correction_um"].get<double>();
+      least_trust = std::min(least_trust, axis["trust"].get<double>());
+      n_calm_and_wrong += axis["trust"] > 0.95 && std::abs(off_um) > 2.0 * axis["interval_95_um"].get<double>();
+    }
+    EXPECT_LT(least_trust, 0.3) << interval;
+    EXPECT_LT(n_calm_and_wrong, f.lines.size() / 8) << interval;  // the first minutes of heat
+  }
+}
+
+// No thermometer gives a reading: nothing says that the model is right, and it is not trusted.
+TEST_F(FollowedObserver, WithoutAnyReadingThereIsNoTrust) {
+  std::vector<std::string> all = rows(150.0, "1 min");
+  const std::size_t spindle = column(all, "t_spindle_degC"), head = column(all, "t_head_degC");
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    std::vector<std::string> cells = cells_of(all[i]);
+    cells[spindle] = cells[head] = "";
+    all[i] = row_of(cells);
+  }
+  const Followed f = followed(all);
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  EXPECT_LT(f.lines.back()["axes"]["nose_z"]["trust"], 0.01);
+  EXPECT_THAT(f.lines.back()["axes"]["nose_z"]["doubted"].dump(), HasSubstr("without a reading"));
+}
+
+// A single speed of 60000 rpm is no reading; 3500 rpm, where 2000 were judged, takes trust away; so does a hall of 60 degC.
+TEST_F(FollowedObserver, IsNotTrustedBeyondWhatItWasJudgedOn) {
+  const std::vector<std::string> right = rows(150.0, "1 min");
+  const std::size_t speed = column(right, "speed_rpm"), ambient = column(right, "t_ambient_degC");
+  const auto changed = [&](std::size_t from, std::size_t to, std::size_t c, const char* value) {
+    std::vector<std::string> all = right;
+    for (std::size_t i = from; i < to; ++i) {
+      std::vector<std::string> cells = cells_of(all[i]);
+      cells[c] = value;
+      all[i] = row_of(cells);
+    }
+    const Followed f = followed(all);
+    EXPECT_EQ(f.exit_code, 0) << f.words;
+    EXPECT_EQ(f.lines.size() + 1, all.size());
+    return f;
+  };
+  const Followed once = changed(20, 21, speed, "60000");
+  EXPECT_GT(once.lines[30]["axes"]["nose_z"]["trust"], 0.9);
+  EXPECT_THAT(once.lines[30]["axes"]["nose_z"]["doubted"].dump(), Not(HasSubstr("judged on")));
+  const Followed fast = changed(20, 60, speed, "3500");
+  EXPECT_LT(fast.lines[45]["axes"]["nose_z"]["trust"], 0.5);
+  EXPECT_THAT(fast.lines[45]["axes"]["nose_z"]["doubted"].dump(), HasSubstr("beyond those it was judged on"));
+  const Followed hot = changed(20, 60, ambient, "60");
+  EXPECT_LT(hot.lines[58]["axes"]["nose_z"]["trust"], 0.5);
+}
+
+// A scenario is followed as far as it says something of the speed.
+TEST(FollowVerb, ASpeedThatNoLawKnowsIsNoReading) {
+  const Record day = predicted_day();
+  (void)day;
+  const Followed f =
+      follow("head.yaml --slew '100 um/s'",
+             "awk -F, 'BEGIN{OFS=\",\"} /^#/{print;next} /^time/{for(i=1;i<=NF;i++) if($i==\"speed_rpm\") c=i; "
+             "print;next} {n++; if(n==20) $c=900000; print}' day.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  EXPECT_THAT(f.lines[19]["axes"]["nose_z"]["doubted"].dump(), HasSubstr("speed"));
+  EXPECT_EQ(f.lines.back()["state"], "on");
 }
 
 }  // namespace

@@ -211,5 +211,10 @@ TEST(Plot, PassesOnWhatGnuplotSaysWhenItFails) {
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("gnuplot failed"), HasSubstr("line"))));
 }
 
+TEST(HtmlReport, ShowsWhatIsBetweenGraveAccentsAsCode) {
+  const Report r{.title = "t", .subtitle = "", .blocks = {Paragraph{"Run `check <a>` first, then ` one more"}}};
+  EXPECT_THAT(render_html(r).page, HasSubstr("<p>Run <code>check &lt;a&gt;</code> first, then ` one more</p>"));
+}
+
 }  // namespace
 }  // namespace driftwright::output::html::html_report_test

@@ -302,7 +302,7 @@ TEST(LinuxcncComponent, HasPinsThatHalCanName) {
     EXPECT_LE(name.size(), 39u) << name;
     EXPECT_TRUE(names.insert(name).second) << name;
   }
-  EXPECT_EQ(c.names().size(), 28u);  // 10 of the inputs; of any component 4 in, 8 out and 6 parameters
+  EXPECT_EQ(c.names().size(), 29u);  // 10 of the inputs; of any component 4 in, 8 out and 7 parameters
   EXPECT_TRUE(names.contains("doubt_T_a_degC_2"));
 }
 

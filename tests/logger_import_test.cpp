@@ -175,6 +175,9 @@ TEST(LoggerImport, NamesARowOutOfTimeOrderAsSuch) {
   EXPECT_THAT(import("time [s];T1 (°C)\n0;20,1\n10;20,2\n20;20,2\n15;20,3\n30;20,4\n40;20,5\n"),
               ThrowsMessage<InputError>(
                   testing::AllOf(HasSubstr("log.csv:5:"), HasSubstr("the time goes back by 5 s from line 4"))));
+  EXPECT_THAT(import("time_s;T1 (°C)\n0;20,1\n60;20,2\n120;20,2\n90;20,3\n"),
+              ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("log.csv:5:"), HasSubstr("the time goes back by 30 s from line 4"))));
 }
 
 TEST(LoggerImport, TakesTheSpindlesSpeedByItsUnitThenByItsName) {

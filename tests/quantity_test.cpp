@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"20 C", "K", "write 'degC'"}, Bad{"mm", "m", "not a number"}, Bad{"", "m", "not a number"},
                       Bad{"nan mm", "m", "not a finite number"}, Bad{".nan", "1", "not a number"},
                       Bad{"inf", "1", "not a finite number"}, Bad{"1e999 mm", "m", "not a finite number"},
-                      Bad{"1,5 mm", "m", "unknown unit"}, Bad{"5 degC", "K", "temperature difference"},
+                      Bad{"1,5 mm", "m", "decimals need a point: 1.5 mm"}, Bad{"5 degC", "K", "temperature difference"},
                       Bad{"5 degF", "K", "temperature difference"}, Bad{"10 W/m^2", "W/(m^2 K)", "wrong unit"},
                       // A frequency is no rate of turning: 2 pi would slip in.
                       Bad{"33 Hz", "rpm", "wrong unit"}, Bad{"2000 1/min", "rpm", "wrong unit"}));

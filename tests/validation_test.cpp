@@ -66,7 +66,7 @@ TEST(DefaultValidation, OfTwoCyclogramsJudgesOnRandomOnesAloneAndRefusesOne) {
       [&] {
         (void)default_validation({known()[0], known()[3], rest}, 12.0);
       },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("two different"), HasSubstr("`validation`"))));
+      ThrowsMessage<InputError>(AllOf(HasSubstr("at least two different"), HasSubstr("`validation: {train"))));
 }
 
 TEST(Validation, ReadsWhatItIsGivenAndDefaultsTheRest) {

@@ -74,7 +74,8 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
   if (physics && is_alike(*physics)) {
     const DeployedPredictor& simplest = simplest_near(
         strategies, *physics, [](const DeployedPredictor& d) { return d.predictor && d.predictor->is_driven(); });
-    return because(simplest, rest(simplest) + "; it is a model of the machine, which holds where no training run went");
+    return because(
+        simplest, rest(simplest) + "; it was preferred because a model of the machine also holds outside the training runs");
   }
   if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return because(*mean, rest(*mean));
   const DeployedPredictor& simplest = simplest_near(strategies, *best, is_alike);

@@ -29,6 +29,7 @@ namespace {
 using namespace compensation;
 
 constexpr double kInterval = 0.95;
+constexpr std::size_t kMostRows = 500;  // of a left-out part that a residual's process is fitted to
 // Share of the drift of a left-out part. A prediction that leaves more is not valid there; applying only a quarter of it
 // would leave less.
 constexpr double kHolds = 0.5;
@@ -268,8 +269,53 @@ LeftOutPredictions left_out_predictions(const Strategy& strategy, const FoldedRu
   return predictions;
 }
 
+/// Measured minus predicted of each run, or block of a single run, that was left out. Of long ones, rows at equal distances.
+std::vector<ResidualSeries> residuals_of(const LeftOutPredictions& predictions, const FoldedRuns& f) {
+  std::vector<ResidualSeries> all;
+  for (std::size_t k = 0; k < predictions.size(); ++k) {
+    if (f.folds[k].kind != "run" && f.folds[k].kind != "block") continue;
+    ResidualSeries series;
+    std::size_t at = 0;
+    for (std::size_t r = 0; r < f.runs.size(); ++r) {
+      for (std::size_t i = 0; i < f.folds[k].hidden[r].size(); ++i) {
+        if (!f.folds[k].hidden[r][i]) continue;
+        const double off_um = f.measured_um[k][at] - predictions[k][at];
+        ++at;
+        if (!std::isfinite(off_um)) continue;
+        series.time_s.push_back(f.runs[r].readings.time_s[i]);
+        series.off_um.push_back(off_um);
+      }
+    }
+    const std::size_t step = series.time_s.size() / kMostRows + 1;
+    ResidualSeries thinned;
+    for (std::size_t i = 0; i < series.time_s.size(); i += step) {
+      thinned.time_s.push_back(series.time_s[i]);
+      thinned.off_um.push_back(series.off_um[i]);
+    }
+    all.push_back(std::move(thinned));
+  }
+  return all;
+}
+
+/// White noise of the target, at most as stated: half of the mean square from row to row is the most that it can be.
+double noise_in(std::span<const ResidualSeries> series, double stated_um) {
+  double square = 0.0, n = 0.0;
+  for (const ResidualSeries& s : series) {
+    for (std::size_t i = 1; i < s.off_um.size(); ++i) {
+      square += 0.5 * std::pow(s.off_um[i] - s.off_um[i - 1], 2);
+      n += 1.0;
+    }
+  }
+  return n > 0.0 ? std::min(stated_um, std::sqrt(square / n)) : stated_um;
+}
+
 /// Sets the errors and the interval.
-void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f) {
+void set_left_out(DeployedPredictor& d, const LeftOutPredictions& predictions, const FoldedRuns& f,
+                  const StrategySettings& s) {
+  if (s.probing) {
+    const std::vector<ResidualSeries> series = residuals_of(predictions, f);
+    d.residual = fit_residual_process(series, noise_in(series, s.drift_um));
+  }
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     std::vector<double> off;
     for (std::size_t i = 0; i < predictions[k].size(); ++i) off.push_back(std::abs(f.measured_um[k][i] - predictions[k][i]));
@@ -369,7 +415,7 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
   d.name = kBlend;
   d.ambient = s.ambient;
-  set_left_out(d, mean, folds);
+  set_left_out(d, mean, folds, s);
   guard(d, s, training, folds);
   return d;
 }
@@ -398,7 +444,7 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
     try {
       fitted[i] = fit_one(list[i], settings, training);
       predictions[i] = left_out_predictions(list[i], folds);
-      set_left_out(*fitted[i], predictions[i], folds);
+      set_left_out(*fitted[i], predictions[i], folds, settings);
       if (!fitted[i]->is_baseline) guard(*fitted[i], settings, training, folds);
     } catch (const InputError& e) {
       why[i] = e.what();

@@ -29,6 +29,12 @@ struct Physics {
   std::optional<LinearisedModel> linearised = {};  ///< none: the machine's own laws are linear
 };
 
+/// The corrected axis is probed again and again, and the correction takes up what is found (residual_process.hpp).
+struct Probing {
+  double every_s = 3600.0;
+  double noise_um = 1.0;  ///< of a probing, 1 sigma
+};
+
 /// Settings of all strategies.
 struct StrategySettings {
   std::string target;                   ///< channel in um
@@ -40,6 +46,7 @@ struct StrategySettings {
   double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
   double drift_um = 1.0;            ///< 1 sigma of the indicator that measured the drift in the training runs
   CorrectionLimits limits = {};     ///< of the machine; they narrow each fail-safe
+  std::optional<Probing> probing = {};
   std::optional<Physics> physics;
   std::string without_physics = {};  ///< why there is none; empty: it was not requested
 };

@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "base/random.hpp"
 #include "compensation/judging/iso230_3.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
@@ -212,7 +213,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format("{}never more than {:.1f} µm left of the drift; the most {}{}",
+    s.why = fmt::format("{}it leaves at most {:.1f} µm of the drift, {}{}",
                         worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
                         all.peak->after.peak_abs, where_of(m, *all.peak),
                         m.runs.size() > 2
@@ -344,6 +345,30 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
   return {std::move(c), std::move(correction.correction_um), std::move(left)};
 }
 
+namespace {
+
+/// What remains if the axis is probed again and again while a judged correction is in force. A probing counts from the row
+/// after it.
+std::optional<Score> probed(const Judgement& judged, const DeployedPredictor& strategy,
+                            const std::optional<Probing>& probing, const ObservedRun& run, std::uint64_t seed) {
+  if (!probing || !strategy.residual) return std::nullopt;
+  ProbeFeedback feedback(*strategy.residual, strategy.from_start);
+  Random random(seed, 31);
+  const std::vector<double>& t_s = run.readings.time_s;
+  std::vector<double> left_um;
+  double next_s = t_s.front() + probing->every_s;
+  for (std::size_t i = 0; i < judged.left_um.size(); ++i) {
+    if (i > 0) feedback.wait(t_s[i] - t_s[i - 1]);
+    left_um.push_back(judged.left_um[i] - feedback.estimate_um());
+    if (t_s[i] < next_s || !std::isfinite(judged.left_um[i])) continue;
+    (void)feedback.probe(judged.left_um[i] + probing->noise_um * random.normal(), probing->noise_um);
+    next_s += probing->every_s * (1.0 + std::floor((t_s[i] - next_s) / probing->every_s));
+  }
+  return score(left_um);
+}
+
+}  // namespace
+
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                 std::vector<JudgedRunOfMachine> runs) {
   StrategyMatrix matrix{
@@ -371,7 +396,9 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
     for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-      cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
+      const Judgement judged = judge(strategy, run, drift_um[r]);
+      cases[job].push_back(judged.scores);
+      cases[job].back().probed = probed(judged, strategy, settings.strategies.probing, run, r);
       cases[job].back().run = r;
       cases[job].back().failed = failed;
     }

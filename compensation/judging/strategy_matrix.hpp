@@ -36,6 +36,7 @@ struct Case {
   /// Share of the rows with a prediction interval in force whose drift is inside it; NaN without such rows.
   double covered = 0.0;
   std::vector<std::string> events;  ///< of the fail-safe
+  std::optional<Score> probed;      ///< of what remains if the axis is probed, too
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
 };

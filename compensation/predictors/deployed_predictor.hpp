@@ -6,6 +6,7 @@
 
 #include "compensation/predictors/fail_safe.hpp"
 #include "compensation/predictors/predictor.hpp"
+#include "compensation/predictors/residual_process.hpp"
 
 namespace driftwright::compensation {
 
@@ -31,6 +32,9 @@ struct DeployedPredictor {
   /// Half width of the 95 % prediction interval [um]: for each part of the training runs that was left out in turn, the
   /// error that 95 % of its rows do not exceed; the largest of these. None if no part could be left out.
   std::optional<double> interval_um = {};
+  /// What it leaves on parts of the training runs that were left out, for probings; none if it was not asked for. Not stored
+  /// in files.
+  std::optional<ResidualProcess> residual = {};
   std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
 };
 

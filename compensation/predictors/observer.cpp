@@ -32,31 +32,32 @@ constexpr double kAmbientJumpIn_s = 600.0;  // for more distant rows, within thi
 constexpr std::size_t kStepsKept = 512;
 constexpr double kStart_K = 0.1;                    // uniform uncertainty of the start state
 constexpr double kAgreesFor_s = kRemembersDoubt_s;  // of agreement, before a sensor, or the model, counts as right again
-constexpr double kGap = 2.5;                        // intervals between rows, beyond which the drive in between is unknown
-constexpr double kWidest = 2.0;  // least range of a number over its deviation: at either end at random (Popoviciu)
+constexpr double kStale = 5.0;       // intervals without a reading, after which a sensor is silent; as the fail-safe has it
+constexpr double kForgetStep = 0.8;  // from row to row, of a longer interval
+constexpr double kGap = 2.5;         // intervals between rows, beyond which the drive in between is unknown
+constexpr double kWidest = 2.0;      // least range of a number over its deviation: at either end at random (Popoviciu)
 
 /// How long something has agreed with what is expected, and over which expected temperatures: a sensor that is stuck agrees
 /// only as long as nothing moves. Temperatures are means over as many rows as the innovations that agree.
 struct Agreement {
-  double since_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: it does not
-  double mean_K = std::numeric_limits<double>::quiet_NaN();   ///< NaN: no row yet
-  double low_K = 0.0, high_K = 0.0;                           ///< of mean_K
+  double agreed_s = -1.0;                                    ///< in rows with a reading; < 0: it does not
+  double mean_K = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no row yet
+  double low_K = 0.0, high_K = 0.0;                          ///< of mean_K
 
-  void take(bool agrees, double t_s, double expected_K) {
+  void take(bool agrees, double step_s, double expected_K) {
     mean_K = std::isnan(mean_K) ? expected_K : kMemory * mean_K + (1.0 - kMemory) * expected_K;
     if (!agrees) {
-      since_s = std::numeric_limits<double>::quiet_NaN();
-    } else if (std::isnan(since_s)) {
-      since_s = t_s;
+      agreed_s = -1.0;
+    } else if (agreed_s < 0.0) {
+      agreed_s = 0.0;
       low_K = high_K = mean_K;
     } else {
+      agreed_s += step_s;
       low_K = std::min(low_K, mean_K);
       high_K = std::max(high_K, mean_K);
     }
   }
-  [[nodiscard]] bool is_long(double t_s, double moved_K) const {
-    return t_s - since_s >= kAgreesFor_s && high_K - low_K > moved_K;  // false for NaN
-  }
+  [[nodiscard]] bool is_long(double moved_K) const { return agreed_s >= kAgreesFor_s && high_K - low_K > moved_K; }
 };
 
 /// Deviation of the mean of white innovations of deviation 1.
@@ -87,6 +88,7 @@ class Observer::Run final : public ObserverFollower {
     belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
+    for (const Eigen::Index output : o_.sensor_output_) sees_state_.push_back(s_.outputs.state.col(output).norm() > 0.0);
     agreement_.assign(o_.sensors_.size(), {});
     least_W_.resize(n_sources_);
     for (Eigen::Index s = 0; s < n_sources_; ++s) least_W_(s) = s_.sources[static_cast<std::size_t>(s)].power_W({});
@@ -96,6 +98,8 @@ class Observer::Run final : public ObserverFollower {
     last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     innovation_K_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     spread_K_.assign(o_.sensors_.size(), 0.0);
+    last_reading_s_ = last_s_;
+    deviation_K_ = innovation_K_;
   }
 
   double next(const ObservedRun& run) override {
@@ -105,14 +109,16 @@ class Observer::Run final : public ObserverFollower {
     if (history_.size() > kReturn) history_.pop_front();
     judge_ambient(run, row_);
     temper_ = with_drift_ || row_ < kWarm ? 1.0 : std::max(1.0, apart() / o_.settings_.most_apart);
+    const double before_s = now_s_;
+    return_.clear();
     take_row(run, row_);
     temper_ = 1.0;
     if (!gives_up_) return 1e6 * drift_m(row_++);
     if (is_ambient_doubted_.back() && has_live_sensor() && row_ >= ambient_doubted_row_ + kReturn &&
         history_.size() == kReturn)
       settle_ambient(run);
-    use_again(run.readings.time_s[run.at(row_)]);
-    if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && may_drop() > 0)
+    use_again(std::min(now_s_ - before_s, kGap * std::max(o_.settings_.period_s, usual_step_s_)));
+    if (const int suspect = worst_suspect(row_); suspect >= 0 && row_ >= again_row_ && !history_.empty() && may_drop() > 0)
       give_up(run, static_cast<std::size_t>(suspect));
     // with a single sensor it is unknown whether the sensor or the model is wrong
     is_model_wrong_ =
@@ -130,7 +136,7 @@ class Observer::Run final : public ObserverFollower {
     double sum = 0.0, worst = 0.0;
     int n = 0;
     for (std::size_t k = 0; k < live_.size(); ++k) {
-      if (!live_[k]) continue;
+      if (!live_[k] || !sees_state_[k] || is_silent(k)) continue;
       const double square = mean_innovation_[k] * mean_innovation_[k] / variance;
       sum += square;
       worst = std::max(worst, square);
@@ -145,7 +151,15 @@ class Observer::Run final : public ObserverFollower {
     return sum / (n * std::pow(1.0 - third + kChance * std::sqrt(third), 3));
   }
   [[nodiscard]] bool has_live_sensor() const {
-    return std::any_of(live_.begin(), live_.end(), [](bool is) { return is; });
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      if (live_[k] && sees_state_[k] && !is_silent(k)) return true;
+    }
+    return false;
+  }
+  /// Without a reading for so long that it says nothing of the present state.
+  [[nodiscard]] bool is_silent(std::size_t sensor) const {
+    const double last_s = std::isnan(last_reading_s_[sensor]) ? start_s_ : last_reading_s_[sensor];
+    return now_s_ - last_s > kStale * std::max(o_.settings_.period_s, usual_step_s_);
   }
   [[nodiscard]] std::size_t n_in_means() const { return std::max<std::size_t>(row_ - means_from_, 1); }
   [[nodiscard]] double deserved_trust() const override {
@@ -161,11 +175,16 @@ class Observer::Run final : public ObserverFollower {
   }
   [[nodiscard]] Eigen::VectorXd outputs() const override { return s_.observe(belief_.mean.head(n_), ambient_K_.back()); }
   [[nodiscard]] const std::vector<double>& innovation_K() const override { return innovation_K_; }
+  [[nodiscard]] const std::vector<double>& deviation_K() const override { return deviation_K_; }
   [[nodiscard]] std::vector<std::string> given_up() const override {
     std::vector<std::string> names;
     if (row_ > 0 && is_ambient_doubted_.back()) names.push_back(words_of_ambient());
     for (std::size_t k = 0; k < live_.size(); ++k) {
-      if (!live_[k]) names.push_back(words_of_dropped(k));
+      if (!live_[k]) {
+        names.push_back(words_of_dropped(k));
+      } else if (row_ > 0 && is_silent(k)) {
+        names.push_back(fmt::format("{} without a reading", o_.sensors_[k]));
+      }
     }
     return names;
   }
@@ -183,11 +202,14 @@ class Observer::Run final : public ObserverFollower {
                              static_cast<double>(ambient_doubted_row_),
                              ambient_doubted_s_,
                              static_cast<double>(is_model_wrong_),
-                             last_step_s_};
-    const auto add = [&](const Agreement& a) { m.insert(m.end(), {a.since_s, a.mean_K, a.low_K, a.high_K}); };
+                             usual_step_s_,
+                             now_s_,
+                             start_s_};
+    const auto add = [&](const Agreement& a) { m.insert(m.end(), {a.agreed_s, a.mean_K, a.low_K, a.high_K}); };
     add(model_agreement_);
     for (std::size_t k = 0; k < live_.size(); ++k) {
-      m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
+      m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k], last_reading_s_[k],
+                         spread_K_[k]});
       add(agreement_[k]);
     }
     m.insert(m.end(), least_W_.begin(), least_W_.end());
@@ -202,7 +224,7 @@ class Observer::Run final : public ObserverFollower {
   void recall(std::span<const double> memory) override {
     const auto n = belief_.mean.size();
     const std::size_t n_sensors = live_.size();
-    if (memory.size() != 12 + 8 * n_sensors + static_cast<std::size_t>(2 * n_sources_ + n_ + n + n * (n + 1) / 2))
+    if (memory.size() != 14 + 10 * n_sensors + static_cast<std::size_t>(2 * n_sources_ + n_ + n + n * (n + 1) / 2))
       throw std::logic_error("the memory of another observer");
     auto at = memory.begin();
     const auto take = [&] { return *at++; };
@@ -213,10 +235,12 @@ class Observer::Run final : public ObserverFollower {
     ambient_doubted_row_ = static_cast<std::size_t>(take());
     ambient_doubted_s_ = take();
     is_model_wrong_ = take() != 0.0;
-    last_step_s_ = take();
+    usual_step_s_ = take();
+    now_s_ = take();
+    start_s_ = take();
     const auto taken_agreement = [&] {
       Agreement a;
-      a.since_s = take();
+      a.agreed_s = take();
       a.mean_K = take();
       a.low_K = take();
       a.high_K = take();
@@ -229,6 +253,8 @@ class Observer::Run final : public ObserverFollower {
       dropped_s_[k] = take();
       mean_innovation_[k] = take();
       last_s_[k] = take();
+      last_reading_s_[k] = take();
+      spread_K_[k] = take();
       agreement_[k] = taken_agreement();
       if (!live_[k]) distrusted_.push_back(words_of_dropped(k));
     }
@@ -279,6 +305,7 @@ class Observer::Run final : public ObserverFollower {
   }
 
   void begin(const ObservedRun& run) {
+    start_s_ = now_s_ = run.readings.time_s.front();
     start_ambient_K_ = run.ambient.at(run.readings.time_s.front());
     belief_.mean.head(n_) = o_.start_ + (start_ambient_K_ - o_.start_ambient_K_) * s_.ones;
     start_state_ = belief_.mean.head(n_);
@@ -328,6 +355,7 @@ class Observer::Run final : public ObserverFollower {
       belief_ = before.history.front().belief;
       start_anew(before.history.front().row);
       squares_ = 0.0;
+      n_readings_ = 0;
       for (std::size_t k = before.history.front().row; k <= row_; ++k) take_row(run, k);
       return squares_;
     };
@@ -338,8 +366,9 @@ class Observer::Run final : public ObserverFollower {
       ambient_K_[k - first_ambient_row_] = run.ambient.at(run.readings.time_s[run.at(k)]);
       is_ambient_doubted_[k - first_ambient_row_] = false;
     }
-    if (followed() <= held) {
+    if (followed() <= held && n_readings_ > 0) {
       history_.clear();
+      is_model_wrong_ = false;
       for (std::size_t k = 0; k < live_.size(); ++k) {  // what was judged by the held ambient is judged again
         if (!live_[k] && dropped_s_[k] >= ambient_doubted_s_) take_back(k);
       }
@@ -359,17 +388,14 @@ class Observer::Run final : public ObserverFollower {
 
   /// A sensor that has agreed again for long enough, over temperatures that moved by more than a stuck one could agree with,
   /// is used again; so is a model that was found wrong.
-  void use_again(double t_s) {
+  void use_again(double step_s) {
+    for (std::size_t k : return_) take_back(k);
+    if (!has_live_sensor()) return;
     double expected_K = 0.0;
-    for (std::size_t k = 0; k < live_.size(); ++k) {
-      expected_K += expected_K_of(k, row_) / static_cast<double>(live_.size());
-      const double moved_K = 2.0 * kFlag * kMeanDeviation * spread_K_[k];
-      if (!live_[k] && agreement_[k].is_long(t_s, moved_K)) take_back(k);
-    }
-    if (live_.empty()) return;
-    model_agreement_.take(apart() <= o_.settings_.most_apart, t_s, expected_K);
+    for (std::size_t k = 0; k < live_.size(); ++k) expected_K += expected_K_of(k, row_) / static_cast<double>(live_.size());
+    model_agreement_.take(apart() <= o_.settings_.most_apart, step_s, expected_K);
     const double widest_K = *std::max_element(spread_K_.begin(), spread_K_.end());
-    if (is_model_wrong_ && model_agreement_.is_long(t_s, 2.0 * kFlag * kMeanDeviation * widest_K)) is_model_wrong_ = false;
+    if (is_model_wrong_ && model_agreement_.is_long(2.0 * kFlag * kMeanDeviation * widest_K)) is_model_wrong_ = false;
   }
 
   /// Up to a third of the sensors, at least one: more differing sensors show that the model is wrong. None after the model
@@ -433,19 +459,25 @@ class Observer::Run final : public ObserverFollower {
   void take_row(const ObservedRun& run, std::size_t i) {
     const std::size_t at = run.at(i);
     const double t_s = run.readings.time_s[at];
+    const double step_s = std::min(t_s - now_s_, kGap * std::max(o_.settings_.period_s, usual_step_s_));
     if (i > 0) advance(run, i);
+    now_s_ = t_s;
     for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
       const double read = run.readings.channels[sensor_channel_[k]].values[at];
-      innovation_K_[k] = std::numeric_limits<double>::quiet_NaN();
+      innovation_K_[k] = deviation_K_[k] = std::numeric_limits<double>::quiet_NaN();
       if (std::isnan(read)) continue;
+      last_reading_s_[k] = t_s;
+      ++n_readings_;
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(o_.sensor_output_[k]);
       const double expected_K = expected_K_of(k, i);
       const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t_s, last_s_[k]);
       const double spread = spread_K_[k] = std::sqrt(h.dot(belief_.covariance * h) + variance);
-      const double innovation = std::clamp(read - expected_K, -kOutlier * spread, kOutlier * spread);
+      deviation_K_[k] = read - expected_K;
+      const double innovation = std::clamp(deviation_K_[k], -kOutlier * spread, kOutlier * spread);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
-      agreement_[k].take(std::abs(mean_innovation_[k]) <= kFlag * kMeanDeviation, t_s, expected_K);
+      agreement_[k].take(std::abs(mean_innovation_[k]) <= kFlag * kMeanDeviation, step_s, expected_K);
+      if (!live_[k] && agreement_[k].is_long(2.0 * kFlag * kMeanDeviation * spread)) return_.push_back(k);
       if (!live_[k]) continue;
       innovation_K_[k] = innovation;
       squares_ += innovation * innovation / (spread * spread);
@@ -498,9 +530,10 @@ class Observer::Run final : public ObserverFollower {
   void advance(const ObservedRun& run, std::size_t i) {
     double from_s = run.readings.time_s[run.at(i) - 1], section_end_s = run.cyclogram_from_s;
     const double to_s = run.readings.time_s[run.at(i)], length_s = to_s - from_s;
-    const bool is_gap = !with_drift_ && length_s > kGap * std::max(o_.settings_.period_s, last_step_s_);
+    const double longest_s = kGap * std::max(o_.settings_.period_s, usual_step_s_);
+    const bool is_gap = !with_drift_ && length_s > longest_s;
     if (is_gap) unseen_ = Eigen::MatrixXd::Zero(n_, n_sources_);
-    last_step_s_ = length_s;
+    usual_step_s_ = std::max(std::min(length_s, longest_s), kForgetStep * usual_step_s_);
     for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
       const bool is_last = c + 1 == run.cyclogram.sections.size();
       section_end_s += run.cyclogram.sections[c].duration_s;
@@ -637,13 +670,18 @@ class Observer::Run final : public ObserverFollower {
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
-  double temper_ = 1.0;       // on the variance of readings, while they are further from the model than trust allows
-  double squares_ = 0.0;      // of normalised innovations
-  double last_step_s_ = 0.0;  // between rows
+  double temper_ = 1.0;        // on the variance of readings, while they are further from the model than trust allows
+  double squares_ = 0.0;       // of normalised innovations
+  double usual_step_s_ = 0.0;  // between rows: the longest of the last ones
+  double now_s_ = 0.0, start_s_ = 0.0;
+  int n_readings_ = 0;  // taken
+  std::vector<double> last_reading_s_, deviation_K_;
+  std::vector<std::size_t> return_;  // sensors that have agreed for long enough
   std::size_t row_ = 0, again_row_ = 0, means_from_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
+  std::vector<bool> sees_state_;  // false: of a thermometer of the ambient alone, which says nothing of the model
   std::vector<std::string> distrusted_;
   std::deque<double> ambient_K_;  // as used, for the last rows
   std::deque<bool> is_ambient_doubted_;
@@ -685,7 +723,12 @@ Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double s
 }
 
 void Observer::learn(std::span<const ObservedRun> runs) {
-  if (!runs.empty()) settings_.period_s = runs.front().readings.time_s.at(1) - runs.front().readings.time_s.at(0);
+  std::vector<double> steps_s;
+  for (const ObservedRun& run : runs) {
+    for (std::size_t i = 1; i < run.readings.n_samples(); ++i)
+      steps_s.push_back(run.readings.time_s[i] - run.readings.time_s[i - 1]);
+  }
+  if (!steps_s.empty()) settings_.period_s = quantile(std::move(steps_s), 0.5);
   for (const ObservedRun& run : runs) {
     Run pass(*this, true);
     for (std::size_t i = 0; i < run.readings.n_samples(); ++i) (void)pass.next(run);

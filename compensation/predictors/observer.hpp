@@ -21,7 +21,7 @@ struct ObserverSettings {
   double factor_walk = 0.02;      ///< change of a factor in an hour
   double scale = 0.05;            ///< of the scale of each displacement
   double longest_step_s = 60.0;   ///< of the filter between readings
-  /// Interval that the first readings of a run are assumed to have; learn() takes it from its first run.
+  /// Interval that readings are assumed to have at the start of a run; learn() takes the median of its runs.
   double period_s = 60.0;
   /// Factor on the distance between sensors and model above which trust decreases; 1 is the distance that chance exceeds in
   /// one of a thousand rows.
@@ -41,8 +41,11 @@ class ObserverFollower : public Follower {
  public:
   /// All outputs of the model in the estimated state, in K, m, rad.
   [[nodiscard]] virtual Eigen::VectorXd outputs() const = 0;
-  /// Reading minus its expected value, for each sensor [K]; NaN without a reading.
+  /// Reading minus its expected value, for each sensor [K]; NaN without a reading. At most six deviations, so that single
+  /// wrong readings count little.
   [[nodiscard]] virtual const std::vector<double>& innovation_K() const = 0;
+  /// The same without that limit.
+  [[nodiscard]] virtual const std::vector<double>& deviation_K() const = 0;
 };
 
 /// Extended Kalman filter for the reduced state z and the uncertain factors:
@@ -98,6 +101,7 @@ class Observer final : public Predictor {
   /// Their values as factors on the model: solver::with_factors() makes the estimated machine.
   [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
+  [[nodiscard]] double period_s() const { return settings_.period_s; }  ///< between the rows that it learned from
 
   /// An estimate with a normal distribution.
   struct Belief {

@@ -80,8 +80,9 @@ void refuse_overlap(const RecordPart& a, const RecordPart& b) {
   if (path(a) != path(b)) return;
   if (a.until_s <= b.from_s || b.until_s <= a.from_s) return;
   if (a.is_whole() && b.is_whole())
-    throw InputError(
-        fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once", a.words, b.words));
+    throw InputError(fmt::format(
+        "{} and {} contain the same run. Use a run once, either for --train or for --test; a part of it is FILE:0h..3h",
+        a.words, b.words));
   throw InputError(fmt::format("{} and {} overlap; a row can be trained on or judged by, once", a.words, b.words));
 }
 

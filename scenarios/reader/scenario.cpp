@@ -346,7 +346,11 @@ void reject_what_wants_a_machine(const ConfigMap& top) {
     top.fail(
         "vary",
         "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
-  if (!top.has("study")) top.fail("machine", "neither a machine to simulate nor a study of records");
+  if (!top.has("study"))
+    top.fail("machine",
+             "the key `machine` is missing. A scenario requires it, such as `machine: {generator: lumped}`; only a scenario "
+             "about records "
+             "alone has `study` instead");
   const schema::Map& with = scenario_schemas()[0];
   const schema::Map& without = scenario_schemas()[1];
   for (const schema::Key& key : with.keys) {

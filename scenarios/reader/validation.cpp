@@ -145,8 +145,9 @@ Validation default_validation(const std::vector<Cyclogram>& cyclograms, double t
   }
   if (different.size() < 2)
     throw InputError(
-        "two different `cyclograms` that turn the spindle are required at least: what a fit leaves open is decided on runs "
-        "left out. Add some, or say by the key `validation` what strategies are judged on");
+        "`validate` requires at least two different `cyclograms` that turn the spindle, because it fits on some and judges "
+        "on "
+        "the others. Add a cyclogram, or write `validation: {train: [...], families: {...}}` (docs/how-to/validation.md)");
   Validation v;
   v.seasons = {{.name = "as trained"}, {.name = "5 K cooler", .offset_K = -5.0}, {.name = "5 K warmer", .offset_K = 5.0}};
   v.noise_K = 0.1;

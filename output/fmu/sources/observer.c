@@ -1,5 +1,6 @@
 /* The state observer: the reduced machine and factors on its heat flows, corrected by thermometers at each sample (extended Kalman filter).
- * The same steps as compensation/predictors/observer.cpp of Driftwright, which says what they are; without the learning.
+ * The same steps as compensation/predictors/observer.cpp of Driftwright, which says what they are, as long as readings agree; without the
+ * learning, and without what it does while they do not: trust, tempered readings, sensors and ambients that are judged again.
  *
  * A sample is taken every period_s from the start on, by the readings that are set then: at events in model exchange, at the beginning of
  * the step that holds it in co-simulation. Outputs stay as they are until the next one. */
