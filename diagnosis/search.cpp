@@ -232,8 +232,10 @@ struct Trials {
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const FittedClaim& f = fitted[i];
-      if (f.is_rough && !f.fit.prediction.empty() && std::max(gain(f), f.hoped) > kHopeless * best - kHope)
-        near.push_back(i);
+      if (!f.is_rough || f.fit.prediction.empty()) continue;
+      // At size zero a claim does nothing, so a fit that ends above that stopped short, whatever its law.
+      const bool is_short = !f.claim.all_or_nothing && f.fit.misfit > base_fit.misfit + kSettled;
+      if (is_short || std::max(gain(f), f.hoped) > kHopeless * best - kHope) near.push_back(i);
     }
     for_each_index(
         near.size(), [&] { return Twin::Workspace(ground.fitter.twin()); },
