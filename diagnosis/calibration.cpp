@@ -193,7 +193,7 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   {
     Fitter weighed(fresh, runs);
     weighed.set_noise(d.noise);
-    d.statements = search(weighed, {}, {.most_effects = 1}, listener).statements;
+    d.statements = search(weighed, {}, {.most_effects = 1}, nullptr, listener).statements;
   }
   d.search = chosen.fitted;
   const bool is_too_few = readings_of(runs) < kFewestReadings;

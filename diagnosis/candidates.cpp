@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/quantity.hpp"
 #include "diagnosis/happening.hpp"
@@ -9,6 +10,10 @@
 
 namespace driftwright::diagnosis {
 namespace {
+
+// Description length of a law [nats]: one bit for each number after its size, which it has or has not. Numbers that the readings determine pay in the evidence besides; of laws
+// that do the same because their further numbers do nothing, the one with the fewest is the cause: the scenario's own number with another value.
+constexpr double kFurtherNumber = std::numbers::ln2;
 
 Candidate& candidate(std::vector<Candidate>& list, const std::string& effect, const std::string& where) {
   for (Candidate& c : list) {
@@ -144,7 +149,7 @@ Variant law_of(const effects::Doubt& doubt) {
             .grid = doubt.grid,
             .at_speed_rpm = doubt.at_speed_rpm,
             .all_or_nothing = doubt.all_or_nothing,
-            .price_nats = doubt.rarity,
+            .price_nats = doubt.rarity + kFurtherNumber * static_cast<double>(doubt.numbers.size() - 1),
             .in = doubt.added.front().in,
             .adds = std::move(adds)};
   if (effects::can_be_of_some_runs(doubt)) v.of_some_runs = std::make_shared<const effects::Doubt>(doubt);

@@ -19,7 +19,7 @@ struct Variant {
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
   double at_speed_rpm = 0.0;                     ///< speed at which its size is stated; 0: none
   bool all_or_nothing = false;                   ///< such as two swapped cables: the size is trial_x or zero
-  double price_nats = 0.0;         ///< cost before any reading: rarity among laws, or choices such as seen windows
+  double price_nats = 0.0;         ///< cost before any reading: rarity, numbers after the size, choices such as seen windows
   bool happens = false;            ///< for a while or from a time on, not throughout
   bool of_chosen_records = false;  ///< its records were chosen by these same readings; price_nats includes the cost
   bool seen = false;               ///< its times were chosen by these same readings: simulated records cannot test its odds

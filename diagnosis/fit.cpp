@@ -48,6 +48,34 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   return smooth;
 }
 
+/// Solves H s = g within bounds of the first numbers of x: a number whose step would pass its bound ends there, and the others are solved again.
+/// @param x, most  values of the first numbers, and their largest distances from zero
+Eigen::VectorXd bounded_step(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& x,
+                             const Eigen::VectorXd& most) {
+  Eigen::VectorXd step = hessian.llt().solve(gradient);
+  Eigen::VectorXd ends = Eigen::VectorXd::Zero(gradient.size());  // steps of numbers that end at their bound
+  std::vector<Eigen::Index> bound;
+  for (Eigen::Index turn = 0; turn < x.size(); ++turn) {
+    const std::size_t n_before = bound.size();
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      if (!(std::abs(x[i] + step[i]) > most[i]) || std::find(bound.begin(), bound.end(), i) != bound.end()) continue;
+      bound.push_back(i);
+      ends[i] = std::copysign(most[i], x[i] + step[i]) - x[i];
+    }
+    if (bound.size() == n_before) break;
+    Eigen::MatrixXd h = hessian;
+    Eigen::VectorXd g = gradient - hessian * ends;
+    for (Eigen::Index i : bound) {
+      h.row(i).setZero();
+      h.col(i).setZero();
+      h(i, i) = 1.0;
+      g[i] = ends[i];
+    }
+    step = h.llt().solve(g);
+  }
+  return step;
+}
+
 bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); });
@@ -110,6 +138,7 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       runs_(runs),
       scatter_(other.scatter_),
       linear_(other.linear_),
+      most_sigmas_(other.most_sigmas_),
       nuisance_(other.nuisance_),
       differences_(other.differences_),
       written_differences_(other.written_differences_) {
@@ -328,17 +357,18 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
                 double of_interest) const {
   Eigen::VectorXd x(n_nuisance() + start.size());
   x << nuisance_, start;
-  return climb(hypothesis, std::move(x), -1, workspace, of_interest);
+  return climb(hypothesis, std::move(x), -1, workspace, of_interest, Slopes::kTakenAnew);
 }
 
 Fit Fitter::fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                       Twin::Workspace& workspace, double of_interest) const {
-  return climb(hypothesis, start, held, workspace, of_interest);
+                       Twin::Workspace& workspace, double of_interest, Slopes slopes) const {
+  return climb(hypothesis, start, held, workspace, of_interest, slopes);
 }
 
 Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held, Twin::Workspace& workspace,
-                  double of_interest) const {
-  const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
+                  double of_interest, Slopes slopes) const {
+  const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k,
+                     n_scatter = static_cast<Eigen::Index>(scatter_.size());
   const std::vector<const Knob*> knobs = knobs_of(hypothesis);
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   const Eigen::VectorXd sd = prior_sd(hypothesis);
@@ -346,7 +376,12 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const auto to_bound = [](const Knob& knob, double& number) {  // beyond its bound a number has no slope
       if (const double value = knob.value(number); value == knob.low || value == knob.high) number = knob.x(value);
     };
-    for (std::size_t i = 0; i < scatter_.size(); ++i) to_bound(scatter_[i], x[static_cast<Eigen::Index>(i)]);
+    for (std::size_t i = 0; i < scatter_.size(); ++i) {
+      double& number = x[static_cast<Eigen::Index>(i)];
+      const double most = most_sigmas_ * scatter_[i].prior_sd;
+      number = std::clamp(number, -most, most);
+      to_bound(scatter_[i], number);
+    }
     for (Eigen::Index k = 0; k < n_k; ++k) {
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];
       to_bound(knob, x[n_n + k]);
@@ -382,7 +417,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   Eigen::VectorXd taken_at = nuisance_;
   int n_retakes = 0;
   const auto retake = [&](double promised) {
-    if (n_n == 0) return false;
+    if (n_n == 0 || slopes == Slopes::kKept) return false;
     const Eigen::VectorXd gone = (f.x.head(n_n) - taken_at).cwiseQuotient(sd.head(n_n));
     const double far = gone.cwiseAbs().maxCoeff();
     const bool are_here = n_retakes > 0 && far == 0.0;
@@ -464,7 +499,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     for (Eigen::Index k = 0; k < n_k && times_wait; ++k) {
       if (knobs[static_cast<std::size_t>(k)]->is_time) hold(n_n + k);
     }
-    const Eigen::VectorXd step = hessian.llt().solve(gradient);
+    const Eigen::VectorXd step = bounded_step(hessian, gradient, f.x.head(n_scatter), most_sigmas_ * sd.head(n_scatter));
     const double before = f.misfit;
     for (double share : {1.0, 0.4, 0.1}) {
       Fit tried;

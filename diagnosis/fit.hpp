@@ -70,11 +70,15 @@ class Fitter {
   void add_linear(const std::vector<Prediction>& columns);
   /// How well one of scatter's numbers is known: 1 sigma of its prior.
   void set_prior_sd(std::size_t number, double prior_sd) { scatter_.at(number).prior_sd = prior_sd; }
+  /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and statements look for it.
+  void hold_within(double sigmas) { most_sigmas_ = sigmas; }
   /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
   void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
+  /// Scatter's slopes of the last settle(); or recomputed where a fit has moved far.
+  enum class Slopes { kKept, kTakenAnew };
   /// @param start       x of the claims, in order; scatter starts where it was last settled
   /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one that has no solution
   /// @throws SolveError  when the machine has no solution there
@@ -82,9 +86,12 @@ class Fitter {
                         double of_interest = kAny) const;
   /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its value
   [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                               Twin::Workspace& workspace, double of_interest = kAny) const;
+                               Twin::Workspace& workspace, double of_interest = kAny,
+                               Slopes slopes = Slopes::kTakenAnew) const;
   static constexpr double kAny = 1e300;
 
+  /// Scatter and linear columns of the last settle().
+  [[nodiscard]] const Eigen::VectorXd& settled() const { return nuisance_; }
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
   [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
@@ -124,7 +131,7 @@ class Fitter {
 
  private:
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held, Twin::Workspace& workspace,
-                          double of_interest) const;
+                          double of_interest, Slopes slopes) const;
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;
@@ -143,6 +150,7 @@ class Fitter {
   const std::vector<MeasuredRun>& runs_;
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
+  double most_sigmas_ = kAny;
   std::map<std::string, NoiseModel> noise_;
   std::shared_ptr<const SharedNoise> shared_;
   std::optional<Comparison> comparison_;

@@ -35,6 +35,45 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   return unexplained_of(again, same, of.noise);
 }
 
+/// Numbers that moved to their limit are faults: they get the prior of a fault. @returns  whether there are new ones
+bool widen_moved(Inquiry& of) {
+  Fitter& fitter = *of.fitter;
+  bool any = false;
+  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
+    const Knob& k = fitter.scatter()[i];
+    if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) >= kTooFar * k.prior_sd)) continue;
+    if (std::find(of.moved.begin(), of.moved.end(), i) != of.moved.end()) continue;
+    of.moved.push_back(i);
+    fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kAmbientFault_K);
+    any = true;
+  }
+  return any;
+}
+
+/// A number that is back within its limit, beside the other faults, is no fault: it gets the scenario's prior again.
+/// @param known  with the scenario's priors. @returns  whether there are any
+bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
+  return std::erase_if(of.moved, [&](std::size_t i) {
+           const double sd = known[i].prior_sd;
+           const bool is_back = std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) < kTooFar * sd;
+           if (is_back) of.fitter->set_prior_sd(i, sd);
+           return is_back;
+         }) > 0;
+}
+
+/// Searches; if some numbers turn out to be faults, searches once more with these numbers free.
+void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
+                         const std::vector<Knob>& known, const Listener& listener) {
+  of.search = search(*of.fitter, names, how, &of.search, listener);
+  if (!widen_moved(of) || listener.wants_end()) return;
+  of.search = search(*of.fitter, names, how, &of.search, listener);
+  if (!narrow_returned(of, known)) return;
+  Twin::Workspace workspace(of.fitter->twin());
+  of.fitter->settle(of.search.hypothesis, of.search.fit);
+  of.search.fit = of.fitter->fit(of.search.hypothesis, of.search.fit.claim_x(of.fitter->n_nuisance()), workspace);
+  (void)has_solution([&] { of.search.without = of.fitter->fit({}, Eigen::VectorXd(0), workspace); });
+}
+
 /// Searches again with the model's error as process noise (heat in its bodies) or as slow noise of its channels.
 void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
                           const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
@@ -50,24 +89,11 @@ void weigh_by_model_error(const InquiryGround& ground, const std::vector<Measure
   const Prediction& best = of.wander ? of.wander->prediction : of.search.fit.prediction;
   if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
+  of.fitter->hold_within(kTooFar);
+  of.moved.clear();
   of.fitter->set_noise(rough, shared);
-  of.search = search(*of.fitter, names, how, listener);
+  search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
   of.weighed_by_model_error = true;
-}
-
-/// Numbers that moved too far are faults: they get the prior of a fault, and all numbers are fitted again.
-void widen_moved(Inquiry& of, Twin::Workspace& workspace) {
-  Fitter& fitter = *of.fitter;
-  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
-    const Knob& k = fitter.scatter()[i];
-    if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) > kTooFar * k.prior_sd)) continue;
-    of.moved.push_back(i);
-    fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kAmbientFault_K);
-  }
-  if (of.moved.empty()) return;
-  fitter.settle(of.search.hypothesis, of.search.fit);
-  of.search.fit = fitter.fit(of.search.hypothesis, of.search.fit.claim_x(fitter.n_nuisance()), workspace);
-  (void)has_solution([&] { of.search.without = fitter.fit({}, Eigen::VectorXd(0), workspace); });
 }
 
 }  // namespace
@@ -107,6 +133,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   const std::vector<Candidate> names = told_of_by(runs, ground.candidates);
   const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
+  of.fitter->hold_within(kTooFar);
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   of.fitter->set_noise(of.noise);
   (void)has_solution([&] {  // the part explained by the scenario's own numbers is no noise
@@ -118,7 +145,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   });
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    of.search = search(*of.fitter, names, how, listener);
+    search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       const NoiseModel& before = of.noise.at(s.first);
@@ -144,7 +171,6 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   if (of_all && !listener.wants_end()) {
     weigh_findings(*of.fitter, how, of.search, listener);
   }
-  widen_moved(of, workspace);
   return of;
 }
 

@@ -6,7 +6,8 @@
 
 namespace driftwright::diagnosis {
 
-/// Sigmas of its prior: a number that is fitted beyond is a cause.
+/// Sigmas of its prior up to which a number is fitted; one that would go further is a cause. There the density of a fault exceeds that of what is
+/// known: u²/2 = log(60 candidates) + log(0.7 / 0.1) + (0.1 u / 0.7)²/2.
 inline constexpr double kTooFar = 3.5;
 
 /// What all inquiries about a machine begin with; none of it is fitted to readings.

@@ -34,18 +34,25 @@ constexpr std::size_t kMostKnown = 64;
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 constexpr double kEvenOdds = 0.5;     // that nothing is wrong
 
-/// Fits several hypotheses in parallel. @param of_interest  as Fitter::fit()
+/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as Fitter::fit_others()
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                         double of_interest = Fitter::kAny) {
+                         double of_interest = Fitter::kAny, Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew) {
   std::vector<Fit> fits(hypotheses.size());
   for_each_index(
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
-        // a state without solution is no explanation
-        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace, of_interest); }))
-          fits[i] = Fit{};
+        const auto& [hypothesis, start] = hypotheses[i];
+        const auto fit = [&] {
+          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest, slopes);
+        };
+        if (!has_solution(fit)) fits[i] = Fit{};  // a state without solution is no explanation
       });
   return fits;
+}
+
+/// Fits one hypothesis from the last settled scatter.
+Fit fit_one(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims) {
+  return fit_all(fitter, {{hypothesis, joined(fitter.settled(), claims)}}).front();
 }
 
 /// Inputs of a search; the list of names grows during the search.
@@ -138,6 +145,8 @@ bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
 struct FittedClaim {
   Claim claim;
   Fit fit;
+  double hoped = 0.0;     ///< its gain by linear theory [nats]
+  bool is_rough = false;  ///< fitted with scatter's slopes of another fit
 };
 
 /// Keeps fits of hypotheses, with their last claim added last, so that the search need not fit a hypothesis twice.
@@ -149,17 +158,17 @@ class KnownFits {
     for (const Claim& c : hypothesis) laws.emplace_back(c.candidate, c.variant);
     return laws;
   }
-  [[nodiscard]] const Fit* find(const Hypothesis& hypothesis) const {
+  [[nodiscard]] const FittedClaim* find(const Hypothesis& hypothesis) const {
     const auto known = fits_.find(laws_of(hypothesis));
     return known == fits_.end() ? nullptr : &known->second;
   }
-  void keep(const Hypothesis& hypothesis, const Fit& fit) {
+  void keep(const Hypothesis& hypothesis, const FittedClaim& fitted) {
     if (fits_.size() >= kMostKnown) fits_.clear();
-    fits_[laws_of(hypothesis)] = fit;
+    fits_[laws_of(hypothesis)] = fitted;
   }
 
  private:
-  std::map<Laws, Fit> fits_;
+  std::map<Laws, FittedClaim> fits_;
 };
 
 /// Labels on the wrong cables. Linear theory evaluates such a law at numbers that were fitted to the body on the label, so it underestimates its gain. It shows which label is the
@@ -178,38 +187,12 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
   return labels.size();
 }
 
-/// Whether a fit has moved the scenario's numbers by more than a sigma of their priors.
-bool have_moved(const Fitter& fitter, const Fit& fit) {
-  const Eigen::Index n = fitter.n_nuisance();
-  return n > 0 && (fit.x.head(n).array() / fitter.nuisance_sd().array()).abs().maxCoeff() > 1.0;
-}
-
-/// Fits that start from the scenario's own numbers; they are kept if they are better. Numbers that were fitted without a cause have absorbed its effect, and from there no slope may lead
-/// to their right values, for example if a thermometer's label is on another body.
-/// @param claims  x of all claims of each hypothesis. @param of_interest  as Fitter::fit()
-void fit_from_scenario(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                       const std::vector<std::size_t>& which, double of_interest, std::vector<Fit>& fits) {
-  for_each_index(
-      which.size(), [&] { return Twin::Workspace(fitter.twin()); },
-      [&](std::size_t i, Twin::Workspace& workspace) {
-        const auto& [hypothesis, claims] = hypotheses[which[i]];
-        Fit& fit = fits[which[i]];
-        Fit other;
-        const Eigen::VectorXd start = joined(Eigen::VectorXd::Zero(fitter.n_nuisance()), claims);
-        if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest); }) &&
-            other.log_evidence > fit.log_evidence)
-          fit = std::move(other);
-      });
-}
-
 /// Full fits of laws on top of a hypothesis.
 struct Trials {
   const Ground& ground;
   const Hypothesis& base;
   const Fit& base_fit;
-  KnownFits* known;  ///< null: all are fitted again, from the last settled scatter
-  bool of_statements =
-      false;  ///< laws with less gain than their statement are also fitted from the scenario's own numbers; labels always are
+  KnownFits* known;  ///< null: all are fitted again
   std::vector<FittedClaim> fitted = {};
   [[nodiscard]] double gain(const FittedClaim& f) const { return f.fit.log_evidence - base_fit.log_evidence; }
   /// Laws that may be added to the hypothesis, ordered by their gain in linear theory.
@@ -226,26 +209,47 @@ struct Trials {
   void fit(std::span<const Score> laws) {
     const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - ground.fitter.n_nuisance());
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
+    std::vector<double> hoped;
     for (const Score& s : laws) {
       Hypothesis tried = with(base, claim_of(ground.candidates, s));
-      if (const Fit* fit = known ? known->find(tried) : nullptr) {
-        fitted.push_back({tried.back(), *fit});
+      if (const FittedClaim* fit = known ? known->find(tried) : nullptr) {
+        fitted.push_back({tried.back(), fit->fit, s.gain, fit->is_rough});
       } else {
-        jobs.emplace_back(std::move(tried), joined(base_x, s.start));
+        // Numbers that were fitted without the claim have absorbed its effect: they start at their values by linear theory with the claim.
+        jobs.emplace_back(std::move(tried), joined(s.beside, joined(base_x, s.start)));
+        hoped.push_back(s.gain);
       }
     }
-    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit);
-    const bool moved = of_statements && have_moved(ground.fitter, base_fit);
-    std::vector<std::size_t> again;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      const Claim& claim = jobs[i].first.back();
-      const double gained = fits[i].log_evidence - base_fit.log_evidence;
-      if (claim.all_or_nothing || (moved && !(gained > must_bring(claim.candidate)))) again.push_back(i);
+    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit, Fitter::Slopes::kKept);
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+      fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
+    refine();
+  }
+  /// Continues fits that may come near the best, with scatter's slopes recomputed at their ends.
+  void refine() {
+    double best = 0.0;
+    for (const FittedClaim& f : fitted) best = std::max(best, gain(f));
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      const FittedClaim& f = fitted[i];
+      if (!f.is_rough || f.fit.prediction.empty()) continue;
+      // At size zero a claim does nothing, so a fit that ends above that stopped short, whatever its law.
+      const bool is_short = !f.claim.all_or_nothing && f.fit.misfit > base_fit.misfit + kSettled;
+      if (is_short || std::max(gain(f), f.hoped) > kHopeless * best - kHope) near.push_back(i);
     }
-    fit_from_scenario(ground.fitter, jobs, again, base_fit.misfit, fits);
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      if (known && !fits[i].prediction.empty()) known->keep(jobs[i].first, fits[i]);
-      fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
+    for_each_index(
+        near.size(), [&] { return Twin::Workspace(ground.fitter.twin()); },
+        [&](std::size_t i, Twin::Workspace& workspace) {
+          FittedClaim& f = fitted[near[i]];
+          Fit again;
+          const Hypothesis tried = with(base, f.claim);
+          const bool is_solved =
+              has_solution([&] { again = ground.fitter.fit_others(tried, f.fit.x, kNothingHeld, workspace); });
+          if (is_solved && !(again.misfit > f.fit.misfit)) f.fit = std::move(again);
+          f.is_rough = false;
+        });
+    for (const FittedClaim& f : fitted) {
+      if (known && !f.fit.prediction.empty()) known->keep(with(base, f.claim), f);
     }
   }
   /// Best first, one law per candidate.
@@ -322,7 +326,7 @@ class NamesOfPlace {
 /// gains as much as the statement, and as long as others may gain as much.
 std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
                                    KnownFits* known, const Listener& listener) {
-  Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known, .of_statements = true};
+  Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known};
   if (base_fit.prediction.empty()) return {};
   const std::vector<Score> list = trials.list();
   std::vector<Score> first;
@@ -405,7 +409,7 @@ std::pair<Hypothesis, Eigen::VectorXd> without_claim(const Hypothesis& hypothesi
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   for (int turn = 0; turn < kMostRounds; ++turn) {
     fitter.settle(hypothesis, fit);
-    Fit again = fit_all(fitter, {{hypothesis, fit.x.tail(fit.x.size() - fitter.n_nuisance())}}).front();
+    Fit again = fit_one(fitter, hypothesis, fit.claim_x(fitter.n_nuisance()));
     if (again.prediction.empty()) return;  // the last fit is kept
     const double gained = fit.misfit - again.misfit;
     fit = std::move(again);
@@ -511,26 +515,28 @@ StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_clai
 }  // namespace
 
 SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, const SearchOptions& options,
-                    const Listener& listener) {
+                    const SearchResult* former, const Listener& listener) {
   SearchResult result;
   result.n_catalogue = std::max<std::size_t>(1, catalogue.size());
   Hypothesis best;
   listener.begin("fitting the scenario's own numbers");
-  Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+  Fit best_fit = fit_one(fitter, {}, Eigen::VectorXd(0));
   if (best_fit.prediction.empty())
     throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
   settle_well(fitter, {}, best_fit);
   result.without = best_fit;
   const Worth worth{.options = options, .without = result.without, .n_catalogue = result.n_catalogue};
   Ground ground{.fitter = fitter, .candidates = {}, .names = {}, .said = {}, .columns = {}};
+  Fit former_fit;
+  if (former && !former->hypothesis.empty()) {
+    ground.candidates = former->candidates;
+    ground.names = former->names;
+    ground.said = former->said;
+    former_fit = fit_all(fitter, {{former->hypothesis, former->fit.x}}).front();
+  }
   KnownFits known;
   double best_value = best_fit.log_evidence;
   const auto settle = [&] {  // the next steps start from here
-    if (have_moved(fitter, best_fit)) {
-      std::vector<Fit> fits = {best_fit};
-      fit_from_scenario(fitter, {{best, best_fit.claim_x(fitter.n_nuisance())}}, {0}, Fitter::kAny, fits);
-      best_fit = std::move(fits.front());
-    }
     settle_well(fitter, best, best_fit);
     best_value = worth.evidence(ground.candidates, best_fit, best);
   };
@@ -540,7 +546,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
       bool changed = false;
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
-        const Fit fit = fit_all(fitter, {{others, x}}).front();
+        const Fit fit = fit_one(fitter, others, x);
         const std::vector<FittedClaim> replacements = fit_instead(ground, others, fit, options.refits, &known, listener);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
@@ -576,12 +582,16 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
     for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, listener))
       ground.columns.push_back(std::move(s));
     std::vector<FittedClaim> additions = fit_names(ground, best, best_fit, options.refits, &known, listener);
-    if (additions.empty()) break;
-    Hypothesis tried = with(best, additions.front().claim);
-    const double value = worth.evidence(ground.candidates, additions.front().fit, tried);
-    if (!worth.is_worth_it(value - best_value, additions.front().fit, best.size())) break;
-    best = std::move(tried);
-    best_fit = std::move(additions.front().fit);
+    std::vector<std::pair<Hypothesis, Fit>> tried;
+    if (!additions.empty()) tried.emplace_back(with(best, additions.front().claim), std::move(additions.front().fit));
+    if (best.empty() && !former_fit.prediction.empty()) tried.emplace_back(former->hypothesis, std::move(former_fit));
+    if (tried.empty()) break;
+    const auto value = [&](const auto& t) { return worth.evidence(ground.candidates, t.second, t.first); };
+    const auto likeliest =
+        std::max_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return value(a) < value(b); });
+    if (!worth.is_worth_it(value(*likeliest) - best_value, likeliest->second, best.size())) break;
+    best = std::move(likeliest->first);
+    best_fit = std::move(likeliest->second);
     settle();
     if (exchange()) settle();
   }
@@ -594,7 +604,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   }
   for (std::size_t i = 0; i < best.size();) {  // prune
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
-    Fit fit = fit_all(fitter, {{others, x}}).front();
+    Fit fit = fit_one(fitter, others, x);
     // a fit that starts at the removed cause may end far from its best
     if (others.empty() && result.without.log_evidence > fit.log_evidence) fit = result.without;
     const double gain = best_value - worth.evidence(ground.candidates, fit, others);
@@ -678,7 +688,7 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
   std::vector<InItsPlace> in_place;
   for (std::size_t i = 0; i < result.findings.size(); ++i) {
     const auto [others, x] = without_claim(result.hypothesis, result.fit, i, fitter.n_nuisance());
-    without_one.emplace_back(others, others.empty() ? result.without : fit_all(fitter, {{others, x}}).front());
+    without_one.emplace_back(others, others.empty() ? result.without : fit_one(fitter, others, x));
     in_place.push_back(find_rivals(ground, worth, result, i, others, without_one.back().second, listener));
   }
   listener.begin("weighing the causes as statements");

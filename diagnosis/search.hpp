@@ -52,9 +52,10 @@ struct SearchResult {
 /// Statements say what is missing; their names are fitted in full; beside the best of these, statements say what is missing still.
 /// @param fitter     with its noise; it ends settled at the result
 /// @param catalogue  every effect at every place that may be a name
+/// @param former     result of a search with other noise or other priors, or null; it is compared with the first name
 /// @param listener   once it wants an end, what has stood up so far is the result
 [[nodiscard]] SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, const SearchOptions& options,
-                                  const Listener& listener);
+                                  const SearchResult* former, const Listener& listener);
 
 /// How sure each claim is: others in its place, fitted in full; its statement against all others, the other claims as fitted; and whether it is named. And the statements of
 /// all places, and of one more.

@@ -19,7 +19,8 @@ struct Law {
   std::size_t candidate = 0, variant = 0;
 };
 [[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
-/// The signatures of some laws, in addition to a fit. They depend little on the other claims.
+/// The signatures of some laws, in addition to a fit: of each shape of the grid, and of those on the way from the best of them to the shape
+/// that gains most by linear theory. They depend little on the other claims.
 [[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                                 const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
                                                 const Listener& listener = {});
@@ -27,9 +28,10 @@ struct Law {
 /// The evidence that a candidate would add to a fit, by linear theory.
 struct Score {
   std::size_t candidate = 0, variant = 0;
-  double gain = -1e300;   ///< nats
-  double fall = 0.0;      ///< reduction of Φ [nats] by the better fit, without cost
-  Eigen::VectorXd start;  ///< x of the claim's knobs
+  double gain = -1e300;    ///< nats
+  double fall = 0.0;       ///< reduction of Φ [nats] by the better fit, without cost
+  Eigen::VectorXd start;   ///< x of the claim's knobs
+  Eigen::VectorXd beside;  ///< nuisance numbers beside it, at most 1 sigma from the scenario's
 };
 
 /// The claim of a score.

@@ -54,8 +54,8 @@ std::string comes_and_goes(const std::vector<std::string>& records) {
   return list;
 }
 // Effects that could replace the friction's growth, or the windows.
-const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law", "heat_window",
-                                             "heat_source", "run_state",    "exchange_window"};
+const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law",    "heat_window",   "heat_source",
+                                             "run_state",   "exchange_window", "speed_override"};
 
 TEST(OtherDutyCycles, HoldBackWhatIsTrueOfOneAloneWhereMoreIsLeftThanAnythingExplains) {
   // The scenario's own power takes up what the slow days show.
