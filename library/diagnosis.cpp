@@ -44,7 +44,8 @@ Diagnosis plain(const studies::MeasuredDiagnosis& what) {
                    .not_written = written.extended.not_written};
   for (const diagnosis::Cause& cause : d.causes) result.causes.push_back(plain(cause));
   for (const diagnosis::ChannelGain& g : d.gain)
-    result.gain.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.noise_floor});
+    result.gain.push_back(
+        {g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.noise_floor, g.rmse_all_before, g.rmse_written});
   return result;
 }
 
