@@ -1,10 +1,7 @@
-#include <fmt/format.h>
-
 #include "app/diagnosis_files.hpp"
 #include "app/results.hpp"
-#include "base/delimited_text.hpp"
-#include "diagnosis/calibration.hpp"
 #include "findings/diagnosis_document.hpp"
+#include "studies/measured_diagnosis.hpp"
 
 namespace driftwright::app {
 
@@ -13,23 +10,11 @@ void calibrate(const CalibrateOptions& options) {
   (void)scenarios::require_machine(scenario, "calibrate");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
-  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "calibrate", options.measured, progress.listener());
-  diagnosis::Diagnosis d =
-      diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, progress.listener());
-  progress.begin("writing");
-  const std::string warning = findings::calibration_warning(d);
-  std::vector<std::string> head = {
-      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(options.scenario))};
-  for (const std::string& path : options.measured) head.push_back("  measured: " + clean_name(path));
-  if (!warning.empty()) head.push_back("WARNING: " + warning);
-  head.emplace_back("");
-  std::string difference;
-  const diagnosis::ExtendedScenario calibrated = write_scenario(
-      "calibrated", m, d.written.keeps_numbers ? stated_scatter(d, false) : std::vector<diagnosis::StatedChange>{}, head,
-      folder, &difference);
-  if (calibrated.not_written.empty()) simulate_written(m, calibrated, d);
-  finish(findings::calibration_document({m, d, calibrated, difference, "calibrated.yaml"}, folder.made_by()), folder,
-         progress, options, "", "calibration.json");
+  const studies::MeasuredTwin m = studies::open_measured_twin(scenario, "calibrate", options.measured, progress.listener());
+  const auto [d, written] = studies::calibrate(m, folder.target() / "calibrated.yaml", progress.listener());
+  write_scenario("calibrated", written, folder);
+  finish(findings::calibration_document({m, d, written.extended, written.difference, "calibrated.yaml"}, folder.made_by()),
+         folder, progress, options, "", "calibration.json");
 }
 
 }  // namespace driftwright::app

@@ -30,21 +30,21 @@ void identify_beside(const IdentifyOptions& asked) {
                   clean_name(options.prior))};
   for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
   head.emplace_back("");
-  std::string difference;
-  const diagnosis::ExtendedScenario extended =
-      write_scenario("extended", m, studies::stated_extension(learned), head, folder, &difference);
-  if (!extended.not_written.empty())
+  const studies::WrittenScenario written =
+      studies::written_scenario(m, studies::stated_extension(learned), head, folder.target() / "extended.yaml");
+  if (!written.is_readable())
     throw InputError(
-        fmt::format("{}: what was learned could not be written: {}", options.prior, extended.not_written.front()));
-  const studies::BesideRecords written = studies::beside(m.runs, read_as_written(m, extended), reference_K);
-  for (identification::IdentifiedChannel& c : learned.channels) c.missed_simulated = studies::missed(written, c.name);
+        fmt::format("{}: what was learned could not be written: {}", options.prior, written.extended.not_written.front()));
+  write_scenario("extended", written, folder);
+  const studies::BesideRecords again = studies::beside(m.runs, studies::read_of(m, written.effects), reference_K);
+  for (identification::IdentifiedChannel& c : learned.channels) c.missed_simulated = studies::missed(again, c.name);
   findings::IdentificationFindings found{scenario.name, beside.measured, learned, {}};
   for (const diagnosis::MeasuredRun& run : m.runs) {
     for (const diagnosis::DataFinding& f : run.findings)
       found.notes.push_back(
           fmt::format("{}: {}{}", clean_name(run.path), f.channel.empty() ? "" : f.channel + ": ", f.what));
   }
-  found.difference = difference;
+  found.difference = written.difference;
   finish(findings::document_of(found, folder.made_by()), folder, progress, options);
 }
 

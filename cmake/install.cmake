@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS driftwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-install(TARGETS driftwright_library EXPORT driftwrightTargets
+install(TARGETS driftwright_shared EXPORT driftwrightTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT dev)
 install(DIRECTORY include/driftwright DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT driftwrightTargets NAMESPACE driftwright:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/driftwright COMPONENT dev)

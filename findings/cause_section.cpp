@@ -91,7 +91,8 @@ Section one_cause_statistics(const diagnosis::Diagnosis& d, std::size_t i) {
                   {.title = "gain", .unit = "nats"},
                   {.title = "odds", .unit = "%"}}};
   const auto add_row = [&](const diagnosis::Cause& x) {
-    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain, std::round(100.0 * x.share)});
+    table.rows.push_back(
+        {x.effect, x.where, x.law, diagnosis::parameters_text(x), x.log_evidence_gain, std::round(100.0 * x.share)});
   };
   add_row(c);
   for (const diagnosis::Cause& a : c.alternatives) add_row(a);

@@ -79,7 +79,7 @@ std::string unexplained_text(const Diagnosis& d) {
     text = fmt::format(
         "The simulation misses the {} by {:.2g} {} RMS that is not noise, and nothing in the catalogue "
         "explains it.",
-        channel_text(worst.name, worst.unit), worst.rms, output::shown_unit(worst.unit));
+        diagnosis::channel_text(worst.name, worst.unit), worst.rms, output::shown_unit(worst.unit));
   } else {
     text = "The measurement differs from the simulation by more than noise, and nothing in the catalogue explains it.";
   }

@@ -42,7 +42,7 @@ Table causes_table(const diagnosis::Diagnosis& d) {
   for (std::size_t i = 0; i < d.causes.size(); ++i) {
     const diagnosis::Cause& c = d.causes[i];
     table.rows.push_back({fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing),
-                          is_moved_number(d, i) ? Datum() : Datum(c.probability), parameters_text(c),
+                          is_moved_number(d, i) ? Datum() : Datum(c.probability), diagnosis::parameters_text(c),
                           alternatives_text(c, kMostBeside)});
   }
   return table;
@@ -272,7 +272,7 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file) {
   if (numbers_stay && d.written.keeps_numbers && !d.written.causes_alone)
     add(section, Text{"The file leaves the scenario's own numbers as they were (--causes-only): only \"the file, all rows\" "
                       "shows the effect of that; on kept-out rows they are as fitted."});
-  if (const std::string taken_up = taken_up_text(d); !taken_up.empty())
+  if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty())
     add(section, Text{.words = taken_up, .key = "taken_up"});
   if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});
   return section;
@@ -305,7 +305,7 @@ Table moved_most(const diagnosis::Diagnosis& d) {
                           {.title = "95 % interval"},
                           {.key = "unit", .title = "unit"},
                           {.title = "moved [sigmas]", .digits = output::signed_decimals(2)}}};
-  for (const auto* e : list) table.rows.push_back({e->name, e->value, interval_text(*e), e->unit, e->deviation});
+  for (const auto* e : list) table.rows.push_back({e->name, e->value, diagnosis::interval_text(*e), e->unit, e->deviation});
   return table;
 }
 
@@ -332,8 +332,8 @@ Section numbers_section(const diagnosis::Diagnosis& d) {
                   {.key = "known_to_unit"},
                   {.key = "written"}}};
   for (const diagnosis::Estimate& e : d.calibrated) {
-    table.rows.push_back({e.name, e.value, interval_text(e), e.unit, e.is_written ? "yes" : "no", known_to_text(e),
-                          e.deviation, std::vector<double>{e.low, e.high}, e.known_to,
+    table.rows.push_back({e.name, e.value, diagnosis::interval_text(e), e.unit, e.is_written ? "yes" : "no",
+                          known_to_text(e), e.deviation, std::vector<double>{e.low, e.high}, e.known_to,
                           e.is_share ? "of its logarithm" : e.unit, e.is_written});
   }
   add(section, std::move(table));
@@ -484,7 +484,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   const studies::MeasuredTwin& m = found.measured;
   output::Document document = begin("calibration", found, made_by);
   Section& body = document.body;
-  const std::string warning = calibration_warning(d);
+  const std::string warning = diagnosis::calibration_warning(d);
   add(body, calibration_answer(d, warning, displacements_left_out_text(m, compared_of(m.runs))));
   add(body, Value{.key = "warning", .datum = warning});
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});

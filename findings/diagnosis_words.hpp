@@ -1,19 +1,12 @@
 #pragma once
-// Texts about a diagnosis that documents and files share.
+// Texts about a diagnosis that its documents share (diagnosis/diagnosis_words.hpp: those that its scenario has too).
 
-#include "diagnosis/diagnosis.hpp"
-#include "diagnosis/extended_scenario.hpp"
+#include "diagnosis/diagnosis_words.hpp"
 
 namespace driftwright::findings {
 
-/// "14.3 W/(m^2 K)"; times as minutes.
-[[nodiscard]] std::string value_text(const diagnosis::Estimate& estimate);
 /// How well a calibrated number was known before the records: "10 %", "0.3 K".
 [[nodiscard]] std::string known_to_text(const diagnosis::Estimate& estimate);
-/// "13.1 to 15.6", in the unit of value_text().
-[[nodiscard]] std::string interval_text(const diagnosis::Estimate& estimate);
-/// All numbers of a cause with their intervals, or "" for one without.
-[[nodiscard]] std::string parameters_text(const diagnosis::Cause& cause);
 /// "15 min at 3000 rpm, 20 min at 0 rpm, ..."
 [[nodiscard]] std::string sections_text(const Cyclogram& cyclogram);
 
@@ -35,14 +28,7 @@ struct Compared {
 
 /// A sentence if a regression without a machine model predicts kept-out rows better than the extended scenario; else "".
 [[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
-/// A channel with its quantity: "temperature t_head", "displacement drift_z", "tilt rx". @param unit  K, um or urad
-[[nodiscard]] std::string channel_text(const std::string& name, const std::string& unit);
-/// A sentence about causes whose effect the scenario's own numbers may have absorbed when they were fitted without them, and
-/// about the numbers that have moved far because of this; else "".
-[[nodiscard]] std::string taken_up_text(const diagnosis::Diagnosis& d);
 /// A sentence that divides the gain on kept-out rows between calibration, the named causes, and everything written.
 [[nodiscard]] std::string shares_of_gain_text(const diagnosis::Diagnosis& d);
-/// The reason why the numbers alone do not explain a measurement, if no effects were searched for; "" if they do.
-[[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d);
 
 }  // namespace driftwright::findings

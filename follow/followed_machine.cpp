@@ -164,11 +164,7 @@ class FollowedMachine final : public Followed {
  private:
   /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
-    MachineModel here = machine_;
-    here.ambient = {{0.0}, {run_->ambient_K()}};
-    double warmer_K = 0.0;
-    if (machine_.start == scenarios::Start::kAmbient || machine_.start == scenarios::Start::kSteady)
-      warmer_K = scenarios::felt_ambient_at_start_K(here) - scenarios::felt_ambient_at_start_K(machine_);
+    const double warmer_K = scenarios::warmer_start_K(machine_, TimeSeries{{0.0}, {run_->ambient_K()}});
     state_ = scenarios::start_of(machine_, *model_) + warmer_K * scenarios::ones_of(*model_);
   }
 

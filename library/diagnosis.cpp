@@ -1,13 +1,6 @@
-#include "diagnosis/diagnosis.hpp"
-
-#include <fmt/format.h>
-
-#include "app/diagnosis_files.hpp"
-#include "diagnosis/calibration.hpp"
-#include "diagnosis/extended_scenario.hpp"
 #include "effects/where_in_files.hpp"
 #include "library/parts.hpp"
-#include "studies/measured_twin.hpp"
+#include "studies/measured_diagnosis.hpp"
 
 namespace driftwright {
 namespace {
@@ -32,43 +25,40 @@ Cause plain(const diagnosis::Cause& cause) {
   return c;
 }
 
-Diagnosis diagnosis_of(const scenarios::Scenario& scenario, const std::vector<Record>& measured,
-                       const DiagnoseOptions& options, bool looks_for_causes, const Listener& listener) {
+studies::MeasuredTwin twin_of(const scenarios::Scenario& scenario, const std::string& verb,
+                              const std::vector<Record>& measured, const Listener& listener) {
   std::vector<ReadRecord> records;
   for (const Record& record : measured) records.push_back({.record = record, .notes = {}});
-  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", records, listener);
-  m.how.without = {options.without.begin(), options.without.end()};
-  const diagnosis::Twin* coarse = m.on_other_mesh ? &*m.on_other_mesh : nullptr;
-  const diagnosis::Diagnosis d = looks_for_causes ? diagnosis::diagnose(*m.twin, coarse, m.runs, m.how, listener)
-                                                  : diagnosis::calibrate(*m.twin, coarse, m.runs, m.how, listener);
+  return studies::open_measured_twin(scenario, verb, records, listener);
+}
+
+Diagnosis plain(const studies::MeasuredDiagnosis& what) {
+  const auto& [d, written] = what;
   Diagnosis result{.verdict = diagnosis::word(d.verdict),
                    .reason = d.reason,
                    .causes = {},
                    .calibrated = plain(d.calibrated),
                    .holdout = d.holdout,
                    .gain = {},
-                   .extended_scenario = {},
-                   .not_written = {}};
+                   .extended_scenario = written.is_readable() ? written.extended.text : "",
+                   .not_written = written.extended.not_written};
   for (const diagnosis::Cause& cause : d.causes) result.causes.push_back(plain(cause));
   for (const diagnosis::ChannelGain& g : d.gain)
-    result.gain.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.noise_floor});
-  std::vector<diagnosis::StatedChange> changes;
-  if (d.written.keeps_numbers) changes = app::stated_scatter(d, options.causes_only);
-  for (diagnosis::StatedChange& cause : app::stated_causes(d)) changes.push_back(std::move(cause));
-  diagnosis::ExtendedScenario extended = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, {});
-  result.extended_scenario = std::move(extended.text);
-  result.not_written = std::move(extended.not_written);
+    result.gain.push_back(
+        {g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.noise_floor, g.rmse_all_before, g.rmse_written});
   return result;
 }
 
 }  // namespace
 
 Diagnosis Machine::diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options) const {
-  return diagnosis_of(parts_->scenario, measured, options, true, parts_->listener);
+  const studies::MeasuredTwin m = twin_of(parts_->scenario, "diagnose", measured, parts_->listener);
+  return plain(studies::diagnose(m, {.without = options.without, .causes_only = options.causes_only}, parts_->listener));
 }
 
 Diagnosis Machine::calibrate(const std::vector<Record>& measured) const {
-  return diagnosis_of(parts_->scenario, measured, {}, false, parts_->listener);
+  const studies::MeasuredTwin m = twin_of(parts_->scenario, "calibrate", measured, parts_->listener);
+  return plain(studies::calibrate(m, "calibrated.yaml", parts_->listener));
 }
 
 }  // namespace driftwright

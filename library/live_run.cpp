@@ -85,13 +85,9 @@ Run Machine::start(std::optional<double> ambient_degC, const std::string& run_na
     throw InputError(own.where,
                      "a machine with thermostats cannot be run row by row: no row says whether they are on. `simulate` can");
   }
-  double warmer_K = 0.0;
-  if (ambient_degC) {
-    s->machine.ambient = {{0.0}, {*ambient_degC + kZeroCelsius_K - own.reference_K}};
-    if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
-      warmer_K = scenarios::felt_ambient_at_start_K(s->machine) - scenarios::felt_ambient_at_start_K(own);
-  }
-  s->state = scenarios::start_of(own, *s->model) + warmer_K * scenarios::ones_of(*s->model);
+  if (ambient_degC) s->machine.ambient = {{0.0}, {*ambient_degC + kZeroCelsius_K - own.reference_K}};
+  s->state = scenarios::start_of(own, *s->model) +
+             scenarios::warmer_start_K(own, s->machine.ambient) * scenarios::ones_of(*s->model);
   s->remembers = !effects::reading_chain(own.effects, run_name).empty();
   for (const auto& sensor : own.sensors) s->channels.push_back({sensor.name, "degC", {}});
   for (const auto& d : own.displacements) s->channels.push_back({d.name, "um", {}});

@@ -148,7 +148,9 @@ PYBIND11_MODULE(core, m) {
       .def_readonly("rmse_before", &ChannelGain::rmse_before)
       .def_readonly("rmse_calibrated", &ChannelGain::rmse_calibrated)
       .def_readonly("rmse_after", &ChannelGain::rmse_after)
-      .def_readonly("noise_floor", &ChannelGain::noise_floor);
+      .def_readonly("noise_floor", &ChannelGain::noise_floor)
+      .def_readonly("rmse_all_before", &ChannelGain::rmse_all_before)
+      .def_readonly("rmse_written", &ChannelGain::rmse_written);
   py::class_<Diagnosis>(m, "Diagnosis")
       .def_readonly("verdict", &Diagnosis::verdict)
       .def_readonly("reason", &Diagnosis::reason)

@@ -185,9 +185,8 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                 .started_from = start_words(before, options)};
   ahead.machine.ambient = ahead.series.ambient;
   // The model's start is that of the scenario's ambient; a run in another ambient starts warmer by the difference.
-  double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
-  if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
-    warmer_K += scenarios::felt_ambient_at_start_K(ahead.machine) - scenarios::felt_ambient_at_start_K(own);
+  const double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram) +
+                          scenarios::warmer_start_K(own, ahead.series.ambient);
   ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
   if (options.start.empty())  // otherwise the run before is given
     ahead.start = scenarios::after_what_was_before(ahead.machine, scenario.solver.transient, *ahead.model, ahead.start,

@@ -1,17 +1,13 @@
-// What is made of a diagnosis for files and terminal, from diagnoses by hand.
-
-#include "app/diagnosis_files.hpp"
+// Words of a diagnosis for its scenario and documents, from diagnoses by hand.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "findings/diagnosis_words.hpp"
+#include "diagnosis/diagnosis_words.hpp"
 
-namespace driftwright::app::diagnosis_files_test {
+namespace driftwright::diagnosis::diagnosis_words_test {
 namespace {
 
-using diagnosis::Estimate;
-using namespace findings;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -31,7 +27,7 @@ TEST(DiagnosisWords, SayWhichQuantityAChannelIs) {
 }
 
 TEST(DiagnosisWords, SayWhichNumbersMayHaveTakenUpWhatIsNotWritten) {
-  diagnosis::Diagnosis d;
+  Diagnosis d;
   EXPECT_EQ(taken_up_text(d), "");
   d.causes = {{"heat_source", "head", "constant heat", {}, 30.0, {}}, {"exchange_window", "air", "windows", {}, 60.0, {}}};
   d.written.taken_up = {1};
@@ -45,9 +41,9 @@ TEST(DiagnosisWords, SayWhichNumbersMayHaveTakenUpWhatIsNotWritten) {
 }
 
 TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFar) {
-  diagnosis::Diagnosis d;
+  Diagnosis d;
   d.statements.nothing = 0.6;
-  d.statements.stated.push_back({.says = {.quantity = diagnosis::StatedQuantity::kHeat,
+  d.statements.stated.push_back({.says = {.quantity = StatedQuantity::kHeat,
                                           .place = {"head"},
                                           .follows = "running",
                                           .law = "running",
@@ -70,4 +66,4 @@ TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFa
 }
 
 }  // namespace
-}  // namespace driftwright::app::diagnosis_files_test
+}  // namespace driftwright::diagnosis::diagnosis_words_test

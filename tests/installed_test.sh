@@ -19,6 +19,8 @@ lumped=scenarios/lumped_spindle.yaml
 "$work/examples/what_is_wrong" $lumped "$work"/simulated/records/shift.csv >"$work/extended.yaml" 2>"$work/words" || fail "what_is_wrong: $(cat "$work/words")"
 grep -q '^consistent: ' "$work/words" || fail "what_is_wrong: $(cat "$work/words")"
 "$work/installed/bin/driftwright" check "$work/extended.yaml" >/dev/null || fail "extended.yaml"
+"$work/installed/bin/driftwright" diagnose $lumped --measured "$work"/simulated/records/shift.csv -o "$work/diagnosed" >/dev/null || fail "diagnose"
+cmp "$work/extended.yaml" "$work/diagnosed/extended.yaml" || fail "the library's extended scenario is not the program's"
 # Nothing but the public names is shown: what another program links cannot clash with what is inside.
 foreign=$(nm -D --defined-only --demangle "$work"/installed/lib/*/libdriftwright.so 2>/dev/null || nm -D --defined-only --demangle "$work"/installed/lib/libdriftwright.so)
 echo "$foreign" | grep -E ' [TW] ' | grep -Ev ' (driftwright::|std::|typeinfo|vtable|void std::|guard|__gnu|operator|bool std::|decltype)' | head -n 5 | grep . && fail "these names are shown too"

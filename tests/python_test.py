@@ -125,6 +125,16 @@ class Package(unittest.TestCase):
         for ours, theirs in zip(found.causes, expected["causes"]):
             for p, q in zip(ours.parameters, theirs["parameters"]):
                 np.testing.assert_allclose([p.value, p.low, p.high], [q["value"], *q["ci95"]], rtol=1e-5)
+        self.assertEqual(found.extended_scenario, (self.folder / "diagnosis" / "extended.yaml").read_text())
+        self.assertEqual(found.not_written, [])
+        for ours, theirs in zip(found.gain, expected["gain"]["channels"], strict=True):
+            np.testing.assert_allclose([ours.rmse_all_before, ours.rmse_written], [theirs["rmse_all_before"], theirs["rmse_written"]], rtol=1e-5)
+            self.assertLess(ours.rmse_written, 0.5 * ours.rmse_all_before)  # 40 W in the housing, and noise
+        with self.assertRaisesRegex(dw.InputError, "heat_sorce: no candidate has that key"):
+            dw.Machine(machine).diagnose(files, without=["heat_sorce"])
+        program("calibrate", machine, *arguments, "-o", self.folder / "calibration")
+        self.assertEqual(dw.Machine(machine).calibrate(files).extended_scenario,
+                         (self.folder / "calibration" / "calibrated.yaml").read_text())
 
     def test_errors_are_python_s(self):
         with self.assertRaisesRegex(dw.InputError, "no_such.yaml"):

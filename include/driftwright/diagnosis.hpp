@@ -8,7 +8,7 @@ namespace driftwright {
 
 /// How `Machine::diagnose` searches.
 struct DiagnoseOptions {
-  std::vector<std::string> without = {};  ///< keys of effects that are not searched for
+  std::vector<std::string> without = {};  ///< keys of effects that are not searched for; each must be one of a candidate
   bool causes_only = false;               ///< leave the scenario's own numbers in the extended scenario as they are
 };
 
@@ -31,11 +31,14 @@ struct Cause {
   std::vector<Cause> alternatives;  ///< other causes that the records cannot distinguish from it
 };
 
-/// RMS of the residual of one channel, on rows that were kept out of the fit: with the scenario as it is, with its numbers
-/// fitted, and with the extended scenario. NaN where no row could be judged.
+/// RMS of the residual of one channel. NaN where no row could be judged.
 struct ChannelGain {
   std::string name, unit;
+  /// On rows that were kept out of the fit: with the scenario as it is, with its numbers fitted, and with the extended
+  /// scenario.
   double rmse_before = 0.0, rmse_calibrated = 0.0, rmse_after = 0.0, noise_floor = 0.0;
+  /// Over all rows of all records: with the scenario as it is, and with the extended scenario as read back.
+  double rmse_all_before = 0.0, rmse_written = 0.0;
 };
 
 /// The result of a diagnosis.
@@ -46,8 +49,8 @@ struct Diagnosis {
   std::vector<Estimate> calibrated;  ///< the scenario's own numbers, as fitted
   std::string holdout;               ///< how rows were kept out
   std::vector<ChannelGain> gain;
-  std::string extended_scenario;         ///< text of the scenario with what was found written into it
-  std::vector<std::string> not_written;  ///< what could not be written into it, and why
+  std::string extended_scenario;         ///< what the program writes; empty if it could not be read back as a scenario
+  std::vector<std::string> not_written;  ///< in that case, the reason
 };
 
 }  // namespace driftwright

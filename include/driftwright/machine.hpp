@@ -112,6 +112,7 @@ class DRIFTWRIGHT_API Machine {
   [[nodiscard]] Run start(std::optional<double> ambient_degC = {}, const std::string& run_name = "run") const;
 
   /// What the records say about the machine, as `driftwright diagnose`. @param measured  each with its own `source`
+  /// @throws InputError  for records that cannot be compared, and for a key in `without` that no candidate has
   [[nodiscard]] Diagnosis diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options = {}) const;
   /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes.
   [[nodiscard]] Diagnosis calibrate(const std::vector<Record>& measured) const;

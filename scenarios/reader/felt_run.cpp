@@ -121,13 +121,30 @@ void require_nothing_before(const MachineModel& model, const std::string& verb) 
   }
 }
 
+namespace {
+
+double felt_at_start_K(const MachineModel& model, const TimeSeries& ambient) {
+  return effects::true_ambient(effects::drive_change(model.effects, ""), ambient, {}).at(0.0);
+}
+
+bool starts_with_ambient(const MachineModel& model) {
+  return model.start == Start::kAmbient || model.start == Start::kSteady;
+}
+
+}  // namespace
+
 double felt_ambient_at_start_K(const MachineModel& model) {
-  return effects::true_ambient(effects::drive_change(model.effects, ""), model.ambient, {}).at(0.0);
+  return felt_at_start_K(model, model.ambient);
 }
 
 double warmer_start_K(const MachineModel& model, const Cyclogram& recorded) {
-  if (model.start != Start::kAmbient && model.start != Start::kSteady) return 0.0;
+  if (!starts_with_ambient(model)) return 0.0;
   return felt_run_as_far_as_known(model, recorded).ambient.at(0.0) - felt_ambient_at_start_K(model);
+}
+
+double warmer_start_K(const MachineModel& model, const TimeSeries& ambient) {
+  if (!starts_with_ambient(model)) return 0.0;
+  return felt_at_start_K(model, ambient) - felt_ambient_at_start_K(model);
 }
 
 std::vector<std::string> sensor_channels(const Record& record) {

@@ -34,6 +34,9 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram);
 /// How much warmer a run begins than the machine usually starts [K], uniformly: nonzero if it starts at the ambient or in
 /// balance with it, and the ambient record is wrong in this cyclogram only.
 [[nodiscard]] double warmer_start_K(const MachineModel& model, const Cyclogram& recorded);
+/// How much warmer the machine begins in another ambient than its own [K], uniformly: nonzero if it starts at the ambient or
+/// in balance with it. @param ambient  minus the reference temperature [K]
+[[nodiscard]] double warmer_start_K(const MachineModel& model, const TimeSeries& ambient);
 
 /// Check for verbs that begin every cyclogram at the scenario's `start`.
 /// @throws InputError  if an effect drives the machine before a cyclogram

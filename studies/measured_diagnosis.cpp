@@ -1,0 +1,152 @@
+#include "studies/measured_diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/delimited_text.hpp"
+#include "base/errors.hpp"
+#include "diagnosis/calibration.hpp"
+#include "diagnosis/diagnosis_words.hpp"
+#include "diagnosis/happening.hpp"
+#include "diagnosis/judge.hpp"
+#include "diagnosis/output_error.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+using diagnosis::Diagnosis;
+using diagnosis::StatedChange;
+
+void require_candidates(const MeasuredTwin& m, const std::vector<std::string>& without) {
+  if (without.empty()) return;
+  std::set<std::string> keys;
+  for (const diagnosis::Candidate& c : diagnosis::candidates(*m.twin, m.runs, {})) keys.insert(c.effect);
+  keys.insert(std::begin(diagnosis::kEventKeys), std::end(diagnosis::kEventKeys));
+  for (const std::string& key : without) {
+    if (keys.contains(key)) continue;
+    throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
+  }
+}
+
+/// The causes of a diagnosis as changes of the scenario.
+std::vector<StatedChange> stated_causes(const Diagnosis& d) {
+  std::vector<StatedChange> changes;
+  if (!d.written.keeps_numbers) return changes;
+  const diagnosis::Fit& fit = d.written.fit;
+  Eigen::Index first = fit.x.size();
+  for (const diagnosis::Claim& c : d.written.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
+  for (std::size_t c = 0; c < d.written.hypothesis.size(); ++c) {
+    const diagnosis::Claim& claim = d.written.hypothesis[c];
+    const auto n = static_cast<Eigen::Index>(claim.knobs.size());
+    const diagnosis::Cause& cause = d.causes.at(d.written.causes.at(c));
+    std::vector<std::string> numbers = {
+        fmt::format("{}, evidence gain {:.1f} nats", diagnosis::word(cause.standing), cause.log_evidence_gain)};
+    for (const diagnosis::Estimate& p : cause.parameters)
+      numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, diagnosis::value_text(p), diagnosis::interval_text(p)));
+    if (d.written.causes_alone) numbers.emplace_back("written as fitted beside the scenario's own numbers as they are");
+    changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
+                       fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
+                       diagnosis::change_of(claim, fit.x.segment(first, n))});
+    first += n;
+  }
+  return changes;
+}
+
+/// The scenario's own numbers as fitted, as changes of the scenario.
+/// @param causes_only  only numbers that moved so far that the diagnosis reports them as causes
+std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only) {
+  constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
+  std::vector<StatedChange> changes;
+  if (!d.written.keeps_numbers || d.written.causes_alone) return changes;
+  const std::vector<diagnosis::Knob>& knobs = d.scatter;
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    const diagnosis::Estimate& e = d.calibrated.at(i);
+    const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
+    if (std::abs(e.deviation) < kUnmoved || (causes_only && !is_cause)) continue;
+    changes.push_back({e.name,
+                       fmt::format("{} {}, 95 %: {}", knobs[i].name, diagnosis::value_text(e), diagnosis::interval_text(e)),
+                       [knob = knobs[i], value = e.value](diagnosis::TwinState& state) { knob.set(state, value); },
+                       is_cause ? "diagnosis" : "calibration"});
+  }
+  return changes;
+}
+
+void add_records(std::vector<std::string>& head, const MeasuredTwin& m) {
+  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + clean_name(run.path));
+}
+
+std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only) {
+  std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
+                                               clean_name(m.scenario.path), diagnosis::word(d.verdict))};
+  for (const diagnosis::Cause& c : d.causes) {
+    head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
+                               c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
+                               c.parameters.empty() ? "" : ": ", diagnosis::parameters_text(c)));
+    if (!c.is_written) head.push_back(fmt::format("    not written, since {}", c.why_not_written));
+    for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
+  }
+  if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
+  if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
+  add_records(head, m);
+  if (d.written.keeps_numbers)
+    head.emplace_back(causes_only || d.written.causes_alone
+                          ? "  the scenario's own numbers are as they were"
+                          : "  the scenario's own numbers are as fitted beside the causes (`calibration` in comments); "
+                            "--causes-only leaves them");
+  head.emplace_back("");
+  return head;
+}
+
+std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d) {
+  std::vector<std::string> head = {
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(m.scenario.path))};
+  add_records(head, m);
+  if (const std::string warning = diagnosis::calibration_warning(d); !warning.empty()) head.push_back("WARNING: " + warning);
+  head.emplace_back("");
+  return head;
+}
+
+/// Predicts all rows with the effects of the written scenario.
+void predict_as_written(const MeasuredTwin& m, const WrittenScenario& written, Diagnosis& d) {
+  if (!written.is_readable()) return;
+  d.extended = read_of(m, written.effects);
+  const auto before = diagnosis::output_errors(m.runs, d.as_written), after = diagnosis::output_errors(m.runs, d.extended);
+  for (diagnosis::ChannelGain& g : d.gain) {
+    if (!before.contains(g.name)) continue;
+    const double scale = diagnosis::shown_scale(g.unit == "K" ? "K" : "m");
+    g.rmse_all_before = scale * before.at(g.name).rms;
+    g.rmse_written = scale * after.at(g.name).rms;
+  }
+}
+
+}  // namespace
+
+MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& request, const Listener& listener) {
+  require_candidates(m, request.without);
+  diagnosis::DiagnosisOptions how = m.how;
+  how.without = {request.without.begin(), request.without.end()};
+  MeasuredDiagnosis result{
+      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, how, listener), {}};
+  listener.begin("writing");
+  if (request.causes_only) diagnosis::leave_numbers(result.found);
+  std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only);  // the fit's order
+  for (StatedChange& cause : stated_causes(result.found)) changes.push_back(std::move(cause));
+  result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file);
+  predict_as_written(m, result.written, result.found);
+  return result;
+}
+
+MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& file, const Listener& listener) {
+  MeasuredDiagnosis result{
+      diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
+  listener.begin("writing");
+  result.written = written_scenario(m, stated_numbers(result.found, false), head_of_calibration(m, result.found), file);
+  predict_as_written(m, result.written, result.found);
+  return result;
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,30 @@
+#include "studies/written_scenario.hpp"
+
+#include <fmt/format.h>
+
+#include "base/config_text.hpp"
+#include "base/delimited_text.hpp"
+#include "base/errors.hpp"
+#include "base/file_bytes.hpp"
+#include "base/line_diff.hpp"
+#include "effects/former_words.hpp"
+
+namespace driftwright::studies {
+
+WrittenScenario written_scenario(const MeasuredTwin& m, const std::vector<diagnosis::StatedChange>& changes,
+                                 std::vector<std::string> head, const std::filesystem::path& file) {
+  WrittenScenario written{diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, std::move(head)), {}, {}};
+  const std::string name = file.filename().string();
+  try {
+    std::vector<effects::FormerWord> former;  // in the user's text; they are kept
+    const ConfigNodePtr tree = effects::in_present_words(read_config_text(written.extended.text, file.string()), former);
+    written.effects = scenarios::read_scenario(ConfigMap::of_tree(tree)).machine->effects;
+  } catch (const InputError& e) {
+    written.extended.not_written.push_back(fmt::format("{} as a whole: it could not be read back: {}", name, e.what()));
+    return written;
+  }
+  written.difference = unified_diff(read_bytes(m.scenario.path), written.extended.text, clean_name(m.scenario.path), name);
+  return written;
+}
+
+}  // namespace driftwright::studies
