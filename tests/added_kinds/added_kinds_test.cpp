@@ -8,7 +8,7 @@
 #include "diagnosis/calibration.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "effects/catalogue_table.hpp"
-#include "tests/beside_records.hpp"
+#include "tests/shared/beside_records.hpp"
 
 namespace driftwright::diagnosis::added_kinds_test {
 namespace {

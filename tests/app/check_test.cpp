@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::check_test {
 namespace {

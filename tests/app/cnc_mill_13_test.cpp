@@ -10,7 +10,7 @@
 
 #include "base/record.hpp"
 #include "compensation/sensors/grey_relational.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::cnc_mill_13_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::environment_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <regex>
 #include <set>
 
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::four_renderings_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::fp3_spindle_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::identify_verb_test {
 namespace {

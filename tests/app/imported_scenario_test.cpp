@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "base/record.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::imported_scenario_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compensation/injector/quadrature.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright {
 

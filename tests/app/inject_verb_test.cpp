@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/random.hpp"
-#include "tests/inject_filter.hpp"
+#include "tests/app/inject_filter.hpp"
 
 namespace driftwright::inject_verb_test {
 namespace {

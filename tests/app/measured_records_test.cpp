@@ -12,7 +12,7 @@
 
 #include "base/csv_row.hpp"
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::measured_records_test {
 namespace {

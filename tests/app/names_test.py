@@ -7,7 +7,7 @@ Every verb must end with 0, or with 2 and a message; all that it writes and prin
 import os, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parent.parent
+TOP = Path(__file__).resolve().parents[2]
 LONGEST = 255      # longest file name in bytes
 LONGEST_OURS = 235
 SMALL = """

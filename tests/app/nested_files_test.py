@@ -6,7 +6,7 @@
 import os, subprocess, sys, tempfile
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parent.parent
+TOP = Path(__file__).resolve().parents[2]
 N = 300000
 LISTS, OBJECTS = "[" * N + "]" * N, '{"a":' * N + "1" + "}" * N
 PREDICTOR = TOP / "tests/fuzz/corpus/predictors/transfer_functions_from_speed.json"

@@ -8,9 +8,10 @@ scenario simulated is consistent with it, and diagnosis.json has the keys that o
 import json, os, subprocess, sys, tempfile
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "shared"))
 from result_schema import errors
 
-TOP = Path(__file__).resolve().parent.parent
+TOP = Path(__file__).resolve().parents[2]
 UNJUDGED = {"lumped_spindle": "warm_up", "first_machine": "shift"}  # scenarios without a study for `run`, and one of their cyclograms
 failures = []
 

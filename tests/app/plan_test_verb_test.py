@@ -93,7 +93,7 @@ def main():
         expect(all(b["share_named"] < a["share_named"] for a, b in zip(quiet["tests"], loud["tests"])), "more noise, fewer faults named")
 
         if shutil.which("rs274"):
-            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/one_hal.hpp
+            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/shared/one_hal.hpp
                 fcntl.flock(turn, fcntl.LOCK_EX)
                 said = subprocess.run(["rs274", "-g", str(folder / "one/plan_test.ngc")], capture_output=True, text=True, timeout=60)
             dwelt_s = sum(float(s) for s in re.findall(r"DWELL\(([0-9.]+)\)", said.stdout))

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::programme_study_test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <regex>
 
-#include "tests/inject_filter.hpp"
-#include "tests/one_hal.hpp"
+#include "tests/app/inject_filter.hpp"
+#include "tests/shared/one_hal.hpp"
 
 namespace driftwright::real_counters_test {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "base/csv_row.hpp"
 #include "base/record.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::reduced_run_test {
 namespace {

@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
-#include "tests/one_hal.hpp"
+#include "tests/shared/command_line.hpp"
+#include "tests/shared/one_hal.hpp"
 
 namespace driftwright::schedule_verb_test {
 namespace {

@@ -179,7 +179,7 @@ class Schema(unittest.TestCase):
                 begin, end = f"<!-- driftwright {words} --markdown -->\n", "<!-- end -->\n"
                 self.assertIn(begin, text)
                 table = text.split(begin)[1].split(end)[0]
-                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/reference/{page} is stale: tests/schema_tables.sh writes it anew")
+                self.assertEqual(table, run(*words.split(), "--markdown").stdout, f"docs/reference/{page} is stale: tests/app/schema_tables.sh writes it anew")
 
     def test_the_reference_has_every_key(self):
         """Every key of the scenario's upper two levels, taken from the JSON and not from the tables."""

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::shipped_scenarios_test {
 namespace {

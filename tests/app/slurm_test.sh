@@ -2,7 +2,7 @@
 # docs/array.sbatch as a job array on a Slurm of two nodes, started here on one machine for the purpose: shards of a sweep and of `place` give the bytes of
 # one run, also when a task is cancelled and submitted again.
 #
-#     tests/slurm_test.sh PROGRAM      ends with 77, which CTest shows as skipped, where Slurm is not installed
+#     tests/app/slurm_test.sh PROGRAM      ends with 77, which CTest shows as skipped, where Slurm is not installed
 set -eu
 program=$(realpath "$1")
 PATH=$PATH:/usr/sbin:/sbin

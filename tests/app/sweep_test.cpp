@@ -14,7 +14,7 @@
 #include "base/csv_row.hpp"
 #include "base/file_bytes.hpp"
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::sweep_test {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "base/record.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::validate_records_test {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "base/csv_row.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::validation_study_test {
 namespace {

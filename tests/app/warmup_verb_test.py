@@ -89,7 +89,7 @@ def main():
                f"behind a scale that lags: told {told['peak_um']:.4f} um, of predict {peak_um(folder / 'lag_again/record.csv', ['nose_um']):.4f} um")
 
         if shutil.which("rs274"):
-            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/one_hal.hpp
+            with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL per computer, see tests/shared/one_hal.hpp
                 fcntl.flock(turn, fcntl.LOCK_EX)
                 said = subprocess.run(["rs274", "-g", str(folder / "cold/warmup.ngc")], capture_output=True, text=True, timeout=60)
             dwelt_s = sum(float(s) for s in re.findall(r"DWELL\(([0-9.]+)\)", said.stdout))

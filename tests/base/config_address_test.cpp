@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/config_map.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::config_address_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::config_tree_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 #include "base/errors.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::file_bytes_test {
 namespace {

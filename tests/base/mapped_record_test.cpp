@@ -17,7 +17,7 @@
 #include <functional>
 
 #include "scenarios/reader/read_columns.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::mapped_record_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "tests/numpy.hpp"
+#include "tests/shared/numpy.hpp"
 
 namespace driftwright::npy_file_test {
 namespace {

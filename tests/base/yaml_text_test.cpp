@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::yaml_text_test {
 namespace {

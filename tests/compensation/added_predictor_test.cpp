@@ -20,7 +20,7 @@
 #include "follow/session.hpp"
 #include "output/drift_model_c.hpp"
 #include "output/predictor_file.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation {
 namespace added_predictor_test {

@@ -11,8 +11,8 @@
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/predictors/past_drift.hpp"
-#include "tests/deployed_model.hpp"
-#include "tests/three_parts.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/three_parts.hpp"
 
 namespace driftwright::compensation::deployed_follower_test {
 namespace {

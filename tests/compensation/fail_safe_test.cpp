@@ -10,7 +10,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/predictors/drift_model.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::fail_safe_test {
 namespace {

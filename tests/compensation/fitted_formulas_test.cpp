@@ -12,7 +12,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/sensors/product_sums.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::fitted_formulas_test {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "base/errors.hpp"
 #include "scenarios/reader/read_table.hpp"
-#include "tests/one_hal.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/one_hal.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation::frame_programs_test {
 namespace {

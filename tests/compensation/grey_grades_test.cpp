@@ -8,7 +8,7 @@
 
 #include "compensation/sensors/grey_relational.hpp"
 #include "compensation/sensors/ranking_stability.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::grey_grades_test {
 namespace {

@@ -10,9 +10,9 @@
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/transient.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::compensation::modal_predictor_test {
 namespace {

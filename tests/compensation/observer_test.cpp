@@ -12,7 +12,7 @@
 #include "compensation/judging/model_scatter.hpp"
 #include "compensation/predictors/observability.hpp"
 #include "solver/propagator.hpp"
-#include "tests/three_parts.hpp"
+#include "tests/shared/three_parts.hpp"
 
 namespace driftwright::compensation::observer_test {
 namespace {

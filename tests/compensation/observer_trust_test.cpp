@@ -14,7 +14,7 @@
 #include "compensation/predictors/score.hpp"
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
-#include "tests/three_parts.hpp"
+#include "tests/shared/three_parts.hpp"
 
 namespace driftwright::compensation::observer_trust_test {
 namespace {

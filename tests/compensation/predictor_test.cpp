@@ -11,7 +11,7 @@
 #include "compensation/predictors/driven_predictor.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::predictor_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/predictors/regression.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::product_sums_test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "compensation/sensors/interpolate.hpp"
 #include "nc/program.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation::program_schedule_test {
 namespace {

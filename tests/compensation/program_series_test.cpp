@@ -9,7 +9,7 @@
 
 #include "compensation/sensors/interpolate.hpp"
 #include "nc/program.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation::program_series_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "compensation/sensors/product_sums.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::regression_quality_test {
 namespace {

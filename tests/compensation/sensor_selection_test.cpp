@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/errors.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::sensor_selection_test {
 namespace {

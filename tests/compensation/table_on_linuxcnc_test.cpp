@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "compensation/frames/frame_programs.hpp"
-#include "tests/one_hal.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/one_hal.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation::table_on_linuxcnc_test {
 namespace {

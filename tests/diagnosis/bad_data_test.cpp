@@ -12,7 +12,7 @@
 #include "diagnosis/unseen_drive.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::bad_data_test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/output_error.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::calibration_test {
 namespace {

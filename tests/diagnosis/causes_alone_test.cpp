@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/extended_scenario.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::causes_alone_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::early_end_test {
 namespace {

@@ -14,7 +14,7 @@
 #include "diagnosis/focus.hpp"
 #include "diagnosis/scatter.hpp"
 #include "machine/machine.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::every_finding_test {
 namespace {

@@ -14,7 +14,7 @@
 #include "diagnosis/scatter.hpp"
 #include "machine/machine.hpp"
 #include "machine/reduced_machine.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::experiment_test {
 namespace {

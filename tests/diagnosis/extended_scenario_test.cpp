@@ -14,7 +14,7 @@
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
-#include "tests/column_and_head.hpp"
+#include "tests/shared/column_and_head.hpp"
 
 namespace driftwright::diagnosis::extended_scenario_test {
 namespace {

@@ -5,7 +5,7 @@
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/scatter.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::given_up_fits_test {
 namespace {

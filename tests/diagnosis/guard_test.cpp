@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/effect_list.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::guard_test {
 namespace {

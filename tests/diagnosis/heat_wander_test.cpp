@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/scatter.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::heat_wander_test {
 namespace {

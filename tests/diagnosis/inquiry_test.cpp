@@ -7,7 +7,7 @@
 
 #include "diagnosis/leftover.hpp"
 #include "diagnosis/scatter.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::inquiry_test {
 namespace {

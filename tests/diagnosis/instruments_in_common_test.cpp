@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/extended_scenario.hpp"
-#include "tests/beside_records.hpp"
+#include "tests/shared/beside_records.hpp"
 
 namespace driftwright::diagnosis::instruments_in_common_test {
 namespace {

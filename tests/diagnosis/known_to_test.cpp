@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "diagnosis/scatter.hpp"
-#include "tests/beside_records.hpp"
+#include "tests/shared/beside_records.hpp"
 
 namespace driftwright::diagnosis::known_to_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "effects/lasting.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::lasting_causes_test {
 namespace {

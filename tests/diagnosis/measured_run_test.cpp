@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::measured_run_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "diagnosis/extended_scenario.hpp"
-#include "tests/beside_records.hpp"
-#include "tests/column_and_head.hpp"
+#include "tests/shared/beside_records.hpp"
+#include "tests/shared/column_and_head.hpp"
 
 namespace driftwright::diagnosis::missing_paths_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::other_duty_cycles_test {
 namespace {

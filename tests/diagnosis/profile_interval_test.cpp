@@ -7,7 +7,7 @@
 #include "diagnosis/interval.hpp"
 #include "diagnosis/scatter.hpp"
 #include "studies/measured_twin.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::profile_interval_test {
 namespace {

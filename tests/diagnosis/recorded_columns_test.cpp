@@ -15,8 +15,8 @@
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
-#include "tests/lumped_records.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/lumped_records.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::recorded_columns_test {
 namespace {

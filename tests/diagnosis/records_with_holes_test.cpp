@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::records_with_holes_test {
 namespace {

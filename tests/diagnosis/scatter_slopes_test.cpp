@@ -10,7 +10,7 @@
 #include "diagnosis/fit.hpp"
 #include "diagnosis/scatter.hpp"
 #include "studies/measured_twin.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::scatter_slopes_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::scene_test {
 namespace {

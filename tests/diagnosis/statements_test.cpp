@@ -9,7 +9,7 @@
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/naming.hpp"
 #include "diagnosis/scatter.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::statements_test {
 namespace {

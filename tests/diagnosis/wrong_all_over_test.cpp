@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "tests/beside_records.hpp"
+#include "tests/shared/beside_records.hpp"
 
 namespace driftwright::diagnosis::wrong_all_over_test {
 namespace {

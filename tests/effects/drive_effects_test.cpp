@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::drive_effects_test {
 namespace {

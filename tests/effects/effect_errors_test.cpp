@@ -5,7 +5,7 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::effect_errors_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "effects/bearing_formulas.hpp"
 #include "effects/catalogue_table.hpp"
 #include "effects/effect.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::effect_laws_test {
 namespace {

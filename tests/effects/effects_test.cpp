@@ -8,7 +8,7 @@
 #include "effects/bearing_formulas.hpp"
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::effects_test {
 namespace {

@@ -14,7 +14,7 @@
 #include "machine/machine_key.hpp"
 #include "scenarios/reader/scenario.hpp"
 #include "scenarios/reader/sweep_plan.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::former_words_test {
 namespace {

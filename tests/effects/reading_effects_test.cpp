@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::reading_effects_test {
 namespace {

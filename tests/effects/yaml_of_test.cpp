@@ -7,7 +7,7 @@
 
 #include "base/random.hpp"
 #include "effects/effect.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::yaml_of_test {
 namespace {

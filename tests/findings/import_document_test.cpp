@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "output/document_json.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::import_document_test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::findings::machine_section_test {
 namespace {

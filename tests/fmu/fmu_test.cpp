@@ -14,7 +14,7 @@
 #include "base/quantity.hpp"
 #include "output/fmu/fmu_file.hpp"
 #include "studies/prediction.hpp"
-#include "tests/command_line.hpp"
+#include "tests/shared/command_line.hpp"
 #include "tests/fmu/importer.h"
 
 namespace driftwright::output::fmu_test {

@@ -30,7 +30,7 @@ def main():
     feeder = project / "compensation/control/follow_hal.py"
     (folder / "feed.sh").write_text(f"#!/bin/sh\nexec {feeder} --axes nose_z <{folder}/lines\n")
     (folder / "feed.sh").chmod(0o755)
-    # one HAL per computer, see tests/one_hal.hpp
+    # one HAL per computer, see tests/shared/one_hal.hpp
     turn = open("/tmp/driftwright_one_hal", "a")
     fcntl.flock(turn, fcntl.LOCK_EX)
     # halrun ends its HAL with its shell, so its standard input is kept open

@@ -231,7 +231,7 @@ def main():
         (folder / name).chmod(0o777)
     os.mkfifo(folder / "lines")
     keeper = os.open(folder / "lines", os.O_RDWR)  # so that feed.sh and follow may come in any order
-    turn = open("/tmp/driftwright_one_hal", "a")  # one HAL per computer, see tests/one_hal.hpp
+    turn = open("/tmp/driftwright_one_hal", "a")  # one HAL per computer, see tests/shared/one_hal.hpp
     fcntl.flock(turn, fcntl.LOCK_EX)
     module = MODULES / "followed_axis.so"
     was_there = module.exists()

@@ -15,8 +15,8 @@
 #include "follow/session.hpp"
 #include "follow/state_file.hpp"
 #include "output/predictor_file.hpp"
-#include "tests/deployed_model.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::follow::follow_session_test {
 namespace {

@@ -1,5 +1,5 @@
 // The bridge of compensation/control against node-opcua's own server; skipped (77) where node-opcua is not installed (NODE_PATH says where it is).
-// node tests/opcua_rows_test.cjs
+// node tests/follow/opcua_rows_test.cjs
 const {spawn} = require('child_process');
 const path = require('path');
 let opcua;
@@ -20,7 +20,7 @@ try {
   own.addVariable({componentOf: mill, nodeId: 's=speed', browseName: 'speed', dataType: 'Double', value: {get: good(() => speed)}});
   own.addVariable({componentOf: mill, nodeId: 's=t01', browseName: 't01', dataType: 'Double', value: {get: () => opcua.StatusCodes.BadSensorFailure}});
   await server.start();
-  const bridge = spawn(process.execPath, [path.join(__dirname, '../compensation/control/opcua_rows.cjs'), 'opc.tcp://127.0.0.1:48417', '0.2',
+  const bridge = spawn(process.execPath, [path.join(__dirname, '../../compensation/control/opcua_rows.cjs'), 'opc.tcp://127.0.0.1:48417', '0.2',
                                           `speed_rpm=ns=${own.index};s=speed`, `t01_degC=ns=${own.index};s=t01`], {stdio: ['ignore', 'pipe', 'inherit']});
   let text = '';
   const end = (code, words) => { bridge.kill(); console.log(words); process.exit(code); };

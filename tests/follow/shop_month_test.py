@@ -20,7 +20,7 @@ import threading
 import waiting
 from waiting import broker, free_port, need_mosquitto
 
-TOP = pathlib.Path(__file__).resolve().parent.parent
+TOP = pathlib.Path(__file__).resolve().parents[2]
 EVENTS, BY_KEY = [], {}
 DAYS, DAY_MIN, TARGET = 30, 1440, "drift_y"
 BEGIN_H = 6  # the first row is of a Monday at six

@@ -9,8 +9,8 @@
 #include "base/errors.hpp"
 #include "follow/watch_json.hpp"
 #include "follow/watch_trial.hpp"
-#include "tests/temporary_file.hpp"
-#include "tests/three_parts.hpp"
+#include "tests/shared/temporary_file.hpp"
+#include "tests/shared/three_parts.hpp"
 
 namespace driftwright::follow::watch_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "machine/reduced_machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
-#include "tests/column_and_head.hpp"
+#include "tests/shared/column_and_head.hpp"
 
 namespace driftwright::scenarios::as_recorded_test {
 namespace {

@@ -15,8 +15,8 @@
 #include "machine/reduced_files.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/numpy.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/shared/numpy.hpp"
 
 namespace driftwright::scenarios::machine_store_test {
 namespace {

@@ -12,8 +12,8 @@
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::scenarios::reduced_machine_test {
 namespace {

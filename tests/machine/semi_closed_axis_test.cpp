@@ -12,7 +12,7 @@
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/column_and_head.hpp"
+#include "tests/shared/column_and_head.hpp"
 
 namespace driftwright::scenarios::semi_closed_axis_test {
 namespace {

@@ -13,8 +13,8 @@
 #include "mesh/imported_mesh.hpp"
 #include "mesh/mesh_bytes.hpp"
 #include "mesh/read_apart.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::mesh::damaged_mesh_test {
 namespace {

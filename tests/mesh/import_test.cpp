@@ -17,8 +17,8 @@
 #include "mesh/topology.hpp"
 #include "mesh/unnamed_geometry.hpp"
 #include "output/vtk_fields.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::mesh::import_test {
 namespace {

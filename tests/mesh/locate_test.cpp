@@ -8,7 +8,7 @@
 #include <random>
 
 #include "mesh/topology.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::mesh::locate_test {
 namespace {

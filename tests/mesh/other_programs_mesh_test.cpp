@@ -22,8 +22,8 @@
 #include "mesh/overlapping_cells.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/read_apart.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::mesh::other_programs_mesh_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "mesh/topology.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::mesh::quality_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "nc/correction.hpp"
 #include "nc/places.hpp"
 #include "nc/program.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_correction_test {
 namespace {

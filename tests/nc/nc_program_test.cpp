@@ -9,7 +9,7 @@
 #include "nc/arc.hpp"
 #include "nc/program.hpp"
 #include "nc/sections.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_program_test {
 namespace {

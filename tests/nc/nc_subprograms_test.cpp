@@ -9,8 +9,8 @@
 #include "nc/correction.hpp"
 #include "nc/places.hpp"
 #include "nc/program.hpp"
-#include "tests/rs274.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/nc/rs274.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_subprograms_test {
 namespace {

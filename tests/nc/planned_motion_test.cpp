@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "nc/program.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::planned_motion_test {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/one_hal.hpp"
+#include "tests/shared/one_hal.hpp"
 
 namespace driftwright {
 

@@ -12,8 +12,8 @@
 #include <functional>
 
 #include "compensation/control/control_files.hpp"
-#include "tests/deployed_model.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::drift_model_c_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "tests/deployed_model.hpp"
+#include "tests/shared/deployed_model.hpp"
 
 namespace driftwright::output::drift_model_files_test {
 namespace {

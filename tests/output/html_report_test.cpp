@@ -10,7 +10,7 @@
 #include <set>
 
 #include "base/errors.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::html::html_report_test {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "compensation/control/control_files.hpp"
 #include "output/drift_model_c.hpp"
-#include "tests/deployed_model.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::linuxcnc_component_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <regex>
 
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::output::machine_picture_test {
 namespace {

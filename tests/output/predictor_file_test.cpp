@@ -13,8 +13,8 @@
 #include "base/hashed_json.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
-#include "tests/deployed_model.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::predictor_file_test {
 namespace {

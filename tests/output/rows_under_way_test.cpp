@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::rows_under_way_test {
 namespace {

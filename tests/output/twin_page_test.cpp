@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <map>
 
-#include "tests/column_and_head.hpp"
+#include "tests/shared/column_and_head.hpp"
 
 namespace driftwright::output::twin_page_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "nc/program.hpp"
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/recorded_run.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::read_cyclogram_test {
 namespace {

@@ -13,7 +13,7 @@
 #include "compensation/predictors/observed_run.hpp"
 #include "scenarios/reader/record_part.hpp"
 #include "scenarios/reader/recorded_run.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::record_runs_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <set>
 
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::sweep_plan_test {
 namespace {

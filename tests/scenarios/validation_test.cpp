@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::validation_test {
 namespace {

@@ -2,7 +2,7 @@
 // Records with one row per minute and little noise, and a scenario's twin with them, to test findings of structure.
 
 #include "diagnosis/scatter.hpp"
-#include "tests/lumped_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
 

@@ -1,4 +1,4 @@
-#include "tests/calculix.hpp"
+#include "tests/shared/calculix.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "mesh/topology.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::fixtures {
 namespace {

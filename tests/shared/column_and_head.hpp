@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::fixtures {
 

@@ -1,11 +1,11 @@
-#include "tests/curved_bodies.hpp"
+#include "tests/shared/curved_bodies.hpp"
 
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
 
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::fixtures {
 namespace {

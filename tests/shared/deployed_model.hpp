@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "output/drift_model_files.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::fixtures {
 

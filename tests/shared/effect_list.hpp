@@ -6,7 +6,7 @@
 
 #include "effects/effect.hpp"
 #include "solver/heat_assembly.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::fixtures {
 

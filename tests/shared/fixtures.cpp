@@ -1,4 +1,4 @@
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 #include <gtest/gtest.h>
 

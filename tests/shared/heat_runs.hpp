@@ -10,7 +10,7 @@
 #include "effects/heat_balance.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::fixtures {
 

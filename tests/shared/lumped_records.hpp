@@ -13,7 +13,7 @@
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis {
 

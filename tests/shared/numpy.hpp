@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright {
 

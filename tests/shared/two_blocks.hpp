@@ -2,7 +2,7 @@
 // A small machine of two parts that several tests reduce: it has a heat source, films and a joint.
 
 #include "solver/heat_assembly.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::fixtures {
 

@@ -12,7 +12,7 @@
 #include "solver/live_rate.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
-#include "tests/effect_list.hpp"
+#include "tests/shared/effect_list.hpp"
 
 namespace driftwright::solver::bind_laws_test {
 namespace {

@@ -1,7 +1,7 @@
 // Side by side with CalculiX on the same mesh: steady and transient temperatures and thermo-elastic displacements of a frame of
 // two materials. Skipped where its program ccx (Debian: calculix-ccx) is not installed.
 
-#include "tests/calculix.hpp"
+#include "tests/shared/calculix.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "mesh/topology.hpp"
 #include "solver/elasticity.hpp"
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::calculix_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/curved_bodies.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/curved_bodies.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::closed_forms_test {
 namespace {

@@ -7,8 +7,8 @@
 #include "base/errors.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::coolant_test {
 namespace {

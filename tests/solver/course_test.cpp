@@ -7,7 +7,7 @@
 
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::solver::course_test {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "base/errors.hpp"
 #include "mesh/shape.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::elasticity_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::heat_balance_in_time_test {
 namespace {

@@ -8,7 +8,7 @@
 #include "solver/heat_assembly.hpp"
 #include "solver/thermal_modes.hpp"
 #include "solver/transient.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::heat_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "mesh/topology.hpp"
 #include "solver/elasticity.hpp"
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::invariance_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/errors.hpp"
 #include "solver/heat_assembly.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::joint_test {
 namespace {

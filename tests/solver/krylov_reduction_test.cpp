@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::solver::krylov_reduction_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "mesh/gmsh_parts.hpp"
 #include "solver/elasticity.hpp"
 #include "solver/stress.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::le11_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "solver/material.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::solver::materials_test {
 namespace {

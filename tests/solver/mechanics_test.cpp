@@ -15,7 +15,7 @@
 #include "solver/elasticity.hpp"
 #include "solver/springs.hpp"
 #include "solver/stress.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::mechanics_test {
 namespace {

@@ -12,7 +12,7 @@
 #include "solver/heat_assembly.hpp"
 #include "solver/prolongator.hpp"
 #include "solver/stiffness_assembly.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::multigrid_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::nafems_test {
 namespace {

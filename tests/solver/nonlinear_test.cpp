@@ -12,8 +12,8 @@
 #include "solver/heat_rate.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::nonlinear_test {
 namespace {

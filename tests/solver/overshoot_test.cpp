@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::overshoot_test {
 namespace {

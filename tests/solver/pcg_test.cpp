@@ -7,7 +7,7 @@
 
 #include "solver/heat_assembly.hpp"
 #include "solver/multigrid.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::pcg_test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::prescribed_test {
 namespace {

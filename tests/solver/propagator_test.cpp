@@ -8,7 +8,7 @@
 #include "solver/reduced_model.hpp"
 #include "solver/thermal_modes.hpp"
 #include "solver/transient.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::solver::propagator_test {
 namespace {

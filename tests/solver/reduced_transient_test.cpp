@@ -11,9 +11,9 @@
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_ode.hpp"
 #include "solver/steady_state.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/heat_runs.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/heat_runs.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::solver::reduced_transient_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "mesh/gantry_table.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/elasticity.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::several_threads_test {
 namespace {

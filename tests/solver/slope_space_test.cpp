@@ -6,7 +6,7 @@
 #include <random>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::slope_space_test {
 namespace {

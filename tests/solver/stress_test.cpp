@@ -11,7 +11,7 @@
 #include <random>
 
 #include "mesh/quality.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::stress_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "tests/two_blocks.hpp"
+#include "tests/shared/two_blocks.hpp"
 
 namespace driftwright::solver::thermal_modes_test {
 namespace {

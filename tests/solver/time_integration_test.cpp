@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "solver/heat_assembly.hpp"
-#include "tests/heat_runs.hpp"
+#include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::time_integration_test {
 namespace {

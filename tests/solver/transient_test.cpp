@@ -12,8 +12,8 @@
 #include "solver/heat_assembly.hpp"
 #include "solver/heat_ode.hpp"
 #include "solver/integrate.hpp"
-#include "tests/effect_list.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/shared/effect_list.hpp"
+#include "tests/shared/fixtures.hpp"
 
 namespace driftwright::solver::transient_test {
 namespace {

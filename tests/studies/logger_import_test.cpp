@@ -16,7 +16,7 @@
 #include <filesystem>
 
 #include "base/guess_names.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::logger_import_test {
 namespace {

@@ -9,8 +9,8 @@
 #include "mesh/mesh_step.hpp"
 #include "mesh/outer_planes.hpp"
 #include "studies/machine_draft_text.hpp"
-#include "tests/fixtures.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/fixtures.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::machine_draft_test {
 namespace {

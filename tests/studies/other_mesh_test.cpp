@@ -10,8 +10,8 @@
 
 #include "mesh/gmsh_parts.hpp"
 #include "studies/measured_twin.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::other_mesh_test {
 namespace {

@@ -14,9 +14,9 @@
 #include "studies/placement_rivals.hpp"
 #include "studies/placement_tests.hpp"
 #include "studies/placement_yaml.hpp"
-#include "tests/column_and_head.hpp"
-#include "tests/kept_in_memory.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/column_and_head.hpp"
+#include "tests/studies/kept_in_memory.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::placement_test {
 namespace {

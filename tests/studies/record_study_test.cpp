@@ -10,8 +10,8 @@
 #include "base/errors.hpp"
 #include "compensation/predictors/fitted_formulas.hpp"
 #include "compensation/sensors/sensor_selection.hpp"
-#include "tests/sensor_records.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/sensor_records.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::record_study_test {
 namespace {

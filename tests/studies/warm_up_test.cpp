@@ -12,7 +12,7 @@
 #include "base/random.hpp"
 #include "studies/warm_up_error.hpp"
 #include "studies/warm_up_program.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::warm_up_test {
 namespace {
