@@ -14,8 +14,8 @@
 #include "base/quantity.hpp"
 #include "output/fmu/fmu_file.hpp"
 #include "studies/prediction.hpp"
-#include "tests/shared/command_line.hpp"
 #include "tests/fmu/importer.h"
+#include "tests/shared/command_line.hpp"
 
 namespace driftwright::output::fmu_test {
 namespace {

@@ -15,8 +15,8 @@
 #include "studies/placement_tests.hpp"
 #include "studies/placement_yaml.hpp"
 #include "tests/shared/column_and_head.hpp"
-#include "tests/studies/kept_in_memory.hpp"
 #include "tests/shared/temporary_file.hpp"
+#include "tests/studies/kept_in_memory.hpp"
 
 namespace driftwright::studies::placement_test {
 namespace {

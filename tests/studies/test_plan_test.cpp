@@ -9,8 +9,8 @@
 
 #include "diagnosis/discrimination.hpp"
 #include "diagnosis/level_machine.hpp"
-#include "tests/studies/kept_in_memory.hpp"
 #include "tests/shared/temporary_file.hpp"
+#include "tests/studies/kept_in_memory.hpp"
 
 namespace driftwright::studies::test_plan_test {
 namespace {
