@@ -1,4 +1,4 @@
-// Two kinds of predictors of which the program knows nothing but this file and their names in a list (tests/CMakeLists.txt):
+// Two kinds of predictors of which the program knows nothing but this file and their names in a list (CMakeLists.txt here):
 // each is judged, guarded, written, read, followed on a stream and, where it gives a formula, exported to a control.
 
 #include <gmock/gmock.h>
