@@ -16,7 +16,7 @@ for(const p of PAGES.map(p=>[score(p),p]).filter(p=>p[0]).sort((a,b)=>b[0]-a[0])
 
 
 def slug(heading, _separator=""):
-    """The anchor of a heading, as GitHub and tests/links_test.py make it."""
+    """The anchor of a heading, as GitHub and tests/project/links_test.py make it."""
     return re.sub(r"[^\w\- ]", "", unescape(heading).strip().lower()).replace(" ", "-")
 
 

@@ -1,4 +1,5 @@
-// The library of materials. docs/reference/materials.md shows it as a table; tests/materials_test.cpp keeps the two equal.
+// The library of materials. docs/reference/materials.md shows it as a table; tests/solver/materials_test.cpp keeps the two
+// equal.
 
 #include "solver/material.hpp"
 

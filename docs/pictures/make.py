@@ -33,7 +33,7 @@ with tempfile.TemporaryDirectory() as folder:
                     f"--user-data-dir={folder}/profile", "--window-size=1200,1300", f"--screenshot={HERE}/view.png", f"file://{folder}/twin.html"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     # The page of a followed machine, after the rows of an afternoon.
-    sys.path.insert(0, str(HERE.parent.parent / "tests"))
+    sys.path.insert(0, str(HERE.parent.parent / "tests/follow"))
     from browser import Browser
     subprocess.run([PROGRAM, "predict", "scenarios/fp3_spindle.yaml", "--cyclogram", "chaotic", "-o", f"{folder}/chaotic", "--quiet"], check=True, cwd=HERE.parent.parent)
     follow = subprocess.Popen([PROGRAM, "follow", "scenarios/fp3_spindle.yaml", "--serve", "0"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,

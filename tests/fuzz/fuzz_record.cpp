@@ -6,7 +6,7 @@
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/fuzz/driver.hpp"
-#include "tests/temporary_file.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 using namespace driftwright;
 

@@ -1,0 +1,116 @@
+// Five kinds of effects, one of each sort, of which the program knows nothing but their files in tests/added_kinds and
+// their names in a list: each is simulated, fitted, found in records that it was hidden in, written into the scenario,
+// and listed among the effects.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "diagnosis/calibration.hpp"
+#include "diagnosis/extended_scenario.hpp"
+#include "effects/catalogue_table.hpp"
+#include "tests/shared/beside_records.hpp"
+
+namespace driftwright::diagnosis::added_kinds_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* kMachine = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_head, node: head}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+solver: {output_interval: 1 min}
+)";
+struct Added {
+  const char* key;
+  const char* entry;  ///< of the truth
+  const char* where;
+  const char* number;
+  double value;      ///< of the number
+  double tolerance;  ///< relative: some two of its standard deviations
+};
+
+/// The scenario, with one more effect.
+std::string scenario_with(const std::string& entry) {
+  std::string text = kMachine;
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
+  return text;
+}
+
+class AnAddedKind : public testing::TestWithParam<Added> {};
+
+TEST_P(AnAddedKind, IsSimulatedFoundWrittenAndListed) {
+  const Added& added = GetParam();
+  const std::string plain = write_file("plain.yaml", scenario_with("")),
+                    truth = write_file("truth.yaml", scenario_with(added.entry));
+  const Beside beside(plain, record(truth, added.key));
+  const Diagnosis d = beside.diagnosed(3);
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, added.key);
+  EXPECT_EQ(d.causes[0].where, added.where);
+  EXPECT_THAT(d.causes[0].alternatives, IsEmpty());
+  EXPECT_NEAR(d.causes[0].parameters[0].value, added.value, added.tolerance * std::abs(added.value));
+
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_THAT(extended.not_written, IsEmpty());
+  EXPECT_THAT(extended.text, HasSubstr(std::string("- {type: ") + added.key));
+  const Beside again(write_file("extended_again.yaml", extended.text), record(truth, added.key));
+  EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
+
+  EXPECT_THAT(effects::catalogue_table(), HasSubstr(std::string("| `") + added.key + "` |"));
+}
+
+TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
+  const Added& added = GetParam();
+  std::string off = added.entry;  // its number a tenth too small
+  const std::string digits = fmt::format("{:g}", added.value);
+  ASSERT_NE(off.find(digits), std::string::npos);
+  off.replace(off.find(digits), digits.size(), fmt::format("{:g}", 0.9 * added.value));
+  const Beside beside(write_file("off.yaml", scenario_with(off)),
+                      record(write_file("truth.yaml", scenario_with(added.entry)), added.key));
+  const Diagnosis d = calibrate(*beside.twin, nullptr, beside.runs, {});
+  const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
+                                   [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });
+  ASSERT_NE(number, d.calibrated.end());
+  // On the way from the scenario's number to the true one. How far depends on what else could have done it: all heats and
+  // exchanges smaller by one factor are the same temperatures, so that the priors share the tenth among them (a
+  // conductance of 7 W/K that is written as 6.3 becomes 6.5).
+  EXPECT_GT(number->value, 0.9 * added.value + 0.15 * 0.1 * added.value);
+  EXPECT_LT(number->value, 1.05 * added.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfEachSort, AnAddedKind,
+    ::testing::Values(
+        Added{"humming_heat", "{type: humming_heat, node: head, power: 60 W}", "head", "power", 60.0, 0.1},
+        Added{"fanned_exchange", "{type: fanned_exchange, node: head, conductance: 7 W/K}", "head", "conductance", 7.0,
+              0.15},
+        Added{"creeping_glue", "{type: creeping_glue, displacement: nose, creep: 6 um}", "nose", "creep", 6.0, 0.1},
+        Added{"sensor_gain", "{type: sensor_gain, sensor: t_column, gain: 1.4}", "t_column", "gain", 1.4, 0.05},
+        Added{"slipping_belt", "{type: slipping_belt, slip: 150 rpm}", "spindle", "slip", 150.0, 0.15}),
+    [](const auto& one) { return std::string(one.param.key); });
+
+}  // namespace
+}  // namespace driftwright::diagnosis::added_kinds_test

@@ -1,0 +1,92 @@
+// The shipped scenarios beside fp3_spindle and spindle_22, as their headers say they behave.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/record.hpp"
+#include "tests/shared/command_line.hpp"
+
+namespace driftwright::shipped_scenarios_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Runs `simulate` on one cyclogram of a shipped scenario; returns the folder of results.
+std::filesystem::path simulate(const std::string& scenario, const std::string& cyclogram, std::string* output = nullptr) {
+  const std::filesystem::path folder = fresh_folder(scenario) / "results";
+  const CommandOutcome outcome =
+      run_program("simulate scenarios/" + scenario + ".yaml --cyclogram " + cyclogram + " -o " + folder.string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  if (output) *output = outcome.output;
+  return folder;
+}
+
+TEST(LumpedSpindle, CoolerCyclesBetweenItsSwitchingPoints) {
+  const Record record = read_record_csv((simulate("lumped_spindle", "shift") / "record.csv").string());
+  const auto& cooler = record.at("t_cooler").values;
+  const auto settled = cooler.begin() + 40;                          // after 20 min
+  EXPECT_NEAR(*std::min_element(settled, cooler.end()), 24.0, 0.3);  // rows of 30 s cut the saw-tooth's tips of 1.3 K/min
+  EXPECT_NEAR(*std::max_element(settled, cooler.end()), 26.0, 0.3);
+  EXPECT_LT(*std::max_element(cooler.begin(), cooler.end()), 26.0 + 1e-3);
+  EXPECT_NEAR(record.at("nose_z").values[60], 56.0, 1.0);  // after 30 min, as the header says
+}
+
+TEST(LumpedSpindle, WhatFlowsInMakesWhatIsStoredInEachRow) {
+  const Record heat = read_record_csv((simulate("lumped_spindle", "shift") / "heat_flows.csv").string());
+  std::vector<std::string> across;  // those that cross the boundary: sources, and links to the ambient
+  for (const Channel& c : heat.channels) {
+    const bool within = c.name.starts_with("within_");
+    if (c.name != "stored" && !within) across.push_back(c.name);
+  }
+  ASSERT_EQ(across.size(), 9u);
+  for (std::size_t row = 1; row < heat.n_samples(); ++row) {
+    double sum_W = 0.0;
+    for (const std::string& name : across) sum_W += heat.at(name).values[row];
+    EXPECT_NEAR(sum_W, heat.at("stored").values[row], 1e-3) << "row " << row;  // of 1500 W written with 7 digits
+  }
+}
+
+TEST(CFrame, FromADrawingToFieldsWithStresses) {
+  std::string output;
+  const std::filesystem::path folder = simulate("c_frame", "warm_up", &output);
+  EXPECT_THAT(output, HasSubstr("fields.pvd"));
+  EXPECT_THAT(read_text(folder / "fields" / "fields_0001.vtu").substr(0, 4000), HasSubstr("von_mises_MPa"));
+  EXPECT_THAT(read_text(folder / "fields.pvd"), HasSubstr("timestep=\"600\""));  // fields_at: 10 min
+  const Record record = read_record_csv((folder / "record.csv").string());
+  // Its header's values, to the digits given there: a change of the model shows here first.
+  EXPECT_NEAR(record.at("nose_y").values.back(), -29.0, 0.5);
+  EXPECT_NEAR(record.at("nose_z_x0").values.back(), -22.0, 0.5);
+  EXPECT_DOUBLE_EQ(record.at("t_head").values.front(), 20.5);  // start: ambient
+  const Record heat = read_record_csv((folder / "heat_flows.csv").string());
+  EXPECT_GT(heat.at("bearing_friction_spindle").values[1], heat.at("bearing_friction_spindle").values.back())
+      << "warm oil is thin";
+  const auto& draught = heat.at("convection_column_back").values;  // 10 to 15 min, rows of half a minute
+  EXPECT_EQ(draught[20], 0.0);
+  EXPECT_NE(draught[25], 0.0);
+  EXPECT_EQ(draught[31], 0.0);
+}
+
+TEST(Mesh, OfALumpedMachineIsRefused) {
+  const CommandOutcome outcome =
+      run_program("mesh scenarios/lumped_spindle.yaml -o " + (fresh_folder("lumped_mesh") / "out").string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("a lumped machine has no mesh"));
+}
+
+TEST(Mesh, OfUnbearableFinenessIsRefusedBeforeItIsMade) {
+  std::string text = read_text("scenarios/c_frame.yaml");
+  text.replace(text.find("parts/c_frame.step"), 18, std::filesystem::absolute("scenarios/parts/c_frame.step").string());
+  text.replace(text.find("parts/pocket.ngc"), 16, std::filesystem::absolute("scenarios/parts/pocket.ngc").string());
+  text.replace(text.find("default: 90 mm"), 14, "default: 0.1 mm");
+  const std::string file = (fresh_folder("fine") / "scenario.yaml").string();
+  std::ofstream(file) << text;
+  const CommandOutcome outcome = run_program("mesh " + file + " -o " + file + ".out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("take a larger mesh size"));
+}
+
+}  // namespace
+}  // namespace driftwright::shipped_scenarios_test

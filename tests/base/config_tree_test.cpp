@@ -1,0 +1,103 @@
+#include "base/config_tree.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::config_tree_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+std::string line_of(const std::string& yaml) {
+  return written(*read_config_tree(write_file("tree.yaml", yaml)));
+}
+
+TEST(WrittenTree, IsTheSameHoweverTheFileIsLaidOut) {
+  const std::string flow = "{name: a b, list: [1, 2 mm, {deep: x}], none: ~}";
+  const std::string block = "# a comment\nname: 'a b'   # and one more\nlist:\n  - 1\n\n  - \"2 mm\"\n  - deep: x\nnone:\n";
+  EXPECT_EQ(line_of(flow), line_of(block));
+  EXPECT_EQ(line_of(flow), line_of(flow));
+  EXPECT_NE(line_of(flow), "");
+}
+
+TEST(WrittenTree, AnAliasIsWrittenAsWhatItStandsFor) {
+  EXPECT_EQ(line_of("{a: &x [1, 2], b: *x}"), line_of("{a: [1, 2], b: [1, 2]}"));
+}
+
+TEST(ConfigTree, AliasesThatStandForBillionsAreRefusedWithTheNumber) {
+  std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n", chain = "a0: &a0 [x]\n";
+  for (int i = 1; i < 12; ++i)
+    bomb += fmt::format("a{0}: &a{0} [*a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}]\n", i, i - 1);
+  for (int i = 1; i < 5000; ++i) chain += fmt::format("a{0}: &a{0} [*a{1}]\n", i, i - 1);
+  EXPECT_THAT([&] { (void)line_of(bomb); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("tree.yaml:7:"), HasSubstr("1000000 values"))));
+  EXPECT_THAT([&] { (void)line_of(chain); }, ThrowsMessage<InputError>(HasSubstr("more than 200 deep")));
+  EXPECT_THAT([&] { (void)line_of(std::string(100000, '[')); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("tree.yaml"), HasSubstr("more than 200 deep"))));
+}
+
+TEST(ConfigTree, IsReadFromTheEncodingsOfRecords) {
+  EXPECT_EQ(line_of("name: Geh\xE4use"), "{\"name\": \"Geh\xC3\xA4use\"}");  // Latin-1
+  EXPECT_EQ(line_of("\xEF\xBB\xBFname: x"), "{\"name\": \"x\"}");
+  EXPECT_EQ(line_of(std::string("\xFF\xFEn\0:\0 \0x\0", 10)), "{\"n\": \"x\"}");
+  EXPECT_THAT([] { (void)read_config_tree(temporary_folder().string()); },
+              ThrowsMessage<InputError>(HasSubstr("is a folder")));
+}
+
+TEST(WrittenTree, DiffersWhereTreesDiffer) {
+  // Among them texts that look like the tree they are not.
+  const std::vector<std::string> trees = {"{a: 1, b: 2}",
+                                          "{b: 2, a: 1}",
+                                          "{a: 1, b: 3}",
+                                          "{a: 1}",
+                                          "[a, 1]",
+                                          "[[a], 1]",
+                                          "[[a, 1]]",
+                                          "['a, 1']",
+                                          R"(['a", "1'])",
+                                          R"(['a\', '1'])",
+                                          R"(['a\\', '1'])",
+                                          "{a: ''}",
+                                          "{a: ~}",
+                                          "{a: '~'}",
+                                          "{a: []}",
+                                          "{a: {}}",
+                                          "{a: '[]'}",
+                                          R"({a: "x\ny"})",
+                                          R"({a: 'x\ny'})",
+                                          R"({a: "x y"})",
+                                          R"({'a: "1", b': 2})",
+                                          R"({'a: {"b"': 2})",
+                                          "{a: {b: 2}}",
+                                          R"({a: "ä"})",
+                                          R"({a: "a"})",
+                                          "a",
+                                          "~",
+                                          "''",
+                                          R"({'a, b': 1})"};
+  std::set<std::string> lines;
+  for (const std::string& tree : trees) EXPECT_TRUE(lines.insert(line_of(tree)).second) << tree << " -> " << line_of(tree);
+}
+
+TEST(WrittenTree, IsOneLine) {
+  EXPECT_EQ(line_of("{a: \"x\\ny\", b: [\"\\r\", 1]}").find('\n'), std::string::npos);
+}
+
+TEST(WrittenTree, AnEditShowsAndItsUndoIsTheSameAgain) {
+  const ConfigNodePtr tree = read_config_tree(write_file("edited.yaml", "{a: [1, 2], b: 3}"));
+  const std::vector<std::size_t> steps = {0, 1};
+  const ConfigNodePtr edited = replaced(tree, steps, scalar_at(*tree, "5")),
+                      undone = replaced(edited, steps, scalar_at(*tree, "2"));
+  EXPECT_NE(written(*edited), written(*tree));
+  EXPECT_EQ(written(*undone), written(*tree));
+}
+
+}  // namespace
+}  // namespace driftwright::config_tree_test

@@ -1,0 +1,286 @@
+// Explanations that the present records cannot distinguish, and the experiment that would distinguish them, compared with records simulated one by one.
+
+#include "diagnosis/experiment.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <random>
+
+#include "diagnosis/discrimination.hpp"
+#include "diagnosis/experiment_check.hpp"
+#include "diagnosis/experiment_family.hpp"
+#include "diagnosis/scatter.hpp"
+#include "machine/machine.hpp"
+#include "machine/reduced_machine.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::diagnosis::experiment_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kMachine = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 150 W, at_speed: 2000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [90 min, 20 degC]]
+sensors:
+  - {name: t_head, node: head}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  cycle: [[360 min, 2000 rpm]]
+)";
+
+const NoiseModel kKelvin{0.06, 0.03, 240.0}, kMetres{4e-7, 0.0, 0.0};
+
+/// A record of one speed from cold, as the twin itself with 60 W more in the head.
+class OneSpeed : public testing::Test {
+ protected:
+  OneSpeed() {
+    scenario_ = scenarios::read_scenario(write_file("two_nodes.yaml", kMachine));
+    MeasuredRun run;
+    run.name = "monday";
+    run.cyclogram = {"monday", {{6.0 * 3600.0, {.speed_rpm = 2000.0}}}};
+    run.ambient = {{0.0}, {0.0}};
+    for (int i = 0; i <= 360; ++i) run.time_s.push_back(60.0 * i);
+    set_grid(run);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(361);
+    run.channels = {{"t_head", 0, "K", none}, {"nose", 1, "m", none}};
+    runs_ = {run};
+    augmented_ = augment(scenario_, scenarios::place(*scenario_.machine).mesh, runs_);
+    const scenarios::MachineModel& model = augmented_.model;
+    machine_ = scenarios::reduce(model, scenarios::build(model, scenarios::place(model)), augmented_.plan);
+    twin_.emplace(augmented_, machine_, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
+    list_ = candidates(*twin_, runs_, {});
+  }
+
+  /// The claim of a candidate by one of its laws.
+  Claim claim(const std::string& effect, const std::string& where, const std::string& law) const {
+    for (std::size_t c = 0; c < list_.size(); ++c) {
+      for (std::size_t v = 0; v < list_[c].variants.size(); ++v) {
+        const Variant& variant = list_[c].variants[v];
+        if (list_[c].effect == effect && list_[c].where == where && variant.law.starts_with(law))
+          return {c, v, variant.knobs, variant.all_or_nothing};
+      }
+    }
+    throw std::logic_error("no " + effect + " at " + where);
+  }
+
+  /// The truth's readings in the runs, then both claims fitted to them.
+  SearchResult two_ways(const Claim& truth, const Eigen::VectorXd& x, const Claim& other, const Eigen::VectorXd& start) {
+    fitter_.emplace(*twin_, runs_, scatter(*twin_), std::vector<Prediction>{});
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(fitter_->n_nuisance() + x.size());
+    all.tail(x.size()) = x;
+    Twin::Workspace workspace(*twin_);
+    const Prediction p = fitter_->predict(Hypothesis{truth}, all, workspace);
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      for (MeasuredChannel& c : runs_[r].channels) c.value = p[r].row(c.output).transpose();
+    }
+    fitter_->set_noise({{"t_head", kKelvin}, {"nose", kMetres}});
+    SearchResult result;
+    result.hypothesis = {truth};
+    result.fit = fitter_->fit(Hypothesis{truth}, x, workspace);
+    Finding finding{truth, 40.0, true, {}};
+    finding.alternatives.push_back({other, fitter_->fit(Hypothesis{other}, start, workspace), 39.5});
+    result.findings.push_back(finding);
+    return result;
+  }
+  /// Records of a cyclogram simulated under each of two explanations, and which they speak for.
+  Check checked(const SearchResult& result, const Cyclogram& cyclogram, int n_draws) const {
+    MeasuredRun run = runs_.front();
+    run.name = cyclogram.name;
+    run.cyclogram = cyclogram;
+    run.time_s.clear();
+    for (double t_s = 0.0; t_s <= cyclogram.duration_s(); t_s += 60.0) run.time_s.push_back(t_s);
+    set_grid(run);
+    for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
+    const Finding::Alternative& other = result.findings[0].alternatives[0];
+    return check_by_simulation(
+        *fitter_, run, fitter_->noise(),
+        {{result.hypothesis, result.fit.x, result.fit.covariance}, {{other.claim}, other.fit.x, other.fit.covariance}},
+        {{0, 1}}, n_draws);
+  }
+  SearchResult constant_or_of_speed() {
+    return two_ways(claim("heat_source", "head", "constant heat"), Eigen::VectorXd::Constant(1, 60.0),
+                    claim("heat_source", "head", "the law written"), Eigen::VectorXd::Constant(1, 60.0));
+  }
+  /// The other one with an exponent of its own, of which a record at one speed says nothing.
+  SearchResult constant_or_of_any_power() {
+    return two_ways(claim("heat_source", "head", "constant heat"), Eigen::VectorXd::Constant(1, 60.0),
+                    claim("heat_source", "head", "power law of speed"), Eigen::Vector2d(60.0, 0.0));
+  }
+
+  scenarios::Scenario scenario_;
+  std::vector<MeasuredRun> runs_;
+  AugmentedModel augmented_;
+  scenarios::ReducedMachine machine_;
+  std::optional<Twin> twin_;
+  std::vector<Candidate> list_;
+  std::optional<Fitter> fitter_;
+};
+
+TEST_F(OneSpeed, CannotTellConstantHeatFromHeatOfSpeedButAChangeOfSpeedDoes) {
+  const SearchResult result = constant_or_of_speed();
+  EXPECT_NEAR(result.fit.misfit, result.findings[0].alternatives[0].fit.misfit, 0.5);  // nats: no telling
+  const auto e = propose_experiment(*fitter_, result);
+  ASSERT_TRUE(e);
+  EXPECT_FALSE(e->by_sensor);
+  EXPECT_GT(e->discrimination, 5.0);
+  EXPECT_EQ(e->n_simulated, 8);  // four under each; twenty of each:
+  const Check check = checked(result, e->cyclogram, 20);
+  EXPECT_EQ(check.n, 40);
+  // 30 of 40, at d' 6.8, which bounds the mean over all that the numbers may be: at one speed the size of the heat is not
+  // known beside its way out, and of the machines drawn some have so little of it that the two are one machine and stay
+  // open.
+  RecordProperty("told_of_40", check.n_told);
+  EXPECT_GE(check.n_told, 27);
+  EXPECT_LE(check.n_told, 34);
+  double turned_s = 0.0, other_s = 0.0;
+  for (const auto& s : e->cyclogram.sections) (s.drive.speed_rpm == 2000.0 ? turned_s : other_s) += s.duration_s;
+  EXPECT_GT(other_s, 0.0) << e->cyclogram.name;
+  EXPECT_THAT(e->why, HasSubstr("heat_source at head"));
+}
+
+/// Logarithm of a density of whitened readings up to a constant, by dense matrices.
+struct Dense {
+  Eigen::VectorXd mean;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+
+  explicit Dense(const Outlook& of)
+      : mean(of.mean), factor(Eigen::MatrixXd::Identity(of.mean.size(), of.mean.size()) + of.root * of.root.transpose()) {}
+  double log_density(const Eigen::VectorXd& y) const {
+    return -0.5 * (y - mean).dot(factor.solve(y - mean)) - factor.matrixLLT().diagonal().array().log().sum();
+  }
+};
+
+TEST_F(OneSpeed, DiscriminationIsWhatSimulatedRecordsShow) {
+  // Records made by the machine itself under a, numbers and noise drawn. exp(-d'²/8) is the mean of sqrt(p_b / p_a) over
+  // them (Kailath). Noise is that of a cheap instrument: the mean of a very small number would need very many records.
+  for (const bool any_power : {false, true}) {
+    const SearchResult result = any_power ? constant_or_of_any_power() : constant_or_of_speed();
+    const NoiseModel kelvin{20.0, 10.0, 240.0}, metres{2e-4, 0.0, 0.0};
+    MeasuredRun run = runs_.front();
+    run.name = "levels";
+    run.cyclogram = {"levels", {{1800.0, {.speed_rpm = 600.0}}, {1800.0, {.speed_rpm = 2000.0}}, {1800.0, {}}}};
+    run.time_s.resize(91);
+    for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(91);
+    set_grid(run);
+    const std::vector<MeasuredRun> runs = {run};
+    Fitter ahead(*twin_, runs, scatter(*twin_), {});
+    ahead.set_noise({{"t_head", kelvin}, {"nose", metres}});
+    ahead.settle(result.hypothesis, result.fit);
+    Twin::Workspace workspace(*twin_);
+    const Finding::Alternative& other = result.findings[0].alternatives[0];
+    const Explanation truth{result.hypothesis, result.fit.x, result.fit.covariance};
+    const Outlook a = outlook(ahead, truth, workspace),
+                  b = outlook(ahead, {{other.claim}, other.fit.x, other.fit.covariance}, workspace);
+    const double d = discrimination(a, b);
+    EXPECT_NEAR(discrimination(b, a), d, 1e-9 * d);
+
+    const Dense says_a(a), says_b(b);
+    constexpr int kDraws = 3000;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    const Eigen::MatrixXd lower = truth.covariance.llt().matrixL();
+    Eigen::VectorXd roots(kDraws);
+    for (double& root : roots) {
+      Eigen::VectorXd x = truth.x;
+      for (Eigen::Index i = 0; i < x.size(); ++i) x += normal(random) * lower.col(i);
+      Prediction p = ahead.predict(truth.hypothesis, x, workspace);
+      const double kept = std::exp(-60.0 / kelvin.time_s);
+      double slow_K = kelvin.correlated * normal(random);
+      for (Eigen::Index t = 0; t < p[0].cols(); ++t) {
+        p[0](0, t) += kelvin.white * normal(random) + slow_K;
+        p[0](1, t) += metres.white * normal(random);
+        slow_K = kept * slow_K + std::sqrt(1.0 - kept * kept) * kelvin.correlated * normal(random);
+      }
+      const Eigen::VectorXd y = ahead.comparison().whitened(p);
+      root = std::exp(0.5 * (says_b.log_density(y) - says_a.log_density(y)));
+    }
+    const double shown = roots.mean(), error = std::sqrt((roots.array() - shown).square().sum() / (kDraws - 1) / kDraws);
+    EXPECT_NEAR(shown, std::exp(-d * d / 8.0), 3.0 * error) << "any power: " << any_power << ", d' " << d;
+    EXPECT_GT(d, 0.7);              // something to see,
+    EXPECT_LT(error, 0.1 * shown);  // and records enough
+  }
+}
+
+TEST_F(OneSpeed, WhatSaysLittleIsTriedByWhatTheOtherOneIsSureOf) {
+  // Of the free exponent nothing is known: as much heat at each speed is within what it may be, and the means are not far
+  // apart for it.
+  const SearchResult result = constant_or_of_any_power();
+  const auto e = propose_experiment(*fitter_, result);
+  ASSERT_TRUE(e);
+  EXPECT_GT(e->discrimination, 2.0);
+  const Check check = checked(result, e->cyclogram, 20);
+  RecordProperty("told_of_40", check.n_told);
+  EXPECT_GE(check.n_told, 29);  // 32 of 40
+  EXPECT_LE(check.n_told, 36);  // some draws of the free exponent are close to no exponent at all: those stay open
+}
+
+TEST_F(OneSpeed, NoSteadyRecordTellsMoreThanItsNoiseAndPriorsLet) {
+  const SearchResult result = constant_or_of_speed();
+  const Finding::Alternative& other = result.findings[0].alternatives[0];
+  Fitter ahead(*twin_, runs_, scatter(*twin_), {});  // the record again
+  ahead.set_noise(fitter_->noise());
+  ahead.settle(result.hypothesis, result.fit);
+  Twin::Workspace workspace(*twin_);
+  EXPECT_LT(discrimination(outlook(ahead, {result.hypothesis, result.fit.x, result.fit.covariance}, workspace),
+                           outlook(ahead, {{other.claim}, other.fit.x, other.fit.covariance}, workspace)),
+            1.0);
+}
+
+TEST_F(OneSpeed, WhatHappenedOnceNeedsItToHappenAgain) {
+  const Claim shift = claim("mount_shift", "nose", "step, in monday"), stop = claim("missing_stop", "spindle", "in monday");
+  const SearchResult result = two_ways(shift, Eigen::Vector2d(4.0, 7200.0), stop, Eigen::Vector2d(8.0, 7200.0));
+  const auto e = propose_experiment(*fitter_, result);
+  ASSERT_TRUE(e);
+  EXPECT_EQ(e->discrimination, 0.0);
+  EXPECT_EQ(e->cyclogram.name, "monday");
+  EXPECT_EQ(e->n_simulated, 0);
+  EXPECT_THAT(e->why, HasSubstr("in one record only"));
+}
+
+TEST_F(OneSpeed, NoisierChannelsTellLess) {
+  const SearchResult result = constant_or_of_speed();
+  const auto sharp = propose_experiment(*fitter_, result);
+  fitter_->set_noise({{"t_head", {60.0, 30.0, 240.0}}, {"nose", {4e-4, 0.0, 0.0}}});
+  const auto blunt = propose_experiment(*fitter_, result);
+  ASSERT_TRUE(sharp && blunt);
+  const double ratio = blunt->discrimination / sharp->discrimination;
+  RecordProperty("ratio", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.5);  // 1000 times the noise
+}
+
+TEST(ExperimentFamily, StaysWithinWhatTheRunsHad) {
+  MeasuredRun run;
+  run.cyclogram = {"a", {{600.0, {.speed_rpm = 800.0, .feed_m_s = {0.1, 0.0, 0.2}}}, {600.0, {.speed_rpm = 300.0}}}};
+  bool moves = false;
+  for (const Cyclogram& c : experiment_family({run})) {
+    EXPECT_DOUBLE_EQ(c.duration_s(), 6.0 * 3600.0) << c.name;
+    for (const auto& s : c.sections) {
+      EXPECT_LE(s.drive.speed_rpm, 800.0) << c.name;
+      EXPECT_LE(s.drive.feed_m_s[0], 0.1) << c.name;
+      EXPECT_EQ(s.drive.feed_m_s[1], 0.0) << c.name;
+      EXPECT_LE(s.drive.feed_m_s[2], 0.2) << c.name;
+      moves = moves || s.drive.feed_m_s[2] > 0.0;
+    }
+  }
+  EXPECT_TRUE(moves);
+  run.cyclogram = {"a", {{600.0, {}}}};
+  const std::vector<Cyclogram> still = experiment_family({run});
+  ASSERT_EQ(still.size(), 1u);  // it never turned: nothing says how fast it may
+  EXPECT_EQ(still[0].sections[0].drive, Drive{});
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis::experiment_test

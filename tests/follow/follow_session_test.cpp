@@ -1,0 +1,403 @@
+// A stream as it is followed: the numbers that were judged, whatever happens to rows, and a restart that changes nothing.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.hpp"
+#include "base/file_bytes.hpp"
+#include "base/random.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "follow/axis_probing.hpp"
+#include "follow/followed_predictor.hpp"
+#include "follow/session.hpp"
+#include "follow/state_file.hpp"
+#include "output/predictor_file.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::follow::follow_session_test {
+namespace {
+
+using namespace compensation;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+output::PredictorFile formula(bool from_start) {
+  output::DeployedModel model = fixtures::deployed(from_start, 60.0);
+  output::PredictorFile file;
+  DeployedPredictor& d = file.predictor;
+  d.name = "regression with lags";
+  d.target = "drift_y";
+  d.from_start = from_start;
+  d.sensors = {"X1", "X2", "X3", "X4"};
+  d.fail_safe = std::move(model.safe);
+  d.predictor = std::make_shared<FormulaPredictor>(std::move(model.model));
+  d.interval_um = model.interval_um;
+  file.judged = {{"verdict", "safe within limits"}};
+  return file;
+}
+
+std::string path_of(const output::PredictorFile& file, const std::string& name = "model.json") {
+  return driftwright::write_file(name, output::predictor_json(file, {"1", "a test"}).dump());
+}
+
+Session session_of(const std::string& path) {
+  std::vector<Session::Model> models;
+  models.push_back({path, content_hash(read_bytes(path)), followed_predictor(path, {})});
+  return Session(std::move(models));
+}
+
+StreamRow row_of(const Record& r, std::size_t i) {
+  StreamRow row{.time_s = r.time_s[i], .values = {}};
+  for (const Channel& c : r.channels) row.values.push_back(c.values[i]);
+  return row;
+}
+
+TEST(FollowSession, GivesTheCorrectionThatWasJudged) {
+  const Record r = fixtures::machine(7, 60.0);
+  const output::PredictorFile file = formula(true);
+  const GuardedCorrection judged = correct(file.predictor, {.cyclogram = {}, .ambient = {}, .readings = r});
+  Session session = session_of(path_of(file));
+  session.begin(r.channels);
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    const FollowLine line = session.take(row_of(r, i));
+    ASSERT_EQ(line.axes.size(), 1u);
+    EXPECT_EQ(line.axes[0].predicted_um, judged.correction_um[i]);
+    if (i > 5) {  // once the axis is there
+      EXPECT_NEAR(line.axes[0].correction_um, judged.correction_um[i], 1e-9) << i;
+    }
+    EXPECT_EQ(line.axes[0].trust, judged.trust[i]);
+    EXPECT_EQ(line.run_s, r.time_s[i] - r.time_s[0]);
+    EXPECT_EQ(line.axes[0].verdict, "safe within limits");
+  }
+}
+
+TEST(FollowSession, DoesNotFollowWhatValidateCallsUnsafe) {
+  output::PredictorFile file = formula(true);
+  file.judged = {{"verdict", "unsafe"}, {"why", "a sensor that drifts leaves 40 um"}};
+  const std::string path = path_of(file, "unsafe.json");
+  EXPECT_THAT([&] { (void)followed_predictor(path, {}); },
+              ::testing::ThrowsMessage<InputError>(
+                  ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr("a sensor that drifts leaves 40 um"),
+                                   ::testing::HasSubstr("--despite-verdict"))));
+  EXPECT_NO_THROW((void)followed_predictor(path, {.despite_verdict = true}));
+}
+
+TEST(FollowSession, ARestartChangesNothing) {
+  const Record r = fixtures::machine(7, 60.0);
+  const std::string path = path_of(formula(true));
+  const std::filesystem::path state = temporary_folder() / "axis.state";
+  Session whole = session_of(path), first = session_of(path);
+  whole.begin(r.channels);
+  first.begin(r.channels);
+  for (std::size_t i = 0; i < 140; ++i) EXPECT_EQ(line_text(whole.take(row_of(r, i))), line_text(first.take(row_of(r, i))));
+  write_state(state, first);
+  Session second = session_of(path);
+  second.begin(r.channels);
+  EXPECT_TRUE(resume_from(state, second));
+  for (std::size_t i = 140; i < r.n_samples(); ++i)
+    EXPECT_EQ(line_text(whole.take(row_of(r, i))), line_text(second.take(row_of(r, i)))) << i;
+  EXPECT_FALSE(resume_from(temporary_folder() / "none.state", second));
+}
+
+TEST(FollowSession, AStateOfAnotherModelOrADamagedOneIsRefused) {
+  const Record r = fixtures::machine(7, 60.0);
+  const std::string path = path_of(formula(true));
+  const std::filesystem::path state = temporary_folder() / "axis.state";
+  Session session = session_of(path);
+  session.begin(r.channels);
+  (void)session.take(row_of(r, 0));
+  write_state(state, session);
+  output::PredictorFile changed = formula(true);
+  changed.predictor.reason = "another fit";
+  Session other = session_of(path_of(changed, "other.json"));
+  other.begin(r.channels);
+  EXPECT_THAT([&] { (void)resume_from(state, other); }, ThrowsMessage<InputError>(HasSubstr("is not the file")));
+  Session narrow = session_of(path);
+  narrow.begin({r.channels.begin(), r.channels.end()});
+  std::string text = read_bytes(state);
+  text.replace(text.find("\"run_s\""), 7, "\"run_t\"");
+  driftwright::write_file("axis.state", text);
+  EXPECT_THAT([&] { (void)resume_from(state, narrow); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("axis.state"), HasSubstr("damaged"))));
+}
+
+TEST(FollowSession, SaysThatItIsHeldOrOffAndWhy) {
+  const Record r = fixtures::machine(7, 60.0);
+  Session session = session_of(path_of(formula(false)));
+  session.begin(r.channels);
+  FollowLine line;
+  for (std::size_t i = 0; i < 100; ++i) line = session.take(row_of(r, i));
+  EXPECT_EQ(line.state, "on");
+  const double before_um = line.axes[0].correction_um;
+  line = session.take(row_of(r, 99));
+  EXPECT_EQ(line.state, "held");
+  EXPECT_THAT(line.faults, ElementsAre("doubled"));
+  EXPECT_EQ(line.axes[0].correction_um, before_um);
+  line = session.pass_over("no row at all");
+  EXPECT_EQ(line.state, "held");
+  EXPECT_EQ(line.why, "no row at all");
+  EXPECT_EQ(line.axes[0].correction_um, before_um);
+  line = session.wait(1200.0);
+  EXPECT_EQ(line.state, "reduced");
+  EXPECT_THAT(line.why, HasSubstr("no row for 1200 s"));
+  EXPECT_LT(std::abs(line.axes[0].correction_um), std::abs(before_um));
+  line = session.wait(10800.0);
+  EXPECT_EQ(line.state, "off");
+}
+
+TEST(FollowSession, AStreamThatLacksWhatTheModelReadsIsRefused) {
+  Record r = fixtures::machine(7, 60.0);
+  Session session = session_of(path_of(formula(false)));
+  std::vector<Channel> channels = r.channels;
+  channels[1].unit = "K";
+  EXPECT_THAT([&] { session.begin(channels); }, ThrowsMessage<InputError>(HasSubstr("which the stream has in K")));
+  channels.erase(channels.begin() + 1);
+  EXPECT_THAT([&] { session.begin(channels); }, ThrowsMessage<InputError>(HasSubstr("which the stream does not have")));
+  std::vector<Session::Model> twice;
+  const std::string path = path_of(formula(false));
+  for (int k = 0; k < 2; ++k) twice.push_back({path, "", followed_predictor(path, {})});
+  EXPECT_THAT([&] { (void)Session(std::move(twice)); }, ThrowsMessage<InputError>(HasSubstr("corrected by another model")));
+}
+
+// Rows late, doubled, swapped, missing, with holes and impossible values, clocks that are set, for some thousand rows: no
+// correction is other than a number within the clamp, and none moves faster than the slew limit.
+TEST(FollowSession, NoCorrectionStepsWhateverTheRowsAre) {
+  const output::PredictorFile file = formula(false);
+  const FailSafe& safe = *file.predictor.fail_safe;
+  const std::string path = path_of(file);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed, 23);
+    const Record r = fixtures::machine(seed, 60.0);
+    Session session = session_of(path);
+    session.begin(r.channels);
+    double clock_s = 1e6 * random.uniform(), last_um = 0.0, run_s = 0.0;
+    std::vector<StreamRow> late;
+    for (std::size_t i = 0; i < r.n_samples(); ++i) {
+      StreamRow row = row_of(r, i);
+      row.time_s += clock_s;
+      if (random.chance(0.1))
+        row.values[static_cast<std::size_t>(random.below(5))] = random.chance(0.5) ? NAN : 1e9 * random.normal();
+      if (random.chance(0.01)) clock_s += 1e5 * random.normal();
+      if (random.chance(0.05)) continue;
+      std::vector<StreamRow> now = {row};
+      if (random.chance(0.05)) now.push_back(row);
+      if (random.chance(0.05)) {
+        late.push_back(row);
+        now.clear();
+      } else if (!late.empty() && random.chance(0.5)) {
+        now.push_back(late.back());
+        late.pop_back();
+      }
+      for (StreamRow& one : now) {
+        const FollowLine line = random.chance(0.02) ? session.pass_over("noise") : session.take(std::move(one));
+        const double um = line.axes[0].correction_um, step_s = line.run_s ? *line.run_s - run_s : 0.0;
+        run_s = line.run_s.value_or(run_s);
+        ASSERT_TRUE(std::isfinite(um));
+        ASSERT_GE(um, safe.lowest_um - 1e-9);
+        ASSERT_LE(um, safe.highest_um + 1e-9);
+        ASSERT_LE(std::abs(um - last_um), safe.most_rate_um_s * std::max(step_s, 0.0) + 1e-9) << seed << " " << i;
+        last_um = um;
+      }
+    }
+    EXPECT_GT(session.faults()[static_cast<std::size_t>(Fault::kDoubled)], 0);
+  }
+}
+
+/// 2 um/K (T - 20): 10 um at 25 degC. The drift does not count from the start.
+output::PredictorFile two_um_per_K() {
+  output::PredictorFile file;
+  DeployedPredictor& d = file.predictor;
+  d.name = "by hand";
+  d.target = "drift_y";
+  d.sensors = {"T"};
+  d.predictor =
+      std::make_shared<FormulaPredictor>(DriftModel{.kind = "by hand",
+                                                    .target = "drift_y",
+                                                    .target_unit = "um",
+                                                    .intercept = -40.0,
+                                                    .terms = {{.input = "T", .unit = "degC", .coefficient = 2.0}}});
+  FailSafe safe;
+  safe.guards = {{.input = "T", .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}}};
+  safe.lowest_um = -100;
+  safe.highest_um = 100;
+  safe.most_rate_um_s = 2.0;
+  safe.period_s = 60.0;
+  safe.stale_s = 300.0;
+  safe.fade_s = 600.0;
+  d.fail_safe = safe;
+  d.interval_um = 12.0;
+  d.residual = ResidualProcess{5.0, 7200.0, 0.1};
+  d.probe = {0.5, 0.0};
+  file.judged = {{"verdict", "safe within limits"}};
+  return file;
+}
+
+Session probed_session(const FollowOptions& options = {}, const std::string& column = "probe_drift_y",
+                       const output::PredictorFile& file = two_um_per_K()) {
+  const std::string path = path_of(file, "probed.json");
+  std::vector<Session::Model> models;
+  models.push_back({path, content_hash(read_bytes(path)), followed_predictor(path, options)});
+  Session session(std::move(models));
+  session.begin({{"T", "degC", {}}, {column, "um", {}}});
+  return session;
+}
+
+/// A row each minute at 25 degC.
+FollowLine minute(Session& session, int k, double probed_um = NAN) {
+  return session.take({.time_s = 60.0 * k, .values = {25.0, probed_um}});
+}
+
+// The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found fades with the
+// time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`.
+TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
+  Session session = probed_session();
+  FollowLine line;
+  for (int k = 0; k < 30; ++k) line = minute(session, k);
+  EXPECT_NEAR(line.axes[0].correction_um, 10.0, 1e-9);
+  ASSERT_TRUE(line.axes[0].probing);
+  EXPECT_FALSE(line.axes[0].probing->answer);
+  EXPECT_NEAR(*line.axes[0].interval_um, 12.0, 1e-9);
+  line = minute(session, 30, 19.3);
+  const double gain = 25.0 / 25.25;
+  ASSERT_TRUE(line.axes[0].probing->answer);
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  EXPECT_NEAR(line.axes[0].probing->answer->off_um, 9.3, 1e-9);
+  EXPECT_NEAR(line.axes[0].probing->answer->bound_um, 4.0 * std::sqrt(25.25), 1e-9);
+  EXPECT_NEAR(line.axes[0].correction_um, 10.0 + gain * 9.3, 1e-9);
+  EXPECT_LT(std::abs(19.0 - line.axes[0].correction_um), 0.5);
+  EXPECT_EQ(line.axes[0].predicted_um, 10.0);
+  EXPECT_THAT(line_text(line), AllOf(HasSubstr("probing taken: it is 9.3 um from what is expected (4 sigmas are 20.1 um)"),
+                                     HasSubstr(R"("interval_95_um_in":{"15 min":)")));
+  const auto half_um = [&](double after_s) {
+    const double kept = std::exp(-after_s / 7200.0);
+    return 12.0 / 5.0 * std::sqrt(kept * kept * gain * 0.25 + (1.0 - kept * kept) * 25.0);
+  };
+  EXPECT_NEAR(line.axes[0].probing->answer->intervals_um[1].second, half_um(3600.0), 1e-9);
+  for (int k = 0; k < 600; ++k) {
+    if (k > 0) line = minute(session, 30 + k);
+    ASSERT_NEAR(line.axes[0].correction_um, 10.0 + gain * 9.3 * std::exp(-60.0 * k / 7200.0), 1e-9) << k;
+    ASSERT_NEAR(*line.axes[0].interval_um, half_um(60.0 * k), 1e-9) << k;
+    EXPECT_EQ(line.axes[0].probing->answer.has_value(), k == 0);
+  }
+  EXPECT_NEAR(*line.axes[0].interval_um, 12.0, 0.01);
+}
+
+// What a probe reads on the corrected axis is the drift minus the correction that was in force, also with a lag and while the axis
+// is on its way.
+TEST(FollowProbing, WhatIsLeftOnTheCorrectedAxisIsTheSameNews) {
+  for (const double lag_s : {0.0, 90.0}) {
+    const FollowOptions options{.most_rate_um_s = 0.05, .probe_lag_s = lag_s};
+    Session by_drift = probed_session(options), by_left = probed_session(options, "probe_left_drift_y");
+    std::vector<double> in_force_um = {0.0};  // after each minute
+    for (int k = 0; k < 200; ++k) {
+      const bool is_probed = k == 3 || k == 40 || k == 41;
+      // touched one and a half minutes ago, between the answers to the rows k - 2 and k - 1
+      const double at_touch_um = in_force_um[in_force_um.size() - (lag_s == 0.0 || k < 2 ? 1 : 2)];
+      const FollowLine a = minute(by_drift, k, is_probed ? 14.0 : NAN);
+      const FollowLine b = minute(by_left, k, is_probed ? 14.0 - at_touch_um : NAN);
+      ASSERT_NEAR(a.axes[0].correction_um, b.axes[0].correction_um, 1e-9) << k << " " << lag_s;
+      in_force_um.push_back(a.axes[0].correction_um);
+    }
+  }
+}
+
+TEST(FollowProbing, AChipIsRefusedAndAConfirmedJumpTaken) {
+  Session session = probed_session(), untouched = probed_session();
+  FollowLine line;
+  const auto both = [&](int k, double um) {
+    line = minute(session, k, um);
+    return std::abs(line.axes[0].correction_um - minute(untouched, k).axes[0].correction_um);
+  };
+  for (int k = 0; k < 30; ++k) (void)both(k, NAN);
+  EXPECT_EQ(both(30, 50.0), 0.0);
+  EXPECT_FALSE(line.axes[0].probing->answer->is_taken);
+  EXPECT_THAT(
+      line_text(line),
+      AllOf(HasSubstr("probing refused: it is 40.0 um from what is expected (4 sigmas are 20.1 um); measured another tool, "
+                      "chips, or the machine was touched? Probe again"),
+            HasSubstr(R"("refused":1,"is_taken":false)")));
+  EXPECT_EQ(both(31, -40.0), 0.0);  // another chip
+  EXPECT_LT(both(32, 10.5), 0.6);   // as expected
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  (void)both(33, 50.0);
+  EXPECT_FALSE(line.axes[0].probing->answer->is_taken);
+  (void)both(34, 51.0);
+  EXPECT_TRUE(line.axes[0].probing->answer->is_taken);
+  EXPECT_THAT(line.axes[0].probing->answer->words, HasSubstr("taken as a jump of the axis"));
+  EXPECT_NEAR(line.axes[0].correction_um, 50.5, 0.5);
+  for (int k = 35; k < 635; ++k) line = minute(session, k);
+  EXPECT_NEAR(line.axes[0].correction_um, 50.5, 1.0);  // 5 time constants later; an axis that was knocked stays there
+  EXPECT_EQ(line.axes[0].probing->n_refused, 3);
+}
+
+TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
+  Session session = probed_session({.tolerance_um = 10.0});
+  EXPECT_THAT(line_text(minute(session, 0)),
+              HasSubstr("probe now: the interval of 12.0 um passes half of the tolerance of 10 um"));
+  FollowLine line = minute(session, 1, 12.0);
+  int n_minutes = 0;
+  for (; line.axes[0].probing->probe_now.empty() && n_minutes < 1000; ++n_minutes) line = minute(session, 2 + n_minutes);
+  // 12/5 sqrt(k² p + (1 - k²) 25) = 5 with k = exp(-t / 2 h)
+  const double p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2);
+  EXPECT_EQ(n_minutes, std::ceil(-0.5 * 120.0 * std::log((25.0 - um2) / (25.0 - p))));
+}
+
+TEST(FollowProbing, ARestartChangesNothing) {
+  const std::filesystem::path state = temporary_folder() / "probed.state";
+  Session whole = probed_session({.probe_lag_s = 100.0}), first = probed_session({.probe_lag_s = 100.0});
+  const auto probed_um = [](int k) { return k == 20 ? 13.0 : k == 59 || k == 60 ? 48.0 : NAN; };
+  for (int k = 0; k < 60; ++k)
+    EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(first, k, probed_um(k))));
+  write_state(state, first);  // between two probings that agree
+  Session second = probed_session({.probe_lag_s = 100.0});
+  EXPECT_TRUE(resume_from(state, second));
+  for (int k = 60; k < 100; ++k)
+    EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(second, k, probed_um(k)))) << k;
+}
+
+TEST(FollowProbing, AProbingInARowThatIsPassedOverIsSaid) {
+  Session session = probed_session();
+  for (int k = 0; k < 10; ++k) (void)minute(session, k);
+  const FollowLine line = minute(session, 8, 12.0);
+  EXPECT_EQ(line.state, "held");
+  EXPECT_EQ(line.why, "the row is passed over: late; its probing was not used, probe again");
+  EXPECT_EQ(line.axes[0].probing->residual_um, 0.0);
+}
+
+TEST(FollowProbing, WhatCannotBeTakenIsRefused) {
+  const auto begun = [](std::vector<Channel> channels, const output::PredictorFile& file) {
+    channels.insert(channels.begin(), {"T", "degC", {}});
+    const std::string path = path_of(file, "probed.json");
+    std::vector<Session::Model> models;
+    models.push_back({path, "", followed_predictor(path, {})});
+    Session session(std::move(models));
+    session.begin(channels);
+  };
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_z", "um", {}}}, two_um_per_K());
+      },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_z_um'"), HasSubstr("Corrected here: drift_y"))));
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_y", "um", {}}, {"probe_left_drift_y", "um", {}}}, two_um_per_K());
+      },
+      ThrowsMessage<InputError>(HasSubstr("only one of them is allowed")));
+  output::PredictorFile file = two_um_per_K();
+  file.predictor.residual.reset();
+  EXPECT_THAT(
+      [&] {
+        begun({{"probe_drift_y", "um", {}}}, file);
+      },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_y_um'"), HasSubstr("key `probing`"))));
+  EXPECT_NO_THROW(begun({{"probe_1", "degC", {}}}, file));  // a thermometer
+}
+
+}  // namespace
+}  // namespace driftwright::follow::follow_session_test

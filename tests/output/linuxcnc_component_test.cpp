@@ -1,0 +1,440 @@
+// Tests the component for LinuxCNC: its C body with substitutes for HAL, compared with closed forms, and, if halcompile is
+// installed, halcompile itself.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "compensation/control/control_files.hpp"
+#include "output/drift_model_c.hpp"
+#include "tests/shared/deployed_model.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::output::linuxcnc_component_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Exports of a model into a folder, as `validate` writes them.
+std::filesystem::path exported(const std::string& folder_name, const DeployedModel& d) {
+  std::filesystem::path folder = fresh_folder(folder_name);
+  std::ofstream(folder / "model.c") << c_function(d, "a test");
+  std::ofstream(folder / "model_axis.comp") << linuxcnc_component(d, "model_axis", "model.c", "a test");
+  for (const compensation::ControlFile& file : compensation::control_files())
+    std::ofstream(folder / file.name, std::ios::binary) << file.text;
+  return folder;
+}
+
+/// A component with plain C in place of HAL: `pin`, `param`, `variable` and `include` as halcompile's manual has them.
+class Component {
+ public:
+  explicit Component(const std::filesystem::path& folder, const std::string& file = "model_axis.comp") : folder_(folder) {
+    const std::string all = read_text(folder / file);
+    const std::size_t cut = all.find("\n;;\n");
+    EXPECT_NE(cut, std::string::npos);
+    std::string text = std::regex_replace(all.substr(0, cut), std::regex("\"\"\"[^]*?\"\"\""), "\"\"");
+    const std::map<std::string, std::string> types = {
+        {"float", "volatile double"}, {"bit", "volatile unsigned char"}, {"signed", "volatile int"}};
+    std::string includes, fields, macros, starts, reads, writes;
+    const std::regex item(R"re((pin|param) (in|out|rw) (float|bit|signed) (\w+)(?: = (\S+))? "[^"\n]*";)re");
+    for (std::sregex_iterator it(text.begin(), text.end(), item), end; it != end; ++it) {
+      const std::string kind = (*it)[1], direction = (*it)[2], type = (*it)[3], name = (*it)[4], start = (*it)[5];
+      fields += fmt::format("  {} {};\n", types.at(type), name);
+      // what halcompile lets be read only cannot be written to
+      macros += fmt::format("#define {0} ({1}instance.{0})\n", name, direction == "in" ? "0 + " : "");
+      if (!start.empty()) starts += fmt::format("  instance.{} = {};\n", name, start);
+      if (direction == "out") {
+        outs_.push_back(name);
+        writes += fmt::format("    printf(\"%.17g \", (double)instance.{});\n", name);
+      } else {
+        ins_.push_back(name);
+        values_[name] = start.empty() ? 0.0 : std::stod(start);
+        reads += fmt::format("    if (scanf(\"%lf\", &value) != 1) return 1;\n    instance.{} = value;\n", name);
+      }
+    }
+    const std::regex variable(R"(variable (\w+) (\w+);)"), include(R"re(include ("[^"\n]*");)re");
+    for (std::sregex_iterator it(text.begin(), text.end(), variable), end; it != end; ++it) {
+      fields += fmt::format("  {} {};\n", (*it)[1].str(), (*it)[2].str());
+      macros += fmt::format("#define {0} (instance.{0})\n", (*it)[2].str());
+    }
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
+      includes += fmt::format("#include {}\n", (*it)[1].str());
+    std::ofstream(folder / "stand_in.c") << fmt::format(
+        "#include <stdio.h>\n{}static struct {{\n{}}} instance;\nstatic void cycle(long period);\n"
+        "int main(void) {{\n  double value;\n  long cycles, period, i;\n{}"
+        "  while (scanf(\"%ld %ld\", &cycles, &period) == 2) {{\n{}    for (i = 0; i < cycles; ++i) cycle(period);\n{}"
+        "    printf(\"\\n\");\n  }}\n  return 0;\n}}\n{}#define fperiod (period * 1e-9)\n"
+        "#define FUNCTION(name) static void cycle(long period)\n{}\n",
+        includes, fields, starts, reads, writes, macros, all.substr(cut + 4));
+    EXPECT_EQ(std::system(fmt::format("gcc -std=c99 -pedantic -Wall -Wextra -Werror -O1 -o {0}/stand_in {0}/stand_in.c -lm",
+                                      folder.string())
+                              .c_str()),
+              0);
+  }
+
+  /// Pins and parameters, as C has them.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all = ins_;
+    all.insert(all.end(), outs_.begin(), outs_.end());
+    return all;
+  }
+  /// A value of an input or parameter from now on.
+  void set(const std::string& name, double value) {
+    ASSERT_TRUE(values_.contains(name)) << name;
+    values_[name] = value;
+  }
+  /// Some cycles with what is set.
+  void cycles(int n, long period_ns) {
+    rows_ += fmt::format("{} {}", n, period_ns);
+    for (const std::string& name : ins_) rows_ += fmt::format(" {:.17g}", values_[name]);
+    rows_ += "\n";
+  }
+  /// All outputs after each call of cycles(), from the start of the component.
+  [[nodiscard]] std::vector<std::map<std::string, double>> outputs() const {
+    std::ofstream(folder_ / "rows") << rows_;
+    EXPECT_EQ(std::system(fmt::format("{0}/stand_in <{0}/rows >{0}/out", folder_.string()).c_str()), 0);
+    std::ifstream file(folder_ / "out");
+    std::vector<std::map<std::string, double>> result;
+    for (std::string line; std::getline(file, line);) {
+      std::istringstream numbers(line);
+      for (const std::string& name : outs_) {
+        if (&name == &outs_.front()) result.emplace_back();
+        std::string word;
+        numbers >> word;
+        result.back()[name] = std::stod(word);
+      }
+    }
+    return result;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> ins_, outs_;
+  std::map<std::string, double> values_;
+  std::string rows_;
+};
+
+constexpr long kCycle_ns = 1000000;  // a servo thread
+constexpr int kSecond = 1000;        // cycles
+
+/// d = 2 um/K (T - 20) and nothing that doubts it: what the axis does is the component's own.
+DeployedModel two_um_per_K() {
+  DeployedModel d;
+  d.model = {.kind = "by hand",
+             .target = "drift_y",
+             .target_unit = "um",
+             .intercept = -40.0,
+             .terms = {{.input = "T", .unit = "degC", .coefficient = 2.0}}};
+  d.safe.guards = {{.input = "T", .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}}};
+  d.safe.lowest_um = -100;
+  d.safe.highest_um = 100;
+  d.safe.most_rate_um_s = 0.5;
+  d.safe.period_s = 1.0;
+  d.safe.stale_s = 5.0;
+  d.safe.fade_s = 50.0;
+  return d;
+}
+
+/// Seconds with a heartbeat that turns over five times in each.
+void beating(Component& c, int seconds, int& heartbeat) {
+  for (int i = 0; i < 5 * seconds; ++i) {
+    heartbeat = !heartbeat;
+    c.set("heartbeat", heartbeat);
+    c.cycles(kSecond / 5, kCycle_ns);
+  }
+}
+
+// T = 30 degC: 20 um, so the axis goes to -20 um at 0.5 um/s: 40 s, and back as fast. 0.1 um a count.
+TEST(LinuxcncComponent, LeadsTheAxisThereAndBackAtTheSlewLimit) {
+  Component c(exported("there_and_back", two_um_per_K()));
+  int heartbeat = 0;
+  c.set("T_degC", 30.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  c.cycles(kSecond, kCycle_ns);  // no heartbeat yet
+  beating(c, 100, heartbeat);
+  c.set("enable", 0);
+  beating(c, 100, heartbeat);
+  const auto out = c.outputs();
+  ASSERT_EQ(out.size(), 1001u);
+  EXPECT_EQ(out[0].at("heartbeat_is_late"), 1.0);
+  EXPECT_EQ(out[0].at("correction_um"), 0.0);
+  EXPECT_EQ(out[0].at("eoffset_enable"), 0.0);
+  for (int i = 1; i <= 500; ++i) {
+    const auto& o = out[static_cast<std::size_t>(i)];
+    const double wanted_um = -std::min(20.0, 0.5 * 0.2 * i);
+    ASSERT_NEAR(o.at("axis_offset_um"), wanted_um, 1e-9) << i;
+    ASSERT_NEAR(o.at("eoffset_counts"), 10.0 * wanted_um, 0.5 + 1e-6) << i;
+    ASSERT_EQ(o.at("eoffset_enable"), 1.0);
+    ASSERT_EQ(o.at("correction_um"), 20.0) << i;
+    ASSERT_EQ(o.at("model_trust"), 1.0);
+  }
+  EXPECT_EQ(out[500].at("eoffset_counts"), -200.0);
+  EXPECT_EQ(out[500].at("eoffset_scale"), 0.1 / 1000.0);  // mm
+  for (int i = 1; i <= 500; ++i) {
+    ASSERT_NEAR(out[static_cast<std::size_t>(500 + i)].at("axis_offset_um"), -std::max(0.0, 20.0 - 0.1 * i), 1e-9) << i;
+  }
+  EXPECT_EQ(out[1000].at("axis_offset_um"), 0.0);
+  EXPECT_EQ(out[1000].at("eoffset_counts"), 0.0);
+  EXPECT_EQ(out[1000].at("eoffset_enable"), 0.0);
+}
+
+// The heartbeat stops: 2 s later the offset goes back. The readings are then no news: after 5 s more without, the sensor
+// is in doubt.
+TEST(LinuxcncComponent, GoesBackWhenTheWatchdogBites) {
+  Component c(exported("watchdog", two_um_per_K()));
+  int heartbeat = 0;
+  c.set("T_degC", 30.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  c.set("most_age_s", 2.0);
+  beating(c, 60, heartbeat);
+  for (int i = 0; i < 60; ++i) c.cycles(kSecond, kCycle_ns);  // out[300 + i]: i + 1 s and 0.2 s without a change
+  const auto out = c.outputs();
+  EXPECT_NEAR(out[299].at("axis_offset_um"), -20.0, 1e-12);
+  for (int i = 0; i < 60; ++i) {
+    const auto& o = out[static_cast<std::size_t>(300 + i)];
+    const double late_s = std::max(0.0, i + 1 + 0.2 - 2.0);
+    EXPECT_NEAR(o.at("axis_offset_um"), -std::max(0.0, 20.0 - 0.5 * late_s), 0.5 * 2e-3) << i;  // a cycle or two
+    EXPECT_EQ(o.at("heartbeat_is_late"), i >= 1) << i;
+    if (i <= 5 || i >= 8) {
+      EXPECT_EQ(o.at("doubt_T_degC"), i >= 8) << i;
+    }
+  }
+  EXPECT_EQ(out[359].at("eoffset_counts"), 0.0);
+}
+
+TEST(LinuxcncComponent, IsAtZeroWhileTheMachineIsOffAndBeginsAnewAtARestart) {
+  DeployedModel d = two_um_per_K();
+  d.model.from_start = d.safe.from_start = true;
+  d.model.intercept = 0.0;
+  d.safe.guards[0].low = -50;
+  Component c(exported("restart", d));
+  int heartbeat = 0;
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  c.set("most_rate_um_s", 5.0);
+  c.set("sign", 1.0);
+  c.set("count_um", 0.5);
+  c.set("machine_unit_um", 25400.0);
+  c.set("T_degC", 23.0);
+  beating(c, 10, heartbeat);
+  c.set("T_degC", 29.0);
+  beating(c, 60, heartbeat);  // 0.5 um/s to 12 um: the model's own slew limit
+  const std::size_t warm = 349;
+  c.set("machine_is_on", 0);
+  beating(c, 1, heartbeat);
+  c.set("machine_is_on", 1);
+  beating(c, 10, heartbeat);
+  c.set("restart", 1);
+  beating(c, 10, heartbeat);
+  const std::size_t forgotten = warm + 5 + 50 + 50;
+  c.set("restart", 0);
+  c.set("T_degC", 31.0);
+  beating(c, 10, heartbeat);
+  c.set("T_degC", 32.0);
+  beating(c, 10, heartbeat);
+  c.set("count_um", -1.0);
+  beating(c, 10, heartbeat);
+  const auto out = c.outputs();
+  EXPECT_EQ(out[49].at("correction_um"), 0.0);
+  EXPECT_EQ(out[warm].at("correction_um"), 12.0);
+  EXPECT_EQ(out[warm].at("axis_offset_um"), 12.0);
+  EXPECT_EQ(out[warm].at("eoffset_counts"), 24.0);
+  EXPECT_EQ(out[warm].at("eoffset_scale"), 0.5 / 25400.0);
+  EXPECT_EQ(out[warm + 1].at("eoffset_counts"), 0.0);
+  EXPECT_EQ(out[warm + 1].at("eoffset_enable"), 0.0);
+  EXPECT_EQ(out[warm + 1].at("correction_um"), 12.0);          // the model goes on
+  EXPECT_NEAR(out[warm + 6].at("axis_offset_um"), 1.0, 1e-9);  // 5 um/s, for 0.2 s
+  EXPECT_EQ(out[warm + 55].at("axis_offset_um"), 12.0);
+  EXPECT_EQ(out[forgotten].at("correction_um"), 0.0);
+  EXPECT_EQ(out[forgotten].at("axis_offset_um"), 0.0);
+  EXPECT_EQ(out[forgotten + 50].at("correction_um"), 0.0);  // 31 degC is the start now
+  EXPECT_EQ(out[forgotten + 100].at("correction_um"), 2.0);
+  EXPECT_EQ(out[forgotten + 150].at("setting_is_wrong"), 1.0);
+  EXPECT_EQ(out[forgotten + 150].at("eoffset_counts"), 0.0);
+}
+
+// Period by period the component's model is the exported function: here with all sorts of terms, and a sensor that falls off.
+TEST(LinuxcncComponent, StepsTheModelAsFarApartAsItWasJudgedOn) {
+  const DeployedModel d = fixtures::deployed(true, 60.0);
+  Record r = fixtures::machine(5, 60.0);
+  for (std::size_t i = 60; i < 120; ++i) r.channels[2].values[i] = 12.0;
+  r.channels[1].values[30] = NAN;
+  Component c(exported("steps", d));
+  c.set("machine_is_on", 1);
+  const compensation::Repaired repaired = compensation::repaired(d.safe, r);
+  const compensation::GuardedCorrection wanted = compensation::guarded(d.safe, repaired, d.model.predict(repaired.readings));
+  c.set("heartbeat", 0);
+  c.cycles(1, 1);
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    for (const char* name : {"X1", "X2", "X3", "X4"}) c.set(std::string(name) + "_degC", r.at(name).values[i]);
+    c.set("spindle_rpm", r.at("spindle").values[i]);
+    c.set("heartbeat", i % 2 == 0);
+    // a quarter of a second a cycle; the first cycle takes the step, the others of the minute wait
+    c.cycles(i == 0 ? 1 : 240, 250000000);
+  }
+  const auto out = c.outputs();
+  ASSERT_EQ(out.size(), r.n_samples() + 1);
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    ASSERT_EQ(out[i + 1].at("correction_um"), wanted.correction_um[i]) << i;
+    ASSERT_EQ(out[i + 1].at("model_trust"), wanted.trust[i]) << i;
+  }
+  EXPECT_EQ(out[80].at("doubt_X3_degC"), 1.0);
+}
+
+// 20 um of correction, and the axis is 8 um off: the probe reads that on the corrected axis, once for each time that the strobe
+// turns on. Then the residual fades with its time constant. A chip is refused, what is probed twice is a jump.
+TEST(LinuxcncComponent, TakesProbings) {
+  DeployedModel d = two_um_per_K();
+  d.residual = compensation::ResidualProcess{5.0, 1800.0};
+  d.probe = {0.1, 0.0};
+  Component c(exported("probed", d));
+  int heartbeat = 0;
+  c.set("T_degC", 30.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  beating(c, 60, heartbeat);
+  const auto probe = [&](double um) {
+    c.set("probe_um", um);
+    c.set("probe_strobe", 1);
+    beating(c, 1, heartbeat);
+    c.set("probe_strobe", 0);
+  };
+  probe(8.0);
+  beating(c, 599, heartbeat);
+  probe(-60.0);
+  beating(c, 9, heartbeat);
+  probe(-60.0);
+  beating(c, 199, heartbeat);
+  probe(NAN);
+  const auto out = c.outputs();
+  const double gain = 25.0 / 25.01;
+  EXPECT_EQ(out[299].at("correction_um"), 20.0);
+  EXPECT_NEAR(out[299].at("probe_sigma_um"), 5.0, 1e-9);  // nothing is known of a drift that does not count from the start
+  EXPECT_EQ(out[304].at("probe_verdict"), 1.0);
+  EXPECT_NEAR(out[304].at("probe_off_um"), 8.0, 1e-9);
+  EXPECT_NEAR(out[304].at("correction_um"), 20.0 + gain * 8.0, 0.01);  // 1 s of 1800 s
+  EXPECT_NEAR(out[304].at("probe_sigma_um"), std::sqrt(0.01 * gain + 25.0 * (1.0 - std::exp(-0.4 / 1800.0))),
+              0.003);                                                    // the step of 60.2 s
+  EXPECT_NEAR(out[350].at("axis_offset_um"), -20.0 - 0.5 * 10.2, 0.02);  // on its way, at 0.5 um/s
+  EXPECT_NEAR(out[3299].at("axis_offset_um"), -20.0 - gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_EQ(out[3304].at("probe_verdict"), 3.0);
+  EXPECT_EQ(out[3304].at("refused_probings"), 1.0);
+  EXPECT_NEAR(out[3304].at("correction_um"), 20.0 + gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_EQ(out[3354].at("probe_verdict"), 2.0);
+  EXPECT_NEAR(out[3354].at("probe_residual_um"), gain * 8.0 * std::exp(-600.0 / 1800.0) - 60.0, 0.2);
+  // the jump does not fade, what was left before it does
+  EXPECT_NEAR(out[4349].at("axis_offset_um"), -(20.0 + gain * 8.0 * std::exp(-810.0 / 1800.0) - 60.0), 0.1);
+  EXPECT_EQ(out[4354].at("probe_verdict"), 5.0);
+  EXPECT_EQ(out[4354].at("refused_probings"), 2.0);
+  EXPECT_EQ(out[4354].at("setting_is_wrong"), 0.0);
+}
+
+// HAL takes 47 characters, of which "thermal." are eight.
+TEST(LinuxcncComponent, HasPinsThatHalCanName) {
+  DeployedModel d = two_um_per_K();
+  d.model.terms.clear();
+  d.safe.guards.clear();
+  for (const char* name : {"the temperature of the outer ring of the front bearing",
+                           "the temperature of the outer ring of the rear bearing", "enable", "T a", "T-a"})
+    d.safe.guards.push_back(
+        {.input = name, .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}});
+  const Component c(exported("names", d));  // compiles
+  std::set<std::string> names;
+  for (const std::string& name : c.names()) {
+    EXPECT_LE(name.size(), 39u) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+  EXPECT_EQ(c.names().size(), 29u);  // 10 of the inputs; of any component 4 in, 8 out and 7 parameters
+  EXPECT_TRUE(names.contains("doubt_T_a_degC_2"));
+}
+
+TEST(LinuxcncComponent, NeverBearsTheNameOfTheModelsOwnFile) {
+  EXPECT_THROW((void)linuxcnc_component(two_um_per_K(), "model", "model.c", "a test"), std::logic_error);
+}
+
+/// The component that `follow` feeds, with the files that it needs beside it.
+std::filesystem::path followed_axis(const std::string& folder_name) {
+  std::filesystem::path folder = fresh_folder(folder_name);
+  for (const char* name : {"followed_axis.comp", "axis_offset.h", "axis_offset.c"})
+    std::filesystem::copy_file(std::filesystem::path("compensation/control") / name, folder / name,
+                               std::filesystem::copy_options::overwrite_existing);
+  return folder;
+}
+
+// 20 um at 0.5 um/s: there in 40 s. Then its feeder is killed: the correction stays on its pin, the heartbeat stops, and
+// 10 s later the offset goes back as fast as it came. It never moves faster, and no count is lost: 0.1 um each.
+TEST(FollowedAxis, LeadsTheOffsetBackWhenFollowIsKilled) {
+  Component c(followed_axis("killed"), "followed_axis.comp");
+  int heartbeat = 0;
+  c.set("correction_um", 20.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  c.cycles(kSecond, kCycle_ns);
+  beating(c, 50, heartbeat);
+  for (int i = 0; i < 700; ++i) c.cycles(kSecond / 10, kCycle_ns);
+  const auto out = c.outputs();
+  ASSERT_EQ(out.size(), 951u);
+  EXPECT_EQ(out[0].at("axis_offset_um"), 0.0);
+  EXPECT_NEAR(out[250].at("axis_offset_um"), -20.0, 1e-9);
+  EXPECT_EQ(out[250].at("heartbeat_is_late"), 0.0);
+  for (int i = 251; i <= 950; ++i) {
+    const auto& o = out[static_cast<std::size_t>(i)];
+    const double silent_s = 0.2 + 0.1 * (i - 250), back_um = std::max(0.0, 0.5 * (silent_s - 10.0));
+    EXPECT_NEAR(o.at("axis_offset_um"), -std::max(0.0, 20.0 - back_um), 0.5 * 0.002 + 1e-9) << i;
+    EXPECT_NEAR(o.at("eoffset_counts"), 10.0 * o.at("axis_offset_um"), 0.5 + 1e-6) << i;
+  }
+  EXPECT_EQ(out[950].at("eoffset_counts"), 0.0);
+  EXPECT_EQ(out[950].at("eoffset_enable"), 0.0);
+}
+
+TEST(FollowedAxis, WhatIsNoNumberIsNoCorrection) {
+  Component c(followed_axis("no_number"), "followed_axis.comp");
+  int heartbeat = 0;
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  c.set("correction_um", 3.0);
+  beating(c, 20, heartbeat);
+  c.set("correction_um", NAN);
+  beating(c, 20, heartbeat);
+  const auto out = c.outputs();
+  EXPECT_NEAR(out[99].at("axis_offset_um"), -3.0, 1e-9);
+  EXPECT_EQ(out.back().at("axis_offset_um"), 0.0);
+}
+
+TEST(FollowedAxis, IsTakenByHalcompile) {
+  if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
+  const std::filesystem::path folder = followed_axis("halcompile_followed");
+  for (const char* what : {"--preprocess", "--compile", "--document"}) {
+    EXPECT_EQ(
+        std::system(fmt::format("cd {} && halcompile {} followed_axis.comp >said 2>&1", folder.string(), what).c_str()), 0)
+        << what << ": " << read_text(folder / "said");
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "followed_axis.so"));
+}
+
+TEST(LinuxcncComponent, IsTakenByHalcompile) {
+  if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
+  DeployedModel d = fixtures::deployed(true, 60.0);
+  d.residual = compensation::ResidualProcess{4.0, 3600.0};
+  const std::filesystem::path folder = exported("halcompile", d);
+  const std::string model = read_text(folder / "model.c");
+  for (const char* what : {"--preprocess", "--compile", "--document"}) {
+    EXPECT_EQ(std::system(fmt::format("cd {} && halcompile {} model_axis.comp >said 2>&1", folder.string(), what).c_str()),
+              0)
+        << what << ": " << read_text(folder / "said");
+  }
+  EXPECT_THAT(read_text(folder / "model_axis.c"), HasSubstr("axis_offset_step"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "model_axis.so"));
+  EXPECT_EQ(read_text(folder / "model.c"), model);
+}
+
+}  // namespace
+}  // namespace driftwright::output::linuxcnc_component_test

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Runs every indented `driftwright` command of README and of the pages below unchanged, and checks that it prints what the page shows under it. It also runs every example in the --help of a verb. Left out are docs/start/fl_thermal.md and docs/theory/measured.md,
+whose records others published, and docs/how-to/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
+
+    documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
+
+Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what an earlier one wrote. Each line of a shown output must
+be printed. Several blanks count as one; a line that ends with "..." is the beginning of a line; "..." alone means any number of lines.
+"""
+import os, re, subprocess, sys, tempfile, time
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "shared"))
+from result_schema import errors
+
+PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
+COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
+
+
+def blocks(text):
+    """The commands of a page, as (line number, command, lines shown under it)."""
+    found, shown = [], None
+    for number, line in enumerate(text.splitlines(), 1):
+        if COMMAND.match(line):
+            shown = []
+            found.append((number, line.strip(), shown))
+        elif line.startswith("    ") and shown is not None:
+            shown.append(line.strip())
+        else:
+            shown = None
+    return found
+
+
+def plain(line):
+    return " ".join(line.split())
+
+
+def not_printed(shown, printed):
+    lines = [plain(line) for line in printed.splitlines()]
+    for line in map(plain, shown):
+        if line == "..." or line.startswith("#"):
+            continue
+        beginning = line[:-3].rstrip() if line.endswith("...") else None
+        if not any(p == line if beginning is None else p.startswith(beginning) for p in lines):
+            return line
+    return None
+
+
+def examples(program):
+    """The examples in --help, as (verb, command)."""
+    verbs = re.findall(r"^  ([a-z-]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1].split("Exit codes:")[0], re.M)
+    for verb in verbs:
+        text = subprocess.run([program, verb, "--help"], capture_output=True, text=True).stdout.split("Example:")
+        if len(text) != 2:
+            yield verb, "false  # no example"
+            continue
+        for command in re.findall(r"^  (driftwright .*)$", text[1], re.M):
+            yield verb, command
+
+
+def main():
+    program, top = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    failures = n = 0
+    done_before = set()
+    with tempfile.TemporaryDirectory(prefix="driftwright-documents-") as folder:
+        work = Path(folder)
+        (work / "scenarios").symlink_to(top / "scenarios")
+        (work / "docs").symlink_to(top / "docs")
+        (work / "driftwright").symlink_to(program)
+        env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{work}:{os.environ['PATH']}")
+        for page in sys.argv[3:] or PAGES:
+            for number, command, shown in blocks((top / page).read_text()):
+                n += 1
+                done_before.add(command.removeprefix("./").split("  #")[0].strip())
+                begun = time.monotonic()
+                done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+                missed = not_printed(shown, done.stdout) if done.returncode == 0 else None
+                print(f"{time.monotonic() - begun:6.1f} s  {page}:{number}: {command}", flush=True)
+                if done.returncode != 0 or missed:
+                    failures += 1
+                    print(f"  FAILED: {done.stderr.strip()[-400:] if done.returncode else 'not printed: ' + missed}", flush=True)
+        for verb, command in () if sys.argv[3:] else examples(program):
+            if command in done_before:
+                continue
+            n += 1
+            begun = time.monotonic()
+            done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+            print(f"{time.monotonic() - begun:6.1f} s  {verb} --help: {command}", flush=True)
+            if done.returncode != 0:
+                failures += 1
+                print(f"  FAILED: {done.stderr.strip()[-400:]}", flush=True)
+        figures = sorted(work.glob("results/*/figures/*.svg"))
+        for figure in figures:
+            try:
+                if not xml.parse(figure).getroot().get("viewBox"):
+                    raise ValueError("no viewBox")
+            except Exception as wrong:
+                failures += 1
+                print(f"  FAILED: {figure.relative_to(work)} is no SVG file: {wrong}", flush=True)
+        if not sys.argv[3:] and len(figures) < 20:
+            failures += 1
+            print(f"  FAILED: {len(figures)} figures stand beside reports", flush=True)
+        for file in [*work.rglob("diagnosis.json"), *work.rglob("calibration.json")]:
+            for error in errors(program, file):
+                failures += 1
+                print(f"  FAILED: {file.relative_to(work)}, by its schema: {error}", flush=True)
+    print(f"{n} commands, {failures} failed")
+    return 1 if failures or n < 20 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

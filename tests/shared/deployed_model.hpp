@@ -1,0 +1,60 @@
+#pragma once
+// A formula with every kind of term and its fail-safe, and records of its machine.
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/drift_model_files.hpp"
+#include "tests/shared/sensor_records.hpp"
+
+namespace driftwright::fixtures {
+
+using compensation::DriftModel;
+using compensation::FailSafe;
+using output::DeployedModel;
+
+/// Four correlated thermometers and a speed; one row per `period_s`.
+inline Record machine(std::uint64_t seed, double period_s) {
+  Record r = sensor_record(seed, 300, 4, 0.02, 0.1);
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    r.channels[2].values[i] =
+        0.5 * (r.channels[0].values[i] + r.channels[1].values[i]) + 0.01 * std::sin(5.0 * static_cast<double>(i));
+    r.channels[3].values[i] = r.channels[0].values[i] + 0.01 * std::cos(7.0 * static_cast<double>(i));
+    r.time_s[i] = 100.0 + period_s * static_cast<double>(i);
+  }
+  Random random(seed, 2);
+  double speed = 0.0;
+  r.channels.push_back({"spindle", "rpm", {}});
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    if (random.chance(0.05)) speed = std::max(0.0, 4000.0 * random.uniform() - 1000.0);  // sometimes at rest
+    r.channels.back().values.push_back(speed);
+  }
+  return r;
+}
+
+inline DeployedModel deployed(bool from_start, double period_s) {
+  DeployedModel d;
+  d.model = {.kind = "regression with lags",
+             .target = "drift_y",
+             .target_unit = "um",
+             .intercept = 1.0 / 3.0,
+             .terms = {{.input = "X3", .unit = "degC", .coefficient = -0.7},  // not in the order of the guards
+                       {.input = "X1", .unit = "degC", .coefficient = 1.1},
+                       {.input = "X1", .unit = "degC", .coefficient = 2.3, .lag_s = 13.0 * period_s},
+                       {.input = "X2", .unit = "degC", .coefficient = 0.02, .power = 2},
+                       {.input = "X2", .unit = "degC", .coefficient = 0.01, .power = 2, .lag_s = 31.0 * period_s},
+                       {.input = "X4", .unit = "degC", .coefficient = 0.9},
+                       {.input = "spindle", .unit = "rpm", .coefficient = 1e-6, .power = 2, .lag_s = 20.0 * period_s},
+                       {.input = "spindle", .unit = "rpm", .coefficient = 2e-4},
+                       {.input = "spindle", .unit = "rpm", .coefficient = 3.0, .lag_s = 9.0 * period_s, .is_running = true},
+                       {.input = "spindle", .unit = "rpm", .coefficient = 0.4, .is_running = true}},
+             .from_start = from_start};
+  const std::vector<Record> training = {machine(1, period_s), machine(2, period_s)};
+  std::vector<std::vector<double>> predicted;
+  for (const Record& r : training) predicted.push_back(d.model.predict(r));
+  d.safe = compensation::learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, from_start);
+  d.interval_um = 2.0 / 7.0;
+  return d;
+}
+
+}  // namespace driftwright::fixtures

@@ -1,0 +1,119 @@
+#pragma once
+// Lumped machines and noisy records of them, for tests of a diagnosis.
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "base/random.hpp"
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/extended_scenario.hpp"
+#include "machine/as_recorded.hpp"
+#include "machine/driven_before.hpp"
+#include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "solver/transient.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::diagnosis {
+
+/// Two lumped bodies, their thermometers, an indicator, and three records of 3 to 5 h.
+inline constexpr const char* kTwoNodes = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: link, node: head, to: ambient, conductance: 4 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_head, node: head}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+  friday: [[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]
+solver: {output_interval: 1 min}
+)";
+
+/// A scenario's text with one more effect, before its key `ambient`.
+inline std::string with_effect(std::string text, const std::string& entry) {
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
+  return text;
+}
+
+/// Records of all cyclograms of a scenario, by the full model, with noise, as files.
+inline std::vector<std::string> noisy_records(const std::string& scenario, const std::string& prefix, double row_s,
+                                              double noise_K, double noise_um, std::uint64_t seed = 5) {
+  const scenarios::Scenario s = scenarios::read_scenario(scenario);
+  const scenarios::MachineModel& model = *s.machine;
+  const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
+  const solver::TransientOptions exact{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
+  Random random(seed, 0);
+  std::vector<std::string> paths;
+  for (const Cyclogram& c : s.cyclograms) {
+    const scenarios::FeltRun felt = scenarios::felt_run(model, c);
+    Record r = scenarios::as_recorded(
+        model,
+        solver::simulate(
+            machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, row_s), exact,
+            scenarios::after_what_was_before(machine.system, felt, exact, scenarios::start_state(model, machine))),
+        machine.system.outputs, c);
+    for (Channel& channel : r.channels) {
+      const double noise = channel.unit == "degC" && channel.name != "ambient" ? noise_K
+                           : channel.unit == "um"                              ? noise_um
+                                                                               : 0.0;
+      for (double& v : channel.values) v += noise * random.normal();
+    }
+    paths.push_back(write_file(prefix + c.name + ".csv", record_csv(r)));
+  }
+  return paths;
+}
+
+/// A scenario's twin with records.
+struct Beside {
+  scenarios::Scenario scenario;
+  std::vector<MeasuredRun> runs;
+  AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+
+  Beside(const std::string& path, const std::vector<std::string>& records) : scenario(scenarios::read_scenario(path)) {
+    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
+    const solver::Outputs names = scenarios::output_names(*scenario.machine, placed);
+    for (const std::string& r : records) runs.push_back(read_measured(r, *scenario.machine, names));
+    augmented = augment(scenario, placed.mesh, runs);
+    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
+                                augmented.plan);
+    twin.emplace(augmented, machine, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
+  }
+  Beside(const Beside&) = delete;  // the twin refers to its parts
+  Beside& operator=(const Beside&) = delete;
+  [[nodiscard]] Diagnosis diagnosed(int most_effects = 3) const {
+    DiagnosisOptions how;
+    how.most_effects = most_effects;
+    return diagnose(*twin, nullptr, runs, how);
+  }
+};
+
+/// Writes the first cause of a diagnosis into the scenario and diagnoses the records with that file: nothing must be
+/// found any more.
+inline void expect_written_is_found_no_more(const Beside& beside, const Diagnosis& d,
+                                            const std::vector<std::string>& records) {
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_TRUE(extended.not_written.empty());
+  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
+  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+}
+
+}  // namespace driftwright::diagnosis
