@@ -147,8 +147,8 @@ Readings present_readings(const std::vector<double>& time_s, const std::vector<d
 
 /// The resolution of a thermometer; 0: none, or not visible, as for a constant temperature.
 double seen_step(const std::vector<double>& value) {
-  constexpr std::size_t kFewest = 3;
-  return std::set<double>(value.begin(), value.end()).size() < kFewest ? 0.0 : quantum_of(value);
+  constexpr std::size_t kFewestValues = 3;
+  return std::set<double>(value.begin(), value.end()).size() < kFewestValues ? 0.0 : quantum_of(value);
 }
 
 /// A recorded ambient without its noise, but with its whole course: the knots are as far apart as the missed part is
