@@ -24,7 +24,7 @@ failures = []
 class Trial:
     def __init__(self, program, work):
         self.program, self.work = program, work
-        self.env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"))
+        self.env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(work / "cache")))
         self.out = work / "out"
 
     def judge(self, label, what, data):

@@ -20,7 +20,7 @@ def main():
     program = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory(prefix="driftwright-nested-") as folder:
         work = Path(folder)
-        env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"))
+        env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(work / "cache")))
 
         def run(label, *words, wanted=2, says="nested more than", rows=None, stdin=HEADER):
             for p in work.glob("out*"):

@@ -20,7 +20,7 @@ def run(program, work, *words, wanted=(0,)):
     words = [str(w) for w in words]
     try:
         done = subprocess.run([program, *words], cwd=TOP, capture_output=True, text=True, timeout=900,
-                              env=dict(os.environ, XDG_CACHE_HOME=str(work / "cache")))
+                              env=dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(work / "cache"))))
         code, said = done.returncode, done.stderr.strip()
     except subprocess.TimeoutExpired:
         code, said = "900 s", ""

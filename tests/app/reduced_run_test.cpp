@@ -30,7 +30,7 @@ constexpr const char* kUpwards = "{type: natural_convection, surface: front, ori
 class Cache {
  public:
   explicit Cache(const std::string& path) { setenv("XDG_CACHE_HOME", path.c_str(), 1); }
-  ~Cache() { setenv("XDG_CACHE_HOME", (temporary_folder() / "cache").c_str(), 1); }
+  ~Cache() { setenv("XDG_CACHE_HOME", test_store().c_str(), 1); }
   Cache(const Cache&) = delete;
   Cache& operator=(const Cache&) = delete;
 };

@@ -80,7 +80,7 @@ def main():
 
 
 def check(program, top, browser, folder):
-    env = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
+    env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(folder / "cache")))
 
     def call(*words):
         return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder, env=env)

@@ -68,7 +68,7 @@ def main():
         (work / "scenarios").symlink_to(top / "scenarios")
         (work / "docs").symlink_to(top / "docs")
         (work / "driftwright").symlink_to(program)
-        env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{work}:{os.environ['PATH']}")
+        env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(work / "cache")), PATH=f"{work}:{os.environ['PATH']}")
         for page in sys.argv[3:] or PAGES:
             for number, command, shown in blocks((top / page).read_text()):
                 n += 1

@@ -11,9 +11,13 @@
 
 namespace driftwright {
 
-/// Programs started by tests keep reduced models in the test's own folder: an older model cannot help a test to pass, and
-/// the user's cache is not touched.
-inline const bool kHasOwnCache = setenv("XDG_CACHE_HOME", (temporary_folder() / "cache").c_str(), 1) == 0;
+/// Where programs started by tests keep reduced machines: in a store that all tests of a run share (`./test` begins with an empty one),
+/// else in the test's own folder. The user's cache is not touched.
+inline std::string test_store() {
+  const char* shared = std::getenv("DRIFTWRIGHT_TEST_STORE");
+  return shared ? shared : (temporary_folder() / "cache").string();
+}
+inline const bool kHasOwnCache = setenv("XDG_CACHE_HOME", test_store().c_str(), 1) == 0;
 
 struct CommandOutcome {
   int exit_code = -1;
