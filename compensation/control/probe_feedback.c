@@ -36,10 +36,25 @@ static void probe_wait(const probe_process* process, probe_estimate* e, double s
   e->residual_um2 = kept * kept * e->residual_um2 + (1.0 - kept * kept) * process->deviation_um * process->deviation_um;
 }
 
+double probe_scale(const probe_state* state) {
+  return (1.0 + state->sum_squares) / (1.0 + state->n_known);
+}
+
+/* Variance of what a probing reads minus what is expected, before scaling. */
+static double probe_off_um2(const probe_process* process, const probe_estimate* e) {
+  return probe_sum_um2(e) + process->noise_um * process->noise_um;
+}
+
 /* By how much a probing is off what is expected, and by how much it may be. */
-static double probe_off_um(const probe_process* process, const probe_estimate* e, double read_um, double* bound_um) {
-  *bound_um = PROBE_REFUSED * sqrt(probe_sum_um2(e) + process->noise_um * process->noise_um);
+static double probe_off_um(const probe_process* process, const probe_state* state, const probe_estimate* e, double read_um,
+                           double* bound_um) {
+  *bound_um = PROBE_REFUSED * sqrt(probe_scale(state) * probe_off_um2(process, e));
   return read_um - (e->level_um + e->residual_um);
+}
+
+static void probe_learn_scale(const probe_process* process, probe_state* state, const probe_estimate* e, double off_um) {
+  state->sum_squares += off_um * off_um / probe_off_um2(process, e);
+  ++state->n_known;
 }
 
 static void probe_learn(const probe_process* process, probe_estimate* e, double off_um) {
@@ -126,17 +141,21 @@ static int probe_accept(probe_state* state, int verdict) {
 
 int probe_residual(const probe_process* process, probe_state* state, double residual_um) {
   double jumped_bound_um;
+  int is_third = 0;
   state->off_um = 0.0;
   state->bound_um = 0.0;
   if (!probe_is_valid(process) || !isfinite(residual_um)) return probe_refuse(state, PROBE_NO_NUMBER);
   if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
-  state->off_um = probe_off_um(process, &state->now, residual_um, &state->bound_um);
+  state->off_um = probe_off_um(process, state, &state->now, residual_um, &state->bound_um);
   if (fabs(state->off_um) <= state->bound_um) {
+    probe_learn_scale(process, state, &state->now, state->off_um);
     probe_learn(process, &state->now, state->off_um);
     return probe_accept(state, PROBE_TAKEN);
   }
   if (state->has_jumped) {
-    const double off_um = probe_off_um(process, &state->jumped, residual_um, &jumped_bound_um);
+    const double off_um = probe_off_um(process, state, &state->jumped, residual_um, &jumped_bound_um);
+    is_third = state->n_in_row + 1 >= PROBE_IN_ROW;
+    if (is_third || fabs(off_um) <= jumped_bound_um) probe_learn_scale(process, state, &state->jumped, off_um);
     if (fabs(off_um) <= jumped_bound_um) {
       state->now = state->jumped;
       probe_learn(process, &state->now, off_um);
@@ -146,7 +165,8 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
   state->jumped = state->now;
   probe_begin_jumped(process, &state->jumped, residual_um);
   state->has_jumped = 1;
-  if (++state->n_in_row >= PROBE_IN_ROW) {
+  ++state->n_in_row;
+  if (is_third) {
     state->now = state->jumped;
     return probe_accept(state, PROBE_JUMP);
   }
@@ -183,7 +203,7 @@ double probe_deviation_um(const probe_process* process, const probe_state* state
   double um2;
   if (!state->has_begun || !probe_is_valid(process)) return 0.0;
   e = probe_ahead(process, state, ahead_s);
-  um2 = probe_sum_um2(&e);
+  um2 = probe_scale(state) * probe_sum_um2(&e);
   return um2 > 0.0 ? sqrt(um2) : 0.0;
 }
 

@@ -6,19 +6,28 @@
  *   drift = prediction + level + r,   dr = -r / T dt + s sqrt(2 / T) dW   (Ornstein-Uhlenbeck: deviation s, time constant T)
  *   a probing reads level + r as they were lag_s ago, + noise
  *
+ * How large errors are in this run is known from other runs alone. All variances, s^2 and noise^2 among them, are therefore those above
+ * times a scale, known beforehand as well as from one probing (a unit of information). Each probing that is taken adds its own:
+ *
+ *   scale = (1 + sum u^2) / (1 + n),   u = (read - expected) / deviation of their difference before scaling
+ *
+ * the conjugate estimate of a variance. What is expected does not depend on the scale; intervals and bounds do.
+ *
  * `level` is 0 until a jump. The filter is the one of Kalman for these two numbers. It runs lag_s late, and its answer is continued
  * over lag_s: with a constant lag that is exact.
  *
  * A probing that is further than PROBE_REFUSED deviations from what is expected is refused (a chip, another tool). From there a
  * second filter starts, for which the level has jumped to a value of which nothing was known before. The next probing that the first
  * filter refuses is taken if the second one expects it: two probings that agree with each other, within PROBE_REFUSED deviations
- * sqrt(2 noise^2 + 2 s^2 (1 - exp(-h / T))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
+ * sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
  * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one. The third
- * refused probing in a row is taken as a jump, too, though it agrees with none: the process is then faster than was known. If no
+ * refused probing in a row is taken as a jump, too, though it agrees with none: errors are then larger than was known, and it adds to
+ * the scale. If no
  * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
  *
  * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter: Willsky &
- * Jones, IEEE Trans. Autom. Control 21 (1976) 108. */
+ * Jones, IEEE Trans. Autom. Control 21 (1976) 108; a variance that is learned with the state: West & Harrison, Bayesian Forecasting
+ * and Dynamic Models (1997), 4.5; a unit of information: Kass & Wasserman, J. Am. Stat. Assoc. 90 (1995) 928. */
 #ifndef DRIFTWRIGHT_PROBE_FEEDBACK_H
 #define DRIFTWRIGHT_PROBE_FEEDBACK_H
 
@@ -48,7 +57,7 @@ enum {
   PROBE_NO_NUMBER = 5  /* refused: the probe missed, or a setting is out of its range */
 };
 
-/* Mean and covariance of level and r. */
+/* Mean and covariance of level and r; covariances before scaling. */
 typedef struct {
   double level_um, residual_um;
   double level_um2, both_um2, residual_um2;
@@ -71,6 +80,8 @@ typedef struct {
   double bound_um; /* by which they may differ */
   int n_taken, n_refused, n_jumps;
   int n_in_row; /* unlikely ones since the last that was taken */
+  int n_known;         /* probings of which the scale was learned */
+  double sum_squares; /* of their u */
 } probe_state;
 
 /* Whether all settings are in their ranges. Otherwise the residual stays 0, and all probings are refused. */
@@ -84,6 +95,9 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
 int probe_residual(const probe_process* process, probe_state* state, double residual_um); /* drift minus prediction */
 int probe_drift(const probe_process* process, probe_state* state, double drift_um); /* of the axis without correction */
 int probe_left(const probe_process* process, probe_state* state, double left_um);   /* of the corrected axis */
+
+/* Factor of all variances that probings of this run have taught; 1 before the first one. */
+double probe_scale(const probe_state* state);
 
 /* The residual that is expected after ahead_s [um], and its deviation, 1 sigma [um]. */
 double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s);
