@@ -79,8 +79,8 @@ typedef struct {
   double off_um;   /* of the last probing: read minus expected */
   double bound_um; /* by which they may differ */
   int n_taken, n_refused, n_jumps;
-  int n_in_row; /* unlikely ones since the last that was taken */
-  int n_known;         /* probings of which the scale was learned */
+  int n_in_row;       /* unlikely ones since the last that was taken */
+  int n_known;        /* probings that have taught the scale */
   double sum_squares; /* of their u */
 } probe_state;
 
