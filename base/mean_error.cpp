@@ -22,13 +22,10 @@ MeanError mean_error(std::span<const double> values) {
   return result;
 }
 
-double student_quantile(double share, double freedom) {
-  return boost::math::quantile(boost::math::students_t(freedom), share);
-}
-
 double surely_above(const MeanError& error) {
   if (error.n < 2) return -std::numeric_limits<double>::infinity();
-  return error.mean - student_quantile(0.95, static_cast<double>(error.n - 1)) * error.standard_error;
+  const boost::math::students_t t(static_cast<double>(error.n - 1));
+  return error.mean - boost::math::quantile(t, 0.95) * error.standard_error;
 }
 
 }  // namespace driftwright

@@ -1,5 +1,5 @@
 #pragma once
-// A mean and its standard error, and Student's distribution.
+// A mean and its standard error.
 
 #include <cstddef>
 #include <span>
@@ -14,9 +14,6 @@ struct MeanError {
 
 /// Mean and standard error of the finite values.
 [[nodiscard]] MeanError mean_error(std::span<const double> values);
-
-/// The value below which a share of Student's t is. @param freedom  degrees of freedom, > 0
-[[nodiscard]] double student_quantile(double share, double freedom);
 
 /// Lower limit of the mean with 95 % confidence (Student's one-sided interval), for independent normal values; -infinity for
 /// fewer than two values.

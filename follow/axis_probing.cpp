@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/mean_error.hpp"
 
 namespace driftwright::follow {
 namespace {
+
+constexpr double kDeviations95 = 1.96;  // that 95 % of a normal number are within
 
 struct Ahead {
   const char* words;
@@ -60,9 +61,7 @@ void AxisProbing::hear(const std::vector<double>& values) {
 double AxisProbing::interval_um(double without_um, double ahead_s) const {
   if (feedback_.state().n_taken == 0) return without_um;
   const double deviation_um = feedback_.deviation_um(ahead_s);
-  // The scale of the deviation is known as well as from one probing, and from those that were taken.
-  const double deviations95 = student_quantile(0.975, 1.0 + feedback_.state().n_known);
-  return std::max(without_um * deviation_um / feedback_.process().deviation_um, deviations95 * deviation_um);
+  return std::max(without_um * deviation_um / feedback_.process().deviation_um, kDeviations95 * deviation_um);
 }
 
 std::string AxisProbing::words() const {

@@ -254,7 +254,7 @@ FollowLine minute(Session& session, int k, double probed_um = NAN) {
 }
 
 // The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found fades with the
-// time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`.
+// time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`, times what the probing says of its scale.
 TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
   Session session = probed_session();
   FollowLine line;
@@ -274,9 +274,10 @@ TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
   EXPECT_EQ(line.axes[0].predicted_um, 10.0);
   EXPECT_THAT(line_text(line), AllOf(HasSubstr("probing taken: it is 9.3 um from what is expected (4 sigmas are 20.1 um)"),
                                      HasSubstr(R"("interval_95_um_in":{"15 min":)")));
+  const double scale = 0.5 * (1.0 + 9.3 * 9.3 / 25.25);  // the probing was 1.9 deviations off
   const auto half_um = [&](double after_s) {
     const double kept = std::exp(-after_s / 7200.0);
-    return 12.0 / 5.0 * std::sqrt(kept * kept * gain * 0.25 + (1.0 - kept * kept) * 25.0);
+    return 12.0 / 5.0 * std::sqrt(scale) * std::sqrt(kept * kept * gain * 0.25 + (1.0 - kept * kept) * 25.0);
   };
   EXPECT_NEAR(line.axes[0].probing->answer->intervals_um[1].second, half_um(3600.0), 1e-9);
   for (int k = 0; k < 600; ++k) {
@@ -285,7 +286,7 @@ TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
     ASSERT_NEAR(*line.axes[0].interval_um, half_um(60.0 * k), 1e-9) << k;
     EXPECT_EQ(line.axes[0].probing->answer.has_value(), k == 0);
   }
-  EXPECT_NEAR(*line.axes[0].interval_um, 12.0, 0.01);
+  EXPECT_NEAR(*line.axes[0].interval_um, 12.0 * std::sqrt(scale), 0.01);
 }
 
 // What a probe reads on the corrected axis is the drift minus the correction that was in force, also with a lag and while the axis
@@ -343,8 +344,8 @@ TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
   FollowLine line = minute(session, 1, 12.0);
   int n_minutes = 0;
   for (; line.axes[0].probing->probe_now.empty() && n_minutes < 1000; ++n_minutes) line = minute(session, 2 + n_minutes);
-  // 12/5 sqrt(k² p + (1 - k²) 25) = 5 with k = exp(-t / 2 h)
-  const double p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2);
+  // 12/5 sqrt(c (k² p + (1 - k²) 25)) = 5 with k = exp(-t / 2 h); the probing is 2 um off
+  const double scale = 0.5 * (1.0 + 2.0 * 2.0 / 25.25), p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2) / scale;
   EXPECT_EQ(n_minutes, std::ceil(-0.5 * 120.0 * std::log((25.0 - um2) / (25.0 - p))));
 }
 

@@ -319,8 +319,9 @@ TEST(LinuxcncComponent, TakesProbings) {
   EXPECT_EQ(out[304].at("probe_verdict"), 1.0);
   EXPECT_NEAR(out[304].at("probe_off_um"), 8.0, 1e-9);
   EXPECT_NEAR(out[304].at("correction_um"), 20.0 + gain * 8.0, 0.01);  // 1 s of 1800 s
-  EXPECT_NEAR(out[304].at("probe_sigma_um"), std::sqrt(0.01 * gain + 25.0 * (1.0 - std::exp(-0.4 / 1800.0))),
-              0.003);                                                    // the step of 60.2 s
+  const double scale = 0.5 * (1.0 + 8.0 * 8.0 / 25.01);  // of all variances, after a probing that was 1.6 deviations off
+  EXPECT_NEAR(out[304].at("probe_sigma_um"), std::sqrt(scale * (0.01 * gain + 25.0 * (1.0 - std::exp(-0.4 / 1800.0)))),
+              0.004);                                                    // the step of 60.2 s
   EXPECT_NEAR(out[350].at("axis_offset_um"), -20.0 - 0.5 * 10.2, 0.02);  // on its way, at 0.5 um/s
   EXPECT_NEAR(out[3299].at("axis_offset_um"), -20.0 - gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
   EXPECT_EQ(out[3304].at("probe_verdict"), 3.0);
