@@ -23,36 +23,36 @@ from writing import record_csv, scenario
 
 ALLOWED = (0.05, 0.25)      # K, um
 
-# way -> names that are not drawn (formulas), and the line of the grammar ({size} and names in braces)
+# way -> names that are not drawn (formulas), and the effect as the grammar says it (formulas in braces)
 SAID = {
-    "heat_source": (dict(law="'constant'", node="bodies[0]", exponent="1.0", at="1.0", from_s="2220.0"), "{{type: heat_source, node: {node}, power: {size} W, from: 2220 s}}"),
-    "heat_law": (dict(law="'speed'", node="bodies[0]", exponent="1.4", at="float(top)"), "{{type: heat_source, node: {node}, power: {size} W, at_speed: {top} rpm, exponent: 1.4}}"),
-    "exchange_window": (dict(a="bodies[0]", b="'hall'", when="in_records({'measured_1': [(2030.0, 3010.0), (5110.0, 7990.0)]})"), "{{type: exchange_window, node: {a}, conductance: {size} W/K, surrounding: ambient, windows: [[2030 s, 3010 s], [5110 s, 7990 s]]}}"),
-    "heat_window": (dict(node="bodies[0]", way_sign="1.0", when="in_records({'measured_1': [(2030.0, 3010.0), (5110.0, 7990.0)]})"), "{{type: heat_window, node: {node}, power: {size} W, windows: [[2030 s, 3010 s], [5110 s, 7990 s]]}}"),
-    "link": (dict(a="bodies[0]", b="'hall'"), "{{type: link, node: {a}, to: ambient, conductance: {size} W/K}}"),
-    "hidden_body": (dict(node="bodies[0]", capacity="9000.0", conductance="6.0", to_hall="1.0"), "{{type: hidden_body, node: {node}, capacity: {9000 * s} J/K, conductance: {6 * s} W/K, hall_conductance: {s} W/K}}"),
-    "ambient": (dict(steps="True", from_s="2220.0", scope="None"), "{{type: ambient, offset: {size} K, from: 2220 s}}"),
-    "ambient_ramp": ({}, "{{type: ambient, ramp: {size} K/h}}"),
-    "sensor_bias": (dict(name="thermometers[0]"), "{{type: sensor_bias, sensor: {name}, bias: {size} K}}"),
-    "sensor_lag": (dict(name="thermometers[0]"), "{{type: sensor_lag, sensor: {name}, lag: {size} min}}"),
-    "sensor_drift": (dict(name="thermometers[0]"), "{{type: sensor_drift, sensor: {name}, drift: {size} K/h}}"),
-    "sensor_detached": (dict(name="thermometers[0]", from_s="2220.0"), "{{type: sensor_detached, sensor: {name}, share: {size}, time: 2220 s}}"),
-    "sensor_place": (dict(sensor="sensors[0]", name="sensors[0][0]", other="bodies[1]"), "{{type: sensor_place, sensor: {name}, share: {size}, body: {other}}}"),
-    "sensor_swap": (dict(one="sensors[0]", two_="sensors[1]"), "{{type: sensor_swap, sensor: {a}, with: {b}}}"),
-    "mount_shift": (dict(name="channels[0]", from_s="2220.0"), "{{type: mount_shift, displacement: {name}, shift: {size} um, time: 2220 s}}"),
-    "spindle_growth": (dict(name="channels[0]", exponent="1.5", lag_s="540.0"), "{{type: spindle_growth, displacement: {name}, growth: {size} um, at_speed: {top} rpm, exponent: 1.5, lag: 9 min}}"),
-    "centrifugal": (dict(name="channels[0]"), "{{type: centrifugal, displacement: {name}, growth: {size} um, at_speed: {top} rpm}}"),
-    "body_growth": (dict(channel="displacements[0]", name="channels[0]", node="bodies[0]", lag_s="1500.0"), "{{type: displacement_path, displacement: {name}, sensitivity: {size} um/K, body: {node}, lag: 25 min}}"),
-    "scale_expansion": (dict(what="'factor'", name="channels[0]"), "{{type: scale_expansion, displacement: {name}, factor: {exp(s)}}}"),
-    "clock_offset": ({}, "{{type: clock_offset, offset: {size} min}}"),
-    "speed_override": ({}, "{{type: speed_override, factor: {exp(s)}}}"),
-    "missing_stop": (dict(name="'measured_1'"), "{{type: missing_stop, start: {start_s} s, length: {size} min}}"),
-    "heat_capacity": (dict(node="bodies[0]"), "{{type: heat_capacity, node: {node}, factor: {exp(s)}}}"),
-    "forced_exchange": (dict(link="[x for x in links if x[1] == 'hall'][0]"), "{{type: changed_law, law: link {node} - ambient, exponent: {size}, at_speed: {at} rpm}}"),
-    "column_heat": (dict(node="bodies[0]", way_sign="1.0"), "{{type: recorded_drive, node: {node}, gain: {size}, column: {column}}}"),
-    "column_warmth": (dict(node="bodies[0]"), "{{type: recorded_drive, node: {node}, conductance: {size} W/K, column: {column}}}"),
-    "column_opening": (dict(node="bodies[0]"), "{{type: recorded_drive, node: {node}, opening: {size}, column: {column}}}"),
-    "machine_warms_its_air": ({}, "{{type: ambient, with_speed: {size} K, at_speed: {top} rpm, behind: {slow / 60} min}}"),
+    "heat_source": (dict(law="'constant'", node="bodies[0]", exponent="1.0", at="1.0", from_s="2220.0"), "type: heat_source, node: {node}, power: {size} W, from: 2220 s"),
+    "heat_law": (dict(law="'speed'", node="bodies[0]", exponent="1.4", at="float(top)"), "type: heat_source, node: {node}, power: {size} W, at_speed: {top} rpm, exponent: 1.4"),
+    "exchange_window": (dict(a="bodies[0]", b="'hall'", when="in_records({'measured_1': [(2030.0, 3010.0), (5110.0, 7990.0)]})"), "type: exchange_window, node: {a}, conductance: {size} W/K, surrounding: ambient, windows: [[2030 s, 3010 s], [5110 s, 7990 s]]"),
+    "heat_window": (dict(node="bodies[0]", way_sign="1.0", when="in_records({'measured_1': [(2030.0, 3010.0), (5110.0, 7990.0)]})"), "type: heat_window, node: {node}, power: {size} W, windows: [[2030 s, 3010 s], [5110 s, 7990 s]]"),
+    "link": (dict(a="bodies[0]", b="'hall'"), "type: link, node: {a}, to: ambient, conductance: {size} W/K"),
+    "hidden_body": (dict(node="bodies[0]", capacity="9000.0", conductance="6.0", to_hall="1.0"), "type: hidden_body, node: {node}, capacity: {9000 * s} J/K, conductance: {6 * s} W/K, hall_conductance: {s} W/K"),
+    "ambient": (dict(steps="True", from_s="2220.0", scope="None"), "type: ambient, offset: {size} K, from: 2220 s"),
+    "ambient_ramp": ({}, "type: ambient, ramp: {size} K/h"),
+    "sensor_bias": (dict(name="thermometers[0]"), "type: sensor_bias, sensor: {name}, bias: {size} K"),
+    "sensor_lag": (dict(name="thermometers[0]"), "type: sensor_lag, sensor: {name}, lag: {size} min"),
+    "sensor_drift": (dict(name="thermometers[0]"), "type: sensor_drift, sensor: {name}, drift: {size} K/h"),
+    "sensor_detached": (dict(name="thermometers[0]", from_s="2220.0"), "type: sensor_detached, sensor: {name}, share: {size}, time: 2220 s"),
+    "sensor_place": (dict(sensor="sensors[0]", name="sensors[0][0]", other="bodies[1]"), "type: sensor_place, sensor: {name}, share: {size}, body: {other}"),
+    "sensor_swap": (dict(one="sensors[0]", two_="sensors[1]"), "type: sensor_swap, sensor: {a}, with: {b}"),
+    "mount_shift": (dict(name="channels[0]", from_s="2220.0"), "type: mount_shift, displacement: {name}, shift: {size} um, time: 2220 s"),
+    "spindle_growth": (dict(name="channels[0]", exponent="1.5", lag_s="540.0"), "type: spindle_growth, displacement: {name}, growth: {size} um, at_speed: {top} rpm, exponent: 1.5, lag: 9 min"),
+    "centrifugal": (dict(name="channels[0]"), "type: centrifugal, displacement: {name}, growth: {size} um, at_speed: {top} rpm"),
+    "body_growth": (dict(channel="displacements[0]", name="channels[0]", node="bodies[0]", lag_s="1500.0"), "type: displacement_path, displacement: {name}, sensitivity: {size} um/K, body: {node}, lag: 25 min"),
+    "scale_expansion": (dict(what="'factor'", name="channels[0]"), "type: scale_expansion, displacement: {name}, factor: {exp(s)}"),
+    "clock_offset": ({}, "type: clock_offset, offset: {size} min"),
+    "speed_override": ({}, "type: speed_override, factor: {exp(s)}"),
+    "missing_stop": (dict(name="'measured_1'"), "type: missing_stop, start: {start_s} s, length: {size} min"),
+    "heat_capacity": (dict(node="bodies[0]"), "type: heat_capacity, node: {node}, factor: {exp(s)}"),
+    "forced_exchange": (dict(link="[x for x in links if x[1] == 'hall'][0]"), "type: changed_law, law: link {node} - ambient, exponent: {size}, at_speed: {at} rpm"),
+    "column_heat": (dict(node="bodies[0]", way_sign="1.0"), "type: recorded_drive, node: {node}, gain: {size}, column: {column}"),
+    "column_warmth": (dict(node="bodies[0]"), "type: recorded_drive, node: {node}, conductance: {size} W/K, column: {column}"),
+    "column_opening": (dict(node="bodies[0]"), "type: recorded_drive, node: {node}, opening: {size}, column: {column}"),
+    "machine_warms_its_air": ({}, "type: ambient, with_speed: {size} K, at_speed: {top} rpm, behind: {slow / 60} min"),
 }
 
 
@@ -112,8 +112,8 @@ def check_way(program, way, given, line):
     fault.records, fault.sign = None, 1.0
     fault = fault.with_size(np.sqrt(fault.low * fault.high))
     names = {**fault.names, "s": float(fault.size[0]), "size": float(fault.size[0])}
-    text = faults.re.sub(r"\{([^{}]+)\}", lambda m: (lambda x: x if isinstance(x, str) else f"{float(x):.9g}")(faults.laws.value(m[1], names)), line.replace("{{", "\0").replace("}}", "\1"))
-    return met(program, machine, record, 60, [fault], text.replace("\0", "{").replace("\1", "}"))
+    text = faults.re.sub(r"\{([^{}]+)\}", lambda m: (lambda x: x if isinstance(x, str) else f"{float(x):.9g}")(faults.laws.value(m[1], names)), line)
+    return met(program, machine, record, 60, [fault], "{" + text + "}")
 
 
 def main():

@@ -435,7 +435,7 @@ def rows(rng, style, dt, n):
     if style == "gaps":
         for _ in range(int(rng.integers(1, 4))):
             a = rng.uniform(0.1, 0.9)
-            keep &= ~((k > a * n) & (k < (a + rng.uniform(0.02, 0.12)) * n))
+            keep &= ~((k > a * n) & (k < (a + rng.uniform(0.02, 0.07)) * n))
     elif style == "lost":
         keep = rng.random(n) > rng.uniform(0.04, 0.25)
     elif style == "two_paces":

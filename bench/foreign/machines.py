@@ -31,7 +31,7 @@ def number(rng, x):
     """Lognormal about x, 35 %; [a, b]: uniform; {exactly: x}: x."""
     if isinstance(x, dict):
         return float(x["exactly"])
-    return rounded(rng.uniform(*x)) if isinstance(x, list) else rounded(x * np.exp(0.35 * rng.standard_normal()))
+    return rounded(rng.uniform(*map(float, x))) if isinstance(x, list) else rounded(float(x) * np.exp(0.35 * rng.standard_normal()))      # YAML takes 9e3 for a word
 
 
 def parts(rng, m, spec):
