@@ -79,8 +79,8 @@ def slope(rng):
     t, last = 0.0, 0.0
     while t < 1:
         length, goal = np.exp(rng.uniform(np.log(0.03), np.log(0.16))), 0.0 if rng.random() < 0.2 else rng.uniform(0.12, 1)
-        yield from ((t + 0.05 * k * length, t + length, round(last + (goal - last) * (k + 1) / 8, 2)) for k in range(8))
-        t, last = t + length, goal
+        yield from ((t + 0.05 * k * length, t + length, round(20 * (last + (goal - last) * (k + 1) / 8)) / 20) for k in range(8))
+        t, last = t + length, round(20 * goal) / 20
 
 
 def shifts(rng):
@@ -342,14 +342,14 @@ STYLES = {f.__name__: f for f in (blocks, duty, warm_up, cycle, stair, fresh, sp
 
 
 def driven(rng, time_s, style, top=1.0, days=False):
-    """A column from 0 to `top`, held from each row on; `days`: at night there is little or nothing."""
+    """A column from 0 to `top`, held from each row on; `days`: at night there is little or nothing. Levels are 4 % of the top apart: Driftwright takes a change by less than 1 % for jitter of the tachometer."""
     share, out = time_s / time_s[-1], np.zeros(len(time_s))
     for a, b, x in STYLES[style](rng):
         out[(share >= a - 1e-9) & (share < b)] = x
     if days:
         hour = (time_s / 3600 + rng.uniform(0, 24)) % 24
         out = np.where((hour > 6) & (hour < rng.uniform(17, 23)), out, 0.3 * out if rng.random() < 0.5 else 0.0)
-    return float(top) * np.round(out, 3)
+    return float(top) * np.round(25 * out) / 25
 
 
 def windy(rng, time_s, plan):
