@@ -218,7 +218,7 @@ class Words:
             second, = self.draw(spec["both"][1], {spec["at"]: first.names[spec["at"]]})
             if first.told["place"] == second.told["place"]:
                 raise Impossible
-            either = [(first.told["key"], first.told["place"])] + first.told["also"] + [(second.told["key"], second.told["place"])] + second.told["also"]
+            either = [x for f in (first, second) for x in [(f.told["key"], f.told["place"])] + f.told["also"] + further_names(f.told["spec"].get("also"), f.names)]
             for f in (first, second):
                 f.told = dict(f.told, also=either, parameters=[])
             return [first, second]
