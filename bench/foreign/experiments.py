@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Makes the experiments that diagnoses of the set `third` propose, by the truth's own program, and diagnoses anew with them (README.md).
+"""Makes the experiments that diagnoses of a set propose, by the truth's own program, and diagnoses anew with them (README.md).
 
-    experiments.py CASES --diagnoses NAME --program driftwright -o OUT [--limit 300] [--only 7 12]
+    experiments.py SETS.yaml CASES --diagnoses NAME --program driftwright -o OUT [--limit 300] [--only 7 12]
 
 Reads CASES/case_*/truth.json, scenario.yaml, measured_*.csv and NAME/diagnosis.json, and writes nothing there. Per case: OUT/case_*/ with the same files, experiment_1.csv, `diagnosis` (the
 results), diagnosis.log and tried.json (what was done; a case that has it is scored as it is, so that a run may be broken off and taken up again).
@@ -18,17 +18,17 @@ import shutil
 import subprocess
 import time
 
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):     # before numpy: as third.py has it, for the same bytes
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):     # before numpy: as draw.py has it, for the same bytes
     os.environ.setdefault(variable, "1")
 import numpy as np
 
-import families
-import third
-import third_families
-from generate import noisy
-from nats import HALL_SIGMA_K
+import draw
+import drives
+import faults
+from draw import noisy
 from network import Record, simulate
 from score import kind_right, place_right, wilson
+from sizing import HALL_SIGMA_K
 from writing import record_csv, scenario
 
 NEW_DAY, NEW_THERMOMETER = 2000003, 2000004     # seeds beside those of the cases
@@ -44,24 +44,28 @@ class NotTried(Exception):
 # --- the experiment ------------------------------------------------------------------------------------------------------------
 
 
-def rebuilt(folder):
+def rebuilt(a_set, folder):
     """The case with its machine, true numbers and faults; its files must be those of the folder, byte by byte."""
-    truth = json.loads((folder / "truth.json").read_text())
-    seed, index, number = truth["seed"]
-    if seed != third.SEED:
-        raise SystemExit(f"{folder}: no case of the set `third`")
-    case = third.attempt(index, number, *third.table()[index])
+    seed, index, number = json.loads((folder / "truth.json").read_text())["seed"]
+    if seed != a_set["seed"]:
+        raise SystemExit(f"{folder}: no case of this set")
+    case = draw.attempt(a_set, index, number, *draw.table(a_set)[index])
     for name, text in case.files.items():
         if (folder / name).read_text() != text:
             raise SystemExit(f"{folder}/{name} is not what its seed gives: another set, or another numpy")
     return case
 
 
-def lasting(hidden):
+def lasting(case, rng, record):
     """The faults that hold in a record to come, as they hold in the holdout."""
-    out = [copy.copy(f) for f in hidden if f.holds("holdout_1")]
+    out = [copy.copy(f) for f in case.hidden if f.holds("holdout_1")]
+    words = faults.Words(rng, case.machine, case.plan, [record], case.column, case.noise)
     for f in out:
         f.records = None
+        try:
+            f.signals = words.signals(f.told["spec"].get("signals"), f.names)
+        except faults.Impossible:
+            raise NotTried("what acts does not move in this record")
     return out
 
 
@@ -80,18 +84,18 @@ def new_day(case, rng, sections):
     def held(key):
         return np.array([float(s.get(key, 0.0)) for s in sections])[section]
 
-    hall = np.round(np.interp(time_s, even, families.hall_curve(rng, even, case.plan.get("outdoor", False))), 2)
+    hall = np.round(np.interp(time_s, even, drives.hall(rng, even, case.plan.get("outdoor", False))), 2)
     columns = {}
     if case.column:
         name, unit = case.column
-        columns[name] = (unit, third_families.temperature_column(rng, time_s) if unit == "degC" else families.extra_column(rng, time_s, unit))
+        columns[name] = (unit, drives.further(rng, time_s, unit))
     feeds = {a: held(f"feed_{a}_mm_min") / 60000 for a in axes}
     return Record("experiment_1", time_s, held("speed_rpm"), feeds, np.zeros(len(time_s)), hall, columns)
 
 
 def readings(case, rng, machine, record, hidden, offset_K):
     t, u = (a[0] for a in simulate(machine, case.numbers, record, hidden, np.array([offset_K])))
-    return noisy(rng, t, case.noise["temperature"], case.noise["coloured"], case.interval_s), noisy(rng, u, case.noise["displacement"], case.noise["coloured"], case.interval_s)
+    return noisy(rng, t, case.noise["temperature"], case.noise["coloured"], record.time_s), noisy(rng, u, case.noise["displacement"], case.noise["coloured"], record.time_s)
 
 
 def with_thermometer(case, body):
@@ -109,7 +113,7 @@ def again_with(case, rng, machine, name, record):
     """The record as it was measured, and beside it what one thermometer more would have read."""
     t, _ = simulate(machine, case.numbers, record, case.hidden, np.array([case.offsets[record.name]]))
     at = [n for n, _ in machine.sensors].index(name)
-    y = noisy(rng, t[0][:, at:at + 1], case.noise["temperature"], case.noise["coloured"], case.interval_s)[:, 0]
+    y = noisy(rng, t[0][:, at:at + 1], case.noise["temperature"], case.noise["coloured"], record.time_s)[:, 0]
     lines = case.files[record.name + ".csv"].splitlines()
     return "\n".join([f"{lines[0]},{name}_degC"] + [f"{line},{x:.4f}" for line, x in zip(lines[1:], y)]) + "\n"
 
@@ -125,14 +129,14 @@ def experiment_files(case, index, experiment):
     if happened_once(experiment):
         if not by_sensor:
             raise NotTried("it happened once, and no thermometer is proposed")
-        rng = np.random.default_rng([third.SEED, index, NEW_THERMOMETER])
+        rng = np.random.default_rng([case.truth["seed"][0], index, NEW_THERMOMETER])
         for r in measured:
             files[r.name + ".csv"] = again_with(case, rng, machine, name, r)
         return files, f"the records with a thermometer on {experiment['extra_sensor']['region']}"
-    rng = np.random.default_rng([third.SEED, index, NEW_DAY])
+    rng = np.random.default_rng([case.truth["seed"][0], index, NEW_DAY])
     offset_K = float(np.round(HALL_SIGMA_K * rng.standard_normal(), 3))
     record = new_day(case, rng, experiment["cyclogram"]["sections"])
-    t, u = readings(case, rng, machine, record, lasting(case.hidden), offset_K)
+    t, u = readings(case, rng, machine, record, lasting(case, rng, record), offset_K)
     files["experiment_1.csv"] = record_csv(machine, record, t, u, rng, case.missing)
     return files, experiment["cyclogram"]["name"] + (f" with a thermometer on {experiment['extra_sensor']['region']}" if by_sensor else "")
 
@@ -142,10 +146,10 @@ def happened_once(experiment):
     return "happened in one record only" in experiment["why"]
 
 
-def tried(folder, out, diagnosis, program, limit_s):
+def tried(a_set, folder, out, diagnosis, program, limit_s):
     """What was done, for tried.json."""
     experiment = diagnosis["discriminating_experiment"]
-    case = rebuilt(folder)
+    case = rebuilt(a_set, folder)
     if out.exists():      # of a run that was broken off
         shutil.rmtree(out)
     out.mkdir(parents=True)
@@ -160,7 +164,7 @@ def tried(folder, out, diagnosis, program, limit_s):
     with open(out / "diagnosis.log", "w") as log:
         # Seconds of the processor: those of the clock say on a shared machine what else ran.
         code = subprocess.run(command, cwd=out, stdout=log, stderr=subprocess.STDOUT, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(limit_s), int(limit_s) + 5))).returncode
-    return dict(experiment=what, code=code, seconds=round(time.time() - begin), lasting=[f.key for f in lasting(case.hidden)])
+    return dict(experiment=what, code=code, seconds=round(time.time() - begin), lasting=[f.way for f in case.hidden if f.holds("holdout_1")])
 
 
 # --- what came of it -----------------------------------------------------------------------------------------------------------
@@ -226,6 +230,7 @@ def why_class(experiment):
 
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("set")
     p.add_argument("cases")
     p.add_argument("--diagnoses", default="diagnosis")
     p.add_argument("--program", default="driftwright")
@@ -236,6 +241,7 @@ def main():
     program = shutil.which(a.program)
     if not program:
         raise SystemExit(f"no program {a.program}")
+    a_set = draw.read_set(a.set)
     program, rows, why = str(pathlib.Path(program).resolve()), [], collections.Counter()
     n_diagnosed = 0
     for folder in sorted(pathlib.Path(a.cases).glob("case_*")):
@@ -253,7 +259,7 @@ def main():
             continue
         out = pathlib.Path(a.out) / folder.name
         if not (out / "tried.json").exists():
-            done = tried(folder, out, before, program, a.limit)
+            done = tried(a_set, folder, out, before, program, a.limit)
             (out / "tried.json").write_text(json.dumps(done, indent=1) + "\n")
         done = json.loads((out / "tried.json").read_text())
         hidden = ", ".join(f"{e['key']} {e['where']} ({'all' if e['records'] == 'all' else 'lasting' if 'holdout_1' in e['records'] else 'one record'}, {e['nats']:g} nats)" for e in truth["effects"]) or "nothing"

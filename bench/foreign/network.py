@@ -1,19 +1,38 @@
 """The truth: networks of lumped bodies, integrated by exact exponentials in steps that end at every row and every event.
 
-    C_i dT_i/dt = sum_j G_ij (T_j - T_i) + G_i (T_hall - T_i) + W_i (T_set - T_i) + P_i(n, v, P_recorded, T_i)
+    C_i dT_i/dt = sum_j G_ij (T_j - T_i) + G_i (T_hall - T_i) + W_i (T_set - T_i) + P_i(n, v, P_recorded, T)
 
-The hall is linear between rows, speed, feed and recorded power hold from their row on. All quantities are in SI units but
-speeds (rpm), displacements (um), and temperatures (degC). Many variants of one machine (its numbers, the sizes of its
+The hall is linear between rows; speed, feeds and recorded power hold from their row on. SI units, but speeds in rpm, displacements in um and temperatures in degC. Many variants of one machine (numbers, sizes of
 faults) are integrated side by side: arrays carry the variant as their first axis.
+
+A fault is a list of terms. Each is a dict of one of these forms; formulas are Python expressions (see README.md) in `s` (the size), the names that the fault drew, and `n(label)` (a number of the machine):
+
+    {body: NAME, C: formula}                                          one more body
+    {link: [A, B], G: formula, while: windows, open: signal}          one more link; B may be `hall`, or `nothing` (what A loses goes nowhere)
+    {bath: A, G: formula, degC: formula or signal, while:, open:}     a link to something that keeps a temperature
+    {law: [A, B], G: formula of g and x, of: signal}                  an existing link whose conductance follows a signal x
+    {relink: [A, B], to: C}                                           an existing link goes elsewhere
+    {number: LABEL, is: formula of x}                                 another number, such as `C bed`, `G bed hall`, `P 0`, `e 0`, `decay 0`, `set tank`, `flow tank`, `S gap bed`
+    {heat: A, W: formula, law: constant, turning, speed, feed or load, at:, exponent:, axis:, decay:, while:}
+    {heat_like: I, node: A, share: formula}                           a share of heat number I arises in another body, too
+    {heat: A, W: formula, of: signal}                                 heat that follows a signal
+    {fed: {A: formula, ...}}                                          heat that hangs on temperatures: T(body), hall, heat_of(i), thermostat(T, low, high), signals
+    {start: A, K: formula} or {start: A, degC: formula}               the body begins warmer by so much, or at this temperature
+    {drive: speed, power, feeds or hall, is: formula of x, while:}    what truly drives, step by step
+    {record: {speed: formula, hall: ..., feed_x: ...}}                the same by laws of whole rows; one size at a time
+    {before: formula, speed: , feeds: , power: , pause_s: }           it ran so many minutes before its record begins
+    {reads: CHANNEL or list, thermometers, displacements, all; is: formula of y}
 """
+import copy
+
 import numpy as np
 from scipy.linalg import expm
 
-LONGEST_STEP_s = 20.0   # where heat depends on the temperature of its body
+import laws
 
 
 class Record:
-    """What a logger knows: times [s], speed [rpm], feeds [m/s] by axis, recorded power [W], hall [degC], further columns."""
+    """What a logger knows: times [s], speed [rpm], feeds [m/s] by axis, recorded power [W], hall [degC], further columns: name -> (unit, values)."""
 
     def __init__(self, name, time_s, speed, feeds, power, hall, columns):
         self.name, self.time_s, self.speed, self.feeds, self.power, self.hall, self.columns = name, time_s, speed, feeds, power, hall, columns
@@ -22,14 +41,13 @@ class Record:
 class Machine:
     """Bodies, links, circuits, heats, thermometers and displacements; `numbers` are the uncertain ones: label -> (value, kind).
 
-    kind `log`: lognormal, 10 % one sigma; `exponent`: normal, 3 % one sigma.
+    kind `log`: lognormal, 10 % one sigma; `exponent`: normal, 3 % one sigma. `stated`: label -> how much wider or narrower the scenario says that it is known.
     """
 
     def __init__(self, family):
-        self.family, self.bodies, self.links, self.circuits, self.heats = family, [], [], [], []
+        self.family, self.title, self.groups, self.bodies, self.links, self.circuits, self.heats = family, "", {}, [], [], [], []
         self.sensors, self.displacements, self.numbers, self.air, self.start, self.t_ref = [], [], {}, set(), "hall", 20.0
-        self.longest_step_s = LONGEST_STEP_s
-        self.stated = {}     # label -> how much wider or narrower than 10 % (3 %) the scenario says that a number is known
+        self.longest_step_s, self.stated = 20.0, {}      # of steps, where heat hangs on temperatures
 
     def body(self, name, capacity):
         self.bodies.append(name)
@@ -46,19 +64,20 @@ class Machine:
 
     def heat(self, kind, node, power, at=1.0, exponent=0.0, idle=0.0, decay=0.0, axis=None, turning=False):
         i = len(self.heats)
-        self.heats.append(dict(kind=kind, node=node, at=at, axis=axis, turning=turning, has_exponent=exponent != 0.0, has_idle=idle > 0, has_decay=decay > 0))
-        self.numbers[f"P {i}"] = (power, "log")
-        if exponent != 0.0:
-            self.numbers[f"e {i}"] = (exponent, "exponent")
-        if idle > 0:
-            self.numbers[f"idle {i}"] = (idle, "log")
-        if decay > 0:
-            self.numbers[f"decay {i}"] = (decay, "log")
+        self.heats.append(heat_law(kind, node, at, axis, turning, exponent != 0.0, idle > 0, decay > 0))
+        for label, value, kind in (("P", power, "log"), ("e", exponent, "exponent"), ("idle", idle, "log"), ("decay", decay, "log")):
+            if value != 0.0:
+                self.numbers[f"{label} {i}"] = (value, kind)
 
     def displacement(self, name, axis, sensitivities):
         self.displacements.append((name, axis, list(sensitivities)))
         for node, s in sensitivities.items():
             self.numbers[f"S {name} {node}"] = (s, "log")
+
+    def keep_displacements(self, kept):
+        gone = {d[0] for d in self.displacements} - {d[0] for d in kept}
+        self.displacements = list(kept)
+        self.numbers = {k: x for k, x in self.numbers.items() if not (k.startswith("S ") and k.split()[1] in gone)}
 
     def nominal(self, n_variants=1):
         return {k: np.full(n_variants, v[0], float) for k, v in self.numbers.items()}
@@ -71,15 +90,33 @@ class Machine:
         return p
 
 
+def heat_law(kind, node, at=1.0, axis=None, turning=False, exponent=False, idle=False, decay=False, gate=None):
+    return dict(kind=kind, node=node, at=at, axis=axis, turning=turning, has_exponent=exponent, has_idle=idle, has_decay=decay, gate=gate)
+
+
 def moved(value, kind, z, sigma_factor=1.0):
     return value * np.exp(0.1 * sigma_factor * z) if kind == "log" else value * (1 + 0.03 * sigma_factor * z)
 
 
-def in_windows(t, windows):
-    m = np.zeros(len(t), bool)
-    for a, b in windows:
-        m |= (t >= a) & (t < b)
-    return m
+class Fault:
+    """What is hidden: terms and one size. `names`: what the formulas know; `windows`: of a record's name; `signals`: record -> name -> values at its rows; `told`: how truth.json describes it (faults.py)."""
+
+    def __init__(self, way, terms, names=None, records=None, low=0.0, high=1.0, sign=1.0, windows=None, signals=None, told=None):
+        self.way, self.terms, self.names, self.records, self.low, self.high, self.sign = way, terms, names or {}, records, low, high, sign
+        self.windows, self.signals, self.told, self.size = windows or {}, signals or {}, told or {}, np.zeros(1)
+        self.each_size = any("record" in t or "before" in t or ("while" in t and ("link" in t or "bath" in t) and laws.mentions(t["while"], "s")) for t in terms)
+
+    def holds(self, record_name):
+        return self.records is None or record_name in self.records
+
+    def with_size(self, sizes):
+        f = copy.copy(self)
+        f.size = f.sign * np.atleast_1d(np.asarray(sizes, float))
+        return f
+
+    def of(self, formula, **more):
+        """The value of a formula; numbers and names of signals are formulas, too."""
+        return laws.value(formula, {**self.names, "s": self.size, **more})
 
 
 def first_order(time_s, u, lag_s, y0):
@@ -101,309 +138,349 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
     Each fault has `size` (one value for each variant); those that do not hold in this record are passed over.
     """
     faults = [f for f in faults if f.holds(record.name)]
-    n_var = len(next(iter(numbers.values())))
-    zero = np.zeros(n_var)
-    t_rows = record.time_s
-    bodies = list(machine.bodies)
-    capacity = {b: numbers["C " + b] for b in bodies}
-    for f in faults:
-        if f.key == "hidden_body":
-            bodies.append("hidden")
-            capacity["hidden"] = np.maximum(f.size * f.data["capacity"], 1e-3)
-        elif f.key == "mass_change":
-            bodies.append("load")
-            capacity["load"] = np.maximum(f.size * f.data["capacity"], 1e-3)
-        elif f.key == "heat_capacity":
-            capacity[f.data["node"]] = capacity[f.data["node"]] * np.exp(f.size)
-    index = {b: i for i, b in enumerate(bodies)}
-    n = len(bodies)
+    n = len(next(iter(numbers.values())))
+    offset = np.broadcast_to(np.reshape(np.asarray(offset_K, float), -1), (n,))
+    own = [f for f in faults if f.each_size]
+    sizes = np.stack([np.broadcast_to(f.size, (n,)) for f in own], 1) if own else np.zeros((n, 0))
+    different = np.unique(sizes, axis=0)
+    if len(different) == 1 or not own:
+        return Truth(machine, numbers, record, faults, offset).readings()
+    out = [np.empty((n, len(record.time_s), len(x))) for x in (machine.sensors, machine.displacements)]
+    for row in different:
+        m, some = np.all(sizes == row, axis=1), [copy.copy(f) for f in faults]
+        for f in some:
+            f.size = np.broadcast_to(f.size, (n,))[m]
+        for a, b in zip(out, simulate(machine, {k: x[m] for k, x in numbers.items()}, record, some, offset[m])):
+            a[m] = b
+    return tuple(out)
 
-    # --- steps: rows, events, and for heat that follows temperature no step longer than the machine's own -------------------
-    marks = [t_rows] + [np.clip(np.concatenate([np.atleast_1d(e) for e in f.events(record)]), 0, t_rows[-1]) for f in faults if f.events(record)]
-    t = np.unique(np.round(np.concatenate(marks), 6))
-    if any(h["has_decay"] for h in machine.heats) or getattr(machine, "feedback", ()) or any(f.key == "friction_law" and f.data.get("decay") for f in faults):
-        t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / machine.longest_step_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
-    t0, h = t[:-1], np.diff(t)
-    row = np.clip(np.searchsorted(t_rows, t0 + 1e-7, side="right") - 1, 0, len(t_rows) - 1)
-    n_steps = len(h)
 
-    # --- what drives it --------------------------------------------------------------------------------------------------
-    speed = np.broadcast_to(record.speed[row], (n_var, n_steps)).copy()
-    hall0 = np.broadcast_to(np.interp(t0, t_rows, record.hall), (n_var, n_steps)) + np.reshape(offset_K, (-1, 1))
-    hall1 = np.broadcast_to(np.interp(t[1:], t_rows, record.hall), (n_var, n_steps)) + np.reshape(offset_K, (-1, 1))
-    all_heat = np.ones((n_var, n_steps))
-    for f in faults:
-        if f.key == "ambient":
-            if f.data.get("ramp"):
-                hall0, hall1 = hall0 + f.size[:, None] * t0 / 3600, hall1 + f.size[:, None] * t[1:] / 3600
-                continue
-            on = t0 >= f.data["from_s"] - 1e-7
-            hall0, hall1 = hall0 + f.size[:, None] * on, hall1 + f.size[:, None] * on
-        elif f.key == "speed_override":
-            speed *= np.exp(f.size)[:, None]
-        elif f.key == "missing_stop":
-            for v in range(n_var):
-                speed[v, (t0 >= f.data["start_s"] - 1e-7) & (t0 < f.data["start_s"] + 60 * f.size[v] - 1e-7)] = 0
-        elif f.key == "heat_window" and f.data["what"] == "speed":
-            speed[:, in_windows(t0 + 1e-6, f.windows(record))] *= np.exp(f.size)[:, None]
-        elif f.key == "run_state" and f.data["what"] == "heat":
-            all_heat *= np.exp(f.size)[:, None]
+class Truth:
+    """One record of one machine with its faults, in variants."""
 
-    fed = [make(index, record, row, speed, hall0) for make in getattr(machine, "feedback", ())]      # (temperatures, step) -> [(body, watts)], of what hangs on temperatures in any way
+    def __init__(self, machine, numbers, record, faults, offset_K):
+        self.n, self.faults, self.known, self.offset = len(next(iter(numbers.values()))), faults, record, offset_K
+        self.machine, self.numbers = copy.copy(machine), dict(numbers)
+        for name in ("bodies", "links", "circuits", "heats"):
+            setattr(self.machine, name, list(getattr(machine, name)))
+        self.signals = {id(f): dict(f.signals.get(record.name, {})) for f in faults}
+        self.record, self.first_row = record, 0
+        for f, t in self.terms("before"):
+            self.prefix(f, t)
+        for f, t in self.terms("record"):
+            r = self.record
+            names = dict(r=r, t=r.time_s, speed=r.speed, power=r.power, feeds=r.feeds, hall=r.hall, **self.signals[id(f)])
+            new = {k: self.value(f, x, **names) for k, x in t["record"].items()}
+            self.record = Record(r.name, r.time_s, new.get("speed", r.speed), {**r.feeds, **new.get("feeds", {})}, new.get("power", r.power), new.get("hall", r.hall), r.columns)
+        self.restructure()
+        self.index = {b: i for i, b in enumerate(self.machine.bodies)}
+        self.steps()
+        self.drive()
 
-    # --- heat by body; that with a decay apart ----------------------------------------------------------------------------
-    heat = np.zeros((n_var, n_steps, n))
-    heat_still = np.zeros((n_var, n))
-    decaying = []
-    for i, law in enumerate(machine.heats):
-        power = numbers[f"P {i}"][:, None]
-        exponent = numbers[f"e {i}"] if law["has_exponent"] else zero
-        factor = all_heat.copy()
-        decay = numbers[f"decay {i}"] if law["has_decay"] else None
-        for f in faults:
-            if f.key == "friction_law" and f.data["heat"] == i and f.data.get("decay"):
-                decay = (zero if decay is None else decay) + f.size
-                continue
-            if f.key == "friction_law" and f.data["heat"] == i:
-                exponent = exponent + f.size
-            if f.key == "recorded_drive" and f.data.get("heat") == i:
-                factor *= np.exp(f.size)[:, None]
-        idle = numbers[f"idle {i}"] if law["has_idle"] else zero
-        if law["kind"] == "cutting_heat":
-            q = power * record.power[row]
-        elif law["kind"] == "servo_loss":
-            q = idle[:, None] + power * (record.feeds[law["axis"]][row] / law["at"]) ** exponent[:, None]
-            heat_still[:, index[law["node"]]] += idle * factor[:, 0]
-        elif law["kind"] == "heat_source" and not law["has_exponent"]:
-            q = power * ((speed > 0) if law["turning"] else 1.0) * np.ones((n_var, n_steps))
-            if not law["turning"]:
-                heat_still[:, index[law["node"]]] += power[:, 0] * factor[:, 0]
-        else:
-            turning = speed > 0
-            q = np.where(turning, idle[:, None] + power * (np.where(turning, speed, law["at"]) / law["at"]) ** exponent[:, None], 0.0)
-        q = q * factor
-        if decay is not None:
-            decaying.append((index[law["node"]], q, decay, machine.t_ref))
-        else:
-            heat[:, :, index[law["node"]]] += q
-    for f in faults:
-        if f.key == "heat_source":
-            on = (t0 >= f.data["from_s"] - 1e-7).astype(float)
-            if f.data["law"] == "turning":
-                on = on * (speed > 0)
-            elif f.data["law"] == "power":
-                on = on * np.where(speed > 0, speed / f.data["at"], 0.0) ** f.data["exponent"] * (speed > 0)
-            elif f.data["from_s"] <= 0:
-                heat_still[:, index[f.data["node"]]] += f.size
-            heat[:, :, index[f.data["node"]]] += f.size[:, None] * on
-        elif f.key == "heat_window" and f.data["what"] == "heat":
-            heat[:, :, index[f.data["node"]]] += f.size[:, None] * in_windows(t0 + 1e-6, f.windows(record))
-        elif f.key == "recorded_drive" and "column" in f.data:
-            if f.data.get("mode", "gain") == "gain":
-                heat[:, :, index[f.data["node"]]] += f.size[:, None] * record.columns[f.data["column"]][1][row]
-            elif f.data["mode"] == "conductance":      # to a body as warm as the column says
-                heat[:, :, index[f.data["node"]]] += f.size[:, None] * record.columns[f.data["column"]][1][row]
-                heat_still[:, index[f.data["node"]]] += f.size * record.columns[f.data["column"]][1][0]
+    def terms(self, *kinds):
+        return [(f, t) for f in self.faults for t in f.terms if any(k in t for k in kinds)]
 
-    # --- conductances: (a, b, G, levels over steps or None); with levels G has one row for each, the first of them holds at standstill ---
-    links = []
-    for a, b in machine.links:
-        g, level = numbers[f"G {a} {b}"], None
-        for f in faults:
-            if f.key in ("convection", "contact") and f.data["link"] == (a, b):
-                g = g * np.exp(f.size)
-            if f.key == "run_state" and f.data["what"] == "exchange" and b == "hall":
-                g = g * np.exp(f.size)
-            if f.key == "forced_convection" and f.data["link"] == (a, b):     # (n / at)^size while it turns, as `changed_law` has it
-                values, level = np.unique(np.append(0.0, record.speed[row]), return_inverse=True)
-                g, level = np.stack([g if x <= 0 else g * (x / f.data["at"]) ** f.size for x in values]), level[1:]
-        links.append((a, b, g, level))
-    for f in faults:
-        if f.key == "mass_change":
-            inside = in_windows(t0 + 1e-6, f.windows(record)).astype(int)
-            joined, apart = f.size * f.data["conductance"], f.size * f.data["capacity"] / 60
-            links.append(("load", f.data["node"], np.stack([0 * joined, joined]), inside))
-            links.append(("load", "hall", np.stack([apart, 0 * apart]), inside))
-        elif f.key == "recorded_drive" and f.data.get("mode") == "conductance":
-            links.append((f.data["node"], "nothing", f.size, None))
-        elif f.key == "recorded_drive" and f.data.get("mode") == "opening":
-            values, level = np.unique(np.append(0.0, record.columns[f.data["column"]][1][row]), return_inverse=True)
-            links.append((f.data["node"], "hall", values[:, None] * f.size, level[1:]))
-        if f.key == "hidden_body":
-            links.append(("hidden", f.data["node"], f.size * f.data["conductance"], None))
-            if f.data["to_hall"] > 0:
-                links.append(("hidden", "hall", f.size * f.data["to_hall"], None))
-        elif f.key == "link":
-            links.append((f.data["a"], f.data["b"], f.size, None))
-        elif f.key == "exchange_window":
-            links.append((f.data["a"], f.data["b"], np.stack([0 * f.size, f.size]), in_windows(t0 + 1e-6, f.windows(record)).astype(int)))
-    fixed = []
-    for node, set_point in machine.circuits:
-        flow = numbers["flow " + node]
-        for f in faults:
-            if f.key == "coolant" and f.data["node"] == node:
-                if f.data["what"] == "flow":
-                    flow = flow * np.exp(f.size)
+    def value(self, f, formula, **more):
+        """A formula's value; sizes are one number where sizes are simulated one by one."""
+        s = f.size[0] if f.each_size and "r" in more else f.size
+        return laws.value(formula, {**f.names, "n": self.numbers.__getitem__, "record": self.known.name, "s": s, **more})
+
+    def per_variant(self, f, formula, **more):
+        return np.broadcast_to(np.asarray(self.value(f, formula, **more), float), (self.n,))
+
+    def prefix(self, f, t):
+        """Two rows before the record: it ran, and after a pause somebody began to write."""
+        r, s = self.record, float(f.size[0])
+        ran_s = round(60 * float(f.of(t["before"], s=s)), 3)
+        first = lambda x, on: np.concatenate([[on, 0 * on], x])
+        feed = {a: float(f.of(t.get("feeds", 0), axis=a)) for a in r.feeds}
+        self.record = Record(r.name, np.concatenate([[0.0, ran_s], r.time_s + ran_s + f.of(t["pause_s"])]), first(r.speed, float(f.of(t["speed"]))), {a: first(x, feed[a]) for a, x in r.feeds.items()},
+                             first(r.power, float(f.of(t.get("power", 0)))), np.append([r.hall[0]] * 2, r.hall), r.columns)
+        self.first_row = 2
+        for signals in self.signals.values():
+            for k, x in signals.items():
+                signals[k] = np.append([x[0]] * 2, x)
+
+    def restructure(self):
+        m, numbers = self.machine, self.numbers
+        for f, t in self.terms("body", "link", "relink", "number", "heat", "heat_like"):
+            if "body" in t:
+                m.bodies.append(t["body"])
+                numbers["C " + t["body"]] = np.maximum(self.per_variant(f, t["C"]), 1e-3)
+            elif "link" in t and "while" not in t and "open" not in t:
+                a, b = t["link"]
+                label = f"G {a} {b}"
+                g = self.per_variant(f, t["G"])
+                if label in numbers:      # a second path of the same two
+                    numbers[label] = numbers[label] + g
                 else:
-                    set_point = set_point + f.size
-        stream = flow / 60 * 3800.0
-        fixed.append((node, stream * (1 - np.exp(-numbers["passage " + node] / stream)), set_point))
+                    m.links.append((a, b))
+                    numbers[label] = g
+            elif "relink" in t:
+                (a, b), c = t["relink"], t["to"]
+                m.links[m.links.index((a, b))] = (a, c)
+                numbers[f"G {a} {c}"] = numbers[f"G {a} {b}"]
+            elif "heat_like" in t:
+                i, new, share = t["heat_like"], len(m.heats), self.per_variant(f, t["share"])
+                m.heats.append(dict(m.heats[i], node=t["node"]))
+                numbers.update({f"{k} {new}": numbers[f"{k} {i}"] * (share if k in ("P", "idle") else 1.0) for k in ("P", "idle", "e", "decay") if f"{k} {i}" in numbers})
+            elif "number" in t:
+                if t.get("if_number") and t["number"] not in numbers:
+                    continue
+                old = numbers.get(t["number"])
+                if old is None and t["number"].startswith("set "):
+                    old = dict(m.circuits)[t["number"][4:]]
+                numbers[t["number"]] = self.per_variant(f, t["is"], x=0.0 if old is None else old)
+            elif "heat" in t and "of" not in t:
+                i, kind = len(m.heats), dict(constant="heat_source", turning="heat_source", speed="heat_source", feed="servo_loss", load="cutting_heat")[t["law"]]
+                power = t["law"] in ("speed", "feed")
+                m.heats.append(heat_law(kind, t["heat"], float(f.of(t.get("at", 1.0))), t.get("axis"), t["law"] == "turning", power, decay="decay" in t, gate=(f, t["while"]) if "while" in t else None))
+                numbers[f"P {i}"] = self.per_variant(f, t["W"])
+                if power:
+                    numbers[f"e {i}"] = self.per_variant(f, t.get("exponent", 1.0))
+                if "decay" in t:
+                    numbers[f"decay {i}"] = self.per_variant(f, t["decay"])
 
-    levels = [m for *_, m in links if m is not None]
-    radix = np.cumprod([1] + [int(g.shape[0]) for _, _, g, m in links if m is not None])
-    state = sum((m * int(x) for x, m in zip(radix, levels)), np.zeros(n_steps, int))
-    c = np.stack([capacity[b] for b in bodies], 1)
+    # --- steps and what drives -----------------------------------------------------------------------------------------------
+    def windows(self, f, formula):
+        """[(begin, end)], each a number or one for each variant."""
+        return self.value(f, formula, windows=f.windows.get(self.record.name, f.windows.get("*", [])), t_end=self.record.time_s[-1])
 
-    def matrices(s):
-        a_matrix, to_hall, constant = np.zeros((n_var, n, n)), np.zeros((n_var, n)), np.zeros((n_var, n))
-        for a, b, g, level in links:
-            if level is not None:
-                s, one = divmod(s, g.shape[0])
-                g = g[one]
-            i = index[a]
+    def gate(self, f, formula):
+        """1 in the windows, by step."""
+        on = np.zeros((self.n, len(self.h)), bool)
+        for a, b in self.windows(f, formula):
+            a, b = (np.reshape(np.asarray(x, float), (-1, 1)) for x in (a, b))
+            on |= (self.t[:-1] + 1e-6 >= a) & (self.t[:-1] + 1e-6 < b)
+        return on
+
+    def steps(self):
+        rows = self.record.time_s
+        events = [x for f, t in self.terms("while") for w in self.windows(f, t["while"]) for x in w]
+        t = np.unique(np.round(np.concatenate([rows] + [np.clip(np.atleast_1d(e).ravel(), 0, rows[-1]) for e in events]), 6))
+        self.fed = self.terms("fed")
+        if self.fed or any(f"decay {i}" in self.numbers for i in range(len(self.machine.heats))):
+            longest = self.machine.longest_step_s
+            t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / longest)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
+        self.t, self.h = t, np.diff(t)
+        self.row = np.clip(np.searchsorted(rows, t[:-1] + 1e-7, side="right") - 1, 0, len(rows) - 1)
+        self.at_rows = np.searchsorted(t, rows - 1e-6)
+
+    def drive(self):
+        r, full = self.record, (self.n, len(self.h))
+        self.speed, self.power = (np.broadcast_to(x[self.row], full) for x in (r.speed, r.power))
+        self.feeds = {a: np.broadcast_to(x[self.row], full) for a, x in r.feeds.items()}
+        self.hall0, self.hall1 = (np.interp(t, r.time_s, r.hall) + self.offset[:, None] for t in (self.t[:-1], self.t[1:]))
+        for f, t in self.terms("drive"):
+            on, s = self.gate(f, t["while"]) if "while" in t else True, f.size[:, None]
+            new = lambda x, time: np.where(on, self.value(f, t["is"], x=x, s=s, t=time), x)
+            if t["drive"] == "hall":
+                self.hall0, self.hall1 = new(self.hall0, self.t[:-1]), new(self.hall1, self.t[1:])
+            elif t["drive"] == "feeds":
+                self.feeds = {a: new(x, self.t[:-1]) for a, x in self.feeds.items()}
+            else:
+                setattr(self, t["drive"], new(getattr(self, t["drive"]), self.t[:-1]))
+
+    def signal(self, f, name):
+        """A signal's values by row; a formula without one is constant."""
+        known = self.signals[id(f)]
+        if isinstance(name, str) and name in known:
+            return known[name]
+        if isinstance(name, str) and name in self.record.columns:
+            return self.record.columns[name][1]
+        return np.full(len(self.record.time_s), float(self.value(f, name, **known)))
+
+    # --- heats and links -----------------------------------------------------------------------------------------------------
+    def heat_of(self, i):
+        """Heat `i` by step at the reference temperature, and what of it there is at rest."""
+        law, n = self.machine.heats[i], self.numbers
+        p, e, idle = n[f"P {i}"][:, None], n.get(f"e {i}", np.zeros(self.n))[:, None], n.get(f"idle {i}", np.zeros(self.n))[:, None]
+        turning, still = self.speed > 0, np.zeros(self.n)
+        if law["kind"] == "cutting_heat":
+            q = p * self.power
+        elif law["kind"] == "servo_loss":
+            q, still = idle + p * (self.feeds[law["axis"]] / law["at"]) ** e, idle[:, 0]
+        elif law["kind"] == "heat_source" and not law["has_exponent"]:
+            q, still = p * np.where(turning | (not law["turning"]), 1.0, 0.0), p[:, 0] * (not law["turning"])
+        else:
+            q = np.where(turning, idle + p * (np.where(turning, self.speed, law["at"]) / law["at"]) ** e, 0.0)
+        if law["gate"]:
+            q, still = q * self.gate(*law["gate"]), 0 * still
+        return q, still
+
+    def heats(self):
+        self.heat, self.still, self.decaying = np.zeros((self.n, len(self.h), len(self.index))), np.zeros((self.n, len(self.index))), []
+        for i, law in enumerate(self.machine.heats):
+            (q, still), k = self.heat_of(i), self.index[law["node"]]
+            self.still[:, k] += still
+            if f"decay {i}" in self.numbers:
+                self.decaying.append((k, q, self.numbers[f"decay {i}"]))
+            else:
+                self.heat[:, :, k] += q
+        for f, t in self.terms("heat"):
+            if "of" in t:
+                self.heat[:, :, self.index[t["heat"]]] += self.per_variant(f, t["W"])[:, None] * self.signal(f, t["of"])[self.row]
+
+    def levels(self, f, t):
+        """Values of an opening or a gate, the one that holds at standstill first; and which of them holds, by step."""
+        if "while" in t:
+            return np.array([0.0, 1.0]), self.gate(f, t["while"])[0].astype(int)
+        values, level = np.unique(np.append(0.0, self.signal(f, t.get("open", t.get("of")))[self.row]), return_inverse=True)
+        return values, level[1:]
+
+    def paths(self):
+        """(a, b, conductances by level and variant, level by step) of all links; constant watts beside them: (a, watts by level and variant, ...)."""
+        links = {(a, b): (self.numbers[f"G {a} {b}"][None], np.zeros(len(self.h), int)) for a, b in self.machine.links}
+        for f, t in ((f, t) for f, t in self.terms("law") if "G" in t):
+            pair = tuple(t["law"])
+            values, level = self.levels(f, t)
+            links[pair] = np.stack([self.per_variant(f, t["G"], g=links[pair][0][0], x=x) for x in values]), level
+        out = [(a, b, g, level) for (a, b), (g, level) in links.items()]
+        for f, t in self.terms("link"):
+            if "while" in t or "open" in t:
+                values, level = self.levels(f, t)
+                out.append((*t["link"], values[:, None] * self.per_variant(f, t["G"]), level))
+        for f, t in self.terms("bath"):
+            values, level = self.levels(f, t) if "while" in t or "open" in t else (np.ones(1), np.zeros(len(self.h), int))
+            g, i, warm = values[:, None] * self.per_variant(f, t["G"]), self.index[t["bath"]], self.signal(f, t["degC"])
+            out.append((t["bath"], "nothing", g, level))
+            self.heat[:, :, i] += g[level].T * warm[self.row]
+            self.still[:, i] += g[0] * warm[0]
+        return out
+
+    def circuits(self):
+        out = []
+        for node, set_point in self.machine.circuits:
+            out.append((node, laws.passes(self.numbers.__getitem__, node), self.numbers.get("set " + node, set_point)))
+        return out
+
+    def matrices(self, state, links, circuits, c):
+        n = len(self.index)
+        a_matrix, to_hall, constant = np.zeros((self.n, n, n)), np.zeros((self.n, n)), np.zeros((self.n, n))
+        for a, b, g, _ in links:
+            state, one = divmod(state, len(g))
+            g, i = g[one], self.index[a]
             a_matrix[:, i, i] -= g
             if b == "hall":
                 to_hall[:, i] += g
             elif b != "nothing":
-                j = index[b]
+                j = self.index[b]
                 a_matrix[:, i, j] += g
                 a_matrix[:, j, i] += g
                 a_matrix[:, j, j] -= g
-        for node, g, set_point in fixed:
-            a_matrix[:, index[node], index[node]] -= g
-            constant[:, index[node]] += g * set_point
+        for node, g, set_point in circuits:
+            a_matrix[:, self.index[node], self.index[node]] -= g
+            constant[:, self.index[node]] += g * set_point
         return a_matrix / c[:, :, None], to_hall / c, constant / c
 
-    cache, transitions = {}, {}
-    code = np.empty(n_steps, int)
-    hr = np.round(h, 6)
-    for k in range(n_steps):
-        key = (state[k], hr[k])
-        if key not in transitions:
-            if key[0] not in cache:
-                cache[key[0]] = matrices(key[0])
-            a_matrix, to_hall, constant = cache[key[0]]
-            big = np.zeros((n_var, 3 * n, 3 * n))
-            big[:, :n, :n] = a_matrix * hr[k]
-            big[:, :n, n:2 * n] = big[:, n:2 * n, 2 * n:] = np.eye(n) * hr[k]
-            e = expm(big)
-            transitions[key] = (len(transitions), e[:, :n, :n], e[:, :n, n:2 * n], e[:, :n, 2 * n:], to_hall, constant)
-        code[k] = transitions[key][0]
-    table = sorted(transitions.values(), key=lambda x: x[0])
-    base, ramp = heat / c[:, None, :], np.zeros((n_var, n_steps, n))
-    for i, tr in enumerate(table):
-        m = code == i
-        base[:, m] += tr[4][:, None, :] * hall0[:, m, None] + tr[5][:, None, :]
-        ramp[:, m] = tr[4][:, None, :] * ((hall1 - hall0)[:, m] / h[m])[:, :, None]
+    def begin(self, matrix, c):
+        T = np.repeat(self.hall0[:, :1], len(self.index), 1)
+        if not isinstance(self.machine.start, str):
+            T = np.full((self.n, len(self.index)), float(self.machine.start))
+        elif self.machine.start == "steady":
+            a_matrix, to_hall, constant = matrix
+            T = np.linalg.solve(a_matrix, -(self.still / c + to_hall * self.hall0[:, :1] + constant)[:, :, None])[:, :, 0]
+        for f, t in self.terms("start"):
+            i = self.index[t["start"]]
+            T[:, i] = self.per_variant(f, t["degC"]) if "degC" in t else T[:, i] + self.per_variant(f, t["K"])
+        return T
 
-    # --- start ---------------------------------------------------------------------------------------------------------------
-    T = np.repeat(hall0[:, :1], n, 1)
-    if not isinstance(machine.start, str):
-        T = np.full((n_var, n), float(machine.start))
-    elif machine.start == "steady":
-        if state[0] not in cache or state[0] != 0:
-            cache[0] = matrices(0)
-        a_matrix, to_hall, constant = cache[0]
-        T = np.linalg.solve(a_matrix, -(heat_still / c + to_hall * hall0[:, :1] + constant)[:, :, None])[:, :, 0]
-    out = np.empty((n_var, n_steps + 1, n))
-    out[:, 0] = T
-    if not decaying and not fed:
-        for i, tr in enumerate(table):       # what does not depend on T, at once
+    def feedback(self):
+        """(T, step) -> [(body, watts)] of heats that hang on temperatures."""
+        heats = {}
+
+        def heat_of(i, T, k):
+            q = heats.setdefault(i, self.heat_of(i)[0])[:, k]
+            return q * np.exp(-self.numbers.get(f"decay {i}", 0.0) * (T[:, self.index[self.machine.heats[i]["node"]]] - self.machine.t_ref))
+        states = {}
+
+        def watts(T, k):
+            out = []
+            for f, t in self.fed:
+                names = {**{name: x[self.row[k]] for name, x in self.signals[id(f)].items()}, "T": lambda b: T[:, self.index[b]], "hall": self.hall0[:, k], "heat_of": lambda i: heat_of(i, T, k),
+                         "thermostat": lambda x, low, high: laws.thermostat(states.setdefault(id(f), {}), x, k, low, high)}
+                out += [(self.index[b], self.value(f, x, **names)) for b, x in t["fed"].items()]
+            return out
+        return watts
+
+    def temperatures(self):
+        """Of all bodies at the ends of all steps."""
+        c = np.stack([self.numbers["C " + b] for b in self.machine.bodies], 1)
+        self.heats()
+        links, circuits = self.paths(), self.circuits()
+        radix = np.cumprod([1] + [len(g) for _, _, g, _ in links])
+        state = sum((level * int(x) for x, (*_, level) in zip(radix, links)), np.zeros(len(self.h), int))
+        cache, transitions, n = {0: self.matrices(0, links, circuits, c)}, {}, len(self.index)
+        code, hr = np.empty(len(self.h), int), np.round(self.h, 6)
+        for k, key in enumerate(zip(state, hr)):
+            if key not in transitions:
+                if key[0] not in cache:
+                    cache[key[0]] = self.matrices(key[0], links, circuits, c)
+                big = np.zeros((self.n, 3 * n, 3 * n))
+                big[:, :n, :n] = cache[key[0]][0] * key[1]
+                big[:, :n, n:2 * n] = big[:, n:2 * n, 2 * n:] = np.eye(n) * key[1]
+                e = expm(big)
+                transitions[key] = (len(transitions), e[:, :n, :n], e[:, :n, n:2 * n], e[:, :n, 2 * n:], *cache[key[0]][1:])
+            code[k] = transitions[key][0]
+        table = sorted(transitions.values(), key=lambda x: x[0])
+        base, ramp = self.heat / c[:, None, :], np.zeros_like(self.heat)
+        for i, tr in enumerate(table):
+            m = code == i
+            base[:, m] += tr[4][:, None, :] * self.hall0[:, m, None] + tr[5][:, None, :]
+            ramp[:, m] = tr[4][:, None, :] * ((self.hall1 - self.hall0)[:, m] / self.h[m])[:, :, None]
+        T = self.begin(cache[0], c)
+        return self.alone(T, table, code, base, ramp) if not self.decaying and not self.fed else self.fed_back(T, table, code, base, ramp, c)
+
+    def alone(self, T, table, code, base, ramp):
+        out = np.empty((self.n, len(self.h) + 1, len(self.index)))
+        out[:, 0] = T
+        for i, tr in enumerate(table):
             m = code == i
             base[:, m] = np.matmul(base[:, m], tr[2].transpose(0, 2, 1)) + np.matmul(ramp[:, m], tr[3].transpose(0, 2, 1))
-        for k in range(n_steps):
+        for k in range(len(self.h)):
             T = np.matmul(table[code[k]][1], T[:, :, None])[:, :, 0] + base[:, k]
             out[:, k + 1] = T
-    else:
-        for k in range(n_steps):
+        return out
+
+    def fed_back(self, T, table, code, base, ramp, c):
+        """Heat that hangs on temperatures is linear over each step, from its value at the beginning to that at a first guess of the end."""
+        out, watts = np.empty((self.n, len(self.h) + 1, len(self.index))), self.feedback()
+        out[:, 0] = T
+
+        def hanging(T, k):
+            decaying = [(i, q[:, k] * np.exp(-decay * (T[:, i] - self.machine.t_ref))) for i, q, decay in self.decaying]
+            return decaying + watts(T, k)
+        for k in range(len(self.h)):
             _, E, F1, F2, _, _ = table[code[k]]
-            b = base[:, k].copy()
-            for i, q, decay, at in decaying:
-                b[:, i] += q[:, k] * np.exp(-decay * (T[:, i] - at)) / c[:, i]
-            before = [x for q in fed for x in q(T, k)]
-            for i, watts in before:
-                b[:, i] += watts / c[:, i]
-            first = np.matmul(E, T[:, :, None]) + np.matmul(F1, b[:, :, None]) + np.matmul(F2, ramp[:, k, :, None])
-            r = ramp[:, k].copy()
-            for i, q, decay, at in decaying:
-                r[:, i] += q[:, k] * (np.exp(-decay * (first[:, i, 0] - at)) - np.exp(-decay * (T[:, i] - at))) / c[:, i] / h[k]
-            for (i, old), (_, new) in zip(before, [x for q in fed for x in q(first[:, :, 0], k)]):
-                r[:, i] += (new - old) / c[:, i] / h[k]
-            T = (np.matmul(E, T[:, :, None]) + np.matmul(F1, b[:, :, None]) + np.matmul(F2, r[:, :, None]))[:, :, 0]
+            b, r, before = base[:, k].copy(), ramp[:, k].copy(), hanging(T, k)
+            for i, w in before:
+                b[:, i] += w / c[:, i]
+            known = np.matmul(E, T[:, :, None]) + np.matmul(F1, b[:, :, None])
+            first = (known + np.matmul(F2, r[:, :, None]))[:, :, 0]
+            for (i, old), (_, new) in zip(before, hanging(first, k)):
+                r[:, i] += (new - old) / c[:, i] / self.h[k]
+            T = (known + np.matmul(F2, r[:, :, None]))[:, :, 0]
             out[:, k + 1] = T
-    at_rows = np.searchsorted(t, t_rows - 1e-6)
-    T_rows = out[:, at_rows]
-    hall_rows = np.concatenate([hall0, hall1[:, -1:]], 1)[:, at_rows]
+        return out
 
-    def of(node):
-        return hall_rows if node == "hall" else T_rows[:, :, index[node]]
-
-    # --- instruments ------------------------------------------------------------------------------------------------------------
-    temperatures = np.empty((n_var, len(t_rows), len(machine.sensors)))
-    hours = t_rows / 3600
-    for i, (name, node) in enumerate(machine.sensors):
-        y = of(node).copy()
-        for f in faults:
-            if f.data.get("sensor") != name:
-                continue
-            s = f.size[:, None]
-            if f.key == "sensor_place":
-                y = (1 - s) * y + s * of(f.data["other"])
-            elif f.key == "sensor_detached":
-                on = t_rows >= f.data["from_s"] - 1e-7
-                y = y + s * on * (hall_rows - y)
-            elif f.key == "sensor_lag":
-                y = first_order(t_rows, y, 60 * f.size, y[:, 0])
-            elif f.key == "sensor_bias":
-                y = y + s
-            elif f.key == "sensor_drift":
-                y = y + s * hours
-        temperatures[:, :, i] = y
-    displacements = np.zeros((n_var, len(t_rows), len(machine.displacements)))
-    speed_rows = speed[:, np.searchsorted(t0, t_rows[:-1] - 1e-6)]
-    for i, (name, _, nodes) in enumerate(machine.displacements):
-        u = np.zeros((n_var, len(t_rows)))
-        for node in nodes:
-            s = numbers[f"S {name} {node}"]
-            for f in faults:
-                if f.key == "expansion" and f.data["node"] == node and f.data["displacement"] in (None, name):
-                    s = s * np.exp(f.size)
-            u += s[:, None] * (of(node) - machine.t_ref)
-        for f in faults:
-            if f.data.get("channel") != name:
-                continue
-            if f.key == "displacement_path":
-                if "column" in f.data:
-                    d = np.broadcast_to(record.columns[f.data["column"]][1] - machine.t_ref, (n_var, len(t_rows)))
-                else:
-                    d = of(f.data["node"]) - machine.t_ref
-                if f.data["lag_min"] > 0:
-                    d = first_order(t_rows, d, np.full(n_var, 60 * f.data["lag_min"]), d[:, 0])
-                u += f.size[:, None] * d
-            elif f.key == "spindle_growth":
-                drive = np.where(speed_rows > 0, np.where(speed_rows > 0, speed_rows, 1) / f.data["at"], 0) ** f.data["exponent"] * (speed_rows > 0)
-                y = np.zeros((n_var, len(t_rows)))
-                for k in range(1, len(t_rows)):
-                    e = np.exp(-(t_rows[k] - t_rows[k - 1]) / (60 * f.data["lag_min"]))
-                    y[:, k] = y[:, k - 1] * e + drive[:, k - 1] * (1 - e)
-                u += f.size[:, None] * y
-            elif f.key == "centrifugal":
-                u += f.size[:, None] * (np.append(speed_rows, speed_rows[:, -1:], 1) / f.data["at"]) ** 2
-            elif f.key == "scale_expansion":
-                u = first_order(t_rows, u, 60 * f.size, u[:, 0]) if f.data["what"] == "lag" else u * np.exp(f.size)[:, None]
-            elif f.key == "mount_shift":
-                u += f.size[:, None] * (t_rows >= f.data["from_s"] - 1e-7)
-        displacements[:, :, i] = u
-    names = [n for n, _ in machine.sensors]
-    for f in faults:
-        if f.key == "sensor_swap":
-            a, b = names.index(f.data["sensor"]), names.index(f.data["other"])
-            temperatures[:, :, [a, b]] = temperatures[:, :, [b, a]]
-    for f in faults:
-        if f.key == "clock_offset":
-            for v in range(n_var):
-                at = np.clip(t_rows - 60 * f.size[v], t_rows[0], t_rows[-1])
-                for a in (temperatures, displacements):
-                    for i in range(a.shape[2]):
-                        a[v, :, i] = np.interp(at, t_rows, a[v, :, i])
-    return temperatures, displacements
+    # --- instruments ---------------------------------------------------------------------------------------------------------
+    def readings(self):
+        rows, m = self.record.time_s, self.machine
+        T = self.temperatures()[:, self.at_rows]
+        hall = np.concatenate([self.hall0, self.hall1[:, -1:]], 1)[:, self.at_rows]
+        of = lambda node: hall if node == "hall" else T[:, :, self.index[node]]
+        speed = self.speed[:, np.searchsorted(self.t[:-1], rows[:-1] - 1e-6)]
+        read = {name: of(node).copy() for name, node in m.sensors}
+        for name, _, nodes in m.displacements:
+            read[name] = sum((self.numbers[f"S {name} {node}"][:, None] * (of(node) - m.t_ref) for node in nodes), np.zeros_like(hall))
+        groups = dict(thermometers=[n for n, _ in m.sensors], displacements=[d[0] for d in m.displacements])
+        groups["all"] = groups["thermometers"] + groups["displacements"]
+        for f, t in self.terms("reads"):
+            channels = groups[t["reads"]] if isinstance(t["reads"], str) and t["reads"] in groups else t["reads"] if isinstance(t["reads"], list) else [t["reads"]]
+            before, s = {k: x.copy() for k, x in read.items()}, np.broadcast_to(f.size, (self.n,))[:, None]
+            lag = lambda x, tau: first_order(rows, np.array(np.broadcast_to(x, hall.shape)), np.broadcast_to(np.reshape(tau, -1), (self.n,)), np.broadcast_to(x, hall.shape)[:, 0])
+            names = dict(s=s, t=rows, hall=hall, of=of, speed=np.append(speed, speed[:, -1:], 1), lag=lag, read=before.__getitem__, col=lambda name: self.record.columns[name][1][None], t_ref=m.t_ref, **{k: x[None] for k, x in self.signals[id(f)].items()})
+            for c in channels:
+                read[c] = np.array(np.broadcast_to(laws.value(t["is"], {**f.names, "n": lambda k: self.numbers[k][:, None], "y": read[c], "channel": c, **names}), hall.shape))
+        stack = lambda which: np.stack([read[c] for c in which], 2)[:, self.first_row:] if which else np.empty((self.n, len(rows) - self.first_row, 0))
+        return stack(groups["thermometers"]), stack(groups["displacements"])

@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 """Scores diagnoses of a set of cases against their truth; the rules are those of README.md and were written before any diagnosis was run.
 
-    score.py CASES [--diagnoses NAME]      reads case_*/truth.json, case_*/NAME/diagnosis.json, case_*/NAME.heldout.json
+    score.py CASES [--diagnoses NAME] [--csv FILE]      reads case_*/truth.json, case_*/NAME/diagnosis.json, case_*/NAME.heldout.json
+
+FILE gets one row for each figure, after those that it has: set, diagnoses, figure, yes, of, share and its 95 % interval in per cent. The tables of docs/theory/diagnosis_trials.md are made of such rows.
 """
 import argparse
 import collections
+import csv
 import json
 import math
 import pathlib
@@ -15,12 +18,22 @@ MINUTES = dict(min=1.0, s=1 / 60, h=60.0, d=1440.0)
 TO_UNIT = {"kJ/K": ("J/K", 1e3), "mK": ("K", 1e-3), "kW": ("W", 1e3), "mm": ("um", 1e3), "percent": ("1", 1e-2), "%": ("1", 1e-2), "": ("1", 1.0), "-": ("1", 1.0)}
 
 
-def wilson(k, n):
-    if n == 0:
-        return "     -"
+def interval(k, n):
+    """Share and its 95 % interval (Wilson) [%]."""
     z, p = 1.959964, k / n
     middle, half = (p + z * z / (2 * n)) / (1 + z * z / n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return f"{k:4d} of {n:4d}   {100 * p:5.1f} %   [{100 * max(0, middle - half):5.1f}, {100 * min(1, middle + half):5.1f}]"
+    return 100 * p, 100 * max(0, middle - half), 100 * min(1, middle + half)
+
+
+def wilson(k, n):
+    return "     -" if n == 0 else f"{k:4d} of {n:4d}   {interval(k, n)[0]:5.1f} %   [{interval(k, n)[1]:5.1f}, {interval(k, n)[2]:5.1f}]"
+
+
+def append_csv(path, rows):
+    fresh = not pathlib.Path(path).exists()
+    with open(path, "a", newline="") as file:
+        out = csv.writer(file)
+        out.writerows([["set", "diagnoses", "figure", "yes", "of", "share_percent", "low_percent", "high_percent"]] * fresh + rows)
 
 
 def words(text):
@@ -138,6 +151,7 @@ def main():
     a.add_argument("cases")
     a.add_argument("--diagnoses", default="diagnosis")
     a.add_argument("--list", action="store_true", help="one line for each case")
+    a.add_argument("--csv", help="appends the figures to this file")
     a = a.parse_args()
     count = collections.defaultdict(lambda: [0, 0])
     by_kind = collections.defaultdict(lambda: [0, 0, 0, 0, 0])
@@ -226,6 +240,8 @@ def main():
     print("95 % intervals: Wilson")
     for figure in sorted(count):
         print(f"{figure:82s} {wilson(*count[figure])}")
+    if a.csv:
+        append_csv(a.csv, [[pathlib.Path(a.cases).resolve().name, a.diagnoses, figure, *count[figure], *(f"{x:.1f}" for x in interval(*count[figure]))] for figure in sorted(count)])
     print(f"\n{'class and truth':24s} {'cases':>6s} {'kind':>6s} {'place':>6s} {'loose':>6s} {'wrong':>6s}     kind, place: named; loose: kind in any standing; wrong: another kind named")
     for (cls, key), t in sorted(by_kind.items()):
         print(f"{cls} {key:22s} " + " ".join(f"{x:6d}" for x in t))

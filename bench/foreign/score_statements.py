@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Scores the statements of diagnoses (quantity, place, what it follows, probability) against the truth of a set of cases.
 
-    score_statements.py CASES ... [--diagnoses NAME] [--list]      reads case_*/truth.json and case_*/NAME/diagnosis.json
+    score_statements.py CASES ... [--diagnoses NAME] [--list] [--csv FILE]      FILE: as score.py has it; reads case_*/truth.json and case_*/NAME/diagnosis.json
 
 Rules (README.md, "Scoring statements"), written before the sets seventh, ninth, tenth, eleventh, twelfth and the first 150 cases of `first` were given to it:
 
@@ -21,6 +21,8 @@ import json
 import math
 import pathlib
 import re
+
+from score import append_csv, interval
 
 QUANTITY = dict(
     heat=["heat_source", "friction_law", "recorded_drive", "heat_window"],
@@ -98,6 +100,7 @@ def main():
     a.add_argument("cases", nargs="+")
     a.add_argument("--diagnoses", default="diagnosis")
     a.add_argument("--list", action="store_true", help="each case whose first statement is wrong, or that is not silent")
+    a.add_argument("--csv", help="appends the figures to this file")
     a = a.parse_args()
     counts, bins = collections.defaultdict(collections.Counter), collections.defaultdict(list)
     kinds, log_score, seconds = collections.defaultdict(list), [], []
@@ -148,6 +151,10 @@ def main():
     brier = [(p - o) ** 2 for v in bins.values() for p, o in v]
     print(f"Brier score {sum(brier) / max(1, len(brier)):.4f}, log score {sum(log_score) / max(1, len(log_score)):.4f} a statement")
     print("first statement right, by kind:", {k: f"{sum(v)}/{len(v)}" for k, v in sorted(kinds.items())})
+    if a.csv:
+        append_csv(a.csv, [[who, a.diagnoses, "statements: " + figure, c[figure], c[figure.split()[0]], *(f"{x:.1f}" for x in interval(c[figure], c[figure.split()[0]]))]
+                           for who, c in counts.items() for figure in ("one top", "one three", "one said wrong", "faint top", "faint three", "two top", "two both", "faultless said") if c[figure.split()[0]]]
+                   + [[who, a.diagnoses, "statements: silent", c["silent"], c["faultless"], *(f"{x:.1f}" for x in interval(c["silent"], c["faultless"]))] for who, c in counts.items() if c["faultless"]])
     if seconds:
         print(f"seconds: median {sorted(seconds)[len(seconds) // 2]:.1f}, most {max(seconds):.1f}")
 

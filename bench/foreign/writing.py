@@ -1,15 +1,6 @@
 """A machine as a user would write it down (scenario YAML), and records as a logger would write them."""
 import numpy as np
 
-import further_families
-import third_families
-
-TITLES = dict(lathe_headstock="headstock of a lathe", grinding_spindle="grinding spindle with coolant", motor_spindle="motor spindle with a chiller",
-              printer="printer with a heated bed in a chamber; the bed's electric power is recorded", incubator="heated box with a fan; the heater's electric power is recorded",
-              house="room of a house; heaters' power and outdoor temperature are recorded", gantry="gantry with two screws", heater_plate="test bench with a heater plate",
-              gearbox="gearbox with an oil sump", rotary_table="rotary table with a torque motor", hydraulic_unit="hydraulic unit with pump and manifold",
-              **further_families.TITLES, **third_families.TITLES)
-
 
 def g(x):
     return f"{x:.6g}"
@@ -32,7 +23,7 @@ def known_to(machine, keys):
 
 def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="measured_1.csv", name=None):
     v = {k: x for k, (x, _) in machine.numbers.items()}
-    out = [f"# {TITLES[machine.family].capitalize()}. Nominal numbers are estimates.", f"name: {name or machine.family}", f"reference_temperature: {g(machine.t_ref)} degC",
+    out = [f"# {machine.title[:1].upper() + machine.title[1:]}. Nominal numbers are estimates.", f"name: {name or machine.family}", f"reference_temperature: {g(machine.t_ref)} degC",
            f"start: {body(machine.start) if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
     for b in machine.bodies:
         if b in machine.air:

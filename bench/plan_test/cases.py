@@ -19,19 +19,21 @@ for v in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "foreign"))
-import families
 import faults
-from generate import log_uniform, noisy, scattered
-from nats import HALL_SIGMA_K, Judge
-from network import Record, simulate
+import machines
+from draw import noisy
+from drives import record as drawn_record
+from machines import log_uniform
+from network import Record, moved, simulate
+from sizing import HALL_SIGMA_K, Judge
 from writing import record_csv, scenario
 
 SEED = 20261125
 HOURS, DT = 8.0, 60
 # Machines whose test takes a shift and whose heats do not depend on temperature: `diagnose` takes seconds.
-FAMILIES = [families.grinding_spindle, families.printer, families.incubator, families.gantry, families.heater_plate, families.rotary_table, families.hydraulic_unit]
+FAMILIES = ["grinding_spindle", "printer", "incubator", "gantry", "heater_plate", "rotary_table", "hydraulic_unit"]
 # Lasting faults only: no programme knows in advance when something happens.
-KINDS = ["hidden_body", "link", "heat_source", "displacement_path", "sensor_place", "convection", "contact", "ambient", "sensor_bias", "sensor_lag", "sensor_drift",
+KINDS = ["hidden_body", "link", "heat_source", "body_growth", "sensor_place", "convection", "contact", "ambient", "sensor_bias", "sensor_lag", "sensor_drift",
          "clock_offset", "speed_override", "friction_law", "expansion"]
 # Evidence of the fault, log-uniform. In even cases it is that of the usual test; in odd cases that of a record of the job of the same length, which favours neither test.
 NATS = (5.0, 30.0)
@@ -58,17 +60,17 @@ def record_of(name, sections, hall, like):
 
 def attempt(index, number, kind, sized_by):
     rng = np.random.default_rng([SEED, index, number])
-    machine, plan = FAMILIES[int(rng.integers(len(FAMILIES)))](rng, families.Draw(rng))
-    noise = families.instruments(rng, machine, plan)
-    noise["coloured"] = dict(share=0.0, minutes=0.0)
+    family = FAMILIES[int(rng.integers(len(FAMILIES)))]
+    machine, plan = machines.machine(rng, family, machines.families("first")[family])
+    noise, _ = machines.instruments(rng, machine, plan)
     n_rows = int(round(HOURS * 3600 / DT)) + 1
-    job = families.record(rng, "job", plan, n_rows, DT)
+    job = drawn_record(rng, "job", plan, np.arange(n_rows) * float(DT), ["blocks", "blocks", "blocks"])
     top = {k: float(x.max()) for k, x in drives(job).items()}
     if not any(top.values()):
         raise faults.Impossible
     usual = record_of("measured_1", [(30 * HOURS, top), (30 * HOURS, {})], job.hall, job)
-    fault = faults.draw(rng, kind, machine, plan, [usual], None, True)
-    if fault.data.get("from_s", 0) > 0:
+    fault, = faults.Words(rng, machine, plan, [usual], noise=noise).draw(kind)
+    if fault.names.get("from_s", 0) > 0:
         raise faults.Impossible
     fault.records = None
     judge = Judge(machine, [usual if sized_by == "usual" else job], noise)
@@ -82,7 +84,13 @@ def attempt(index, number, kind, sized_by):
     judge = Judge(machine, [usual], noise)
     usual_nats = float(judge.nats(judge.deviation([fault], 1))[0])
     offset = float(np.round(HALL_SIGMA_K * rng.standard_normal(), 3))
-    return dict(machine=machine, noise=noise, job=job, usual=usual, fault=fault, nats=nats, usual_nats=usual_nats, sized_by=sized_by, numbers=scattered(rng, machine, None), offset=offset, noise_seed=[SEED, index, number, 7])
+    return dict(machine=machine, noise=noise, job=job, usual=usual, fault=fault, nats=nats, usual_nats=usual_nats, sized_by=sized_by, numbers=scattered(rng, machine), offset=offset, noise_seed=[SEED, index, number, 7])
+
+
+def scattered(rng, machine):
+    """True numbers, 10 % one sigma about the scenario's."""
+    z = machines.scattered(rng, machine, {})
+    return {k: np.array([moved(v, kind, z[k])]) for k, (v, kind) in machine.numbers.items()}
 
 
 def case(index, kind):
@@ -99,8 +107,8 @@ def measured(c, record):
     """The CSV of a test; both tests get the same draws of noise."""
     t, u = (a[0] for a in simulate(c["machine"], c["numbers"], record, [c["fault"]], np.array([c["offset"]])))
     rng = np.random.default_rng(c["noise_seed"])
-    t = noisy(rng, t, c["noise"]["temperature"], c["noise"]["coloured"], DT)
-    u = noisy(rng, u, c["noise"]["displacement"], c["noise"]["coloured"], DT)
+    t = noisy(rng, t, c["noise"]["temperature"], c["noise"]["coloured"], record.time_s)
+    u = noisy(rng, u, c["noise"]["displacement"], c["noise"]["coloured"], record.time_s)
     return record_csv(c["machine"], record, t, u, rng, 0.0)
 
 
@@ -118,7 +126,7 @@ def write(folder, c, index, kind, program, programmes):
     machine = c["machine"]
     (folder / "scenario.yaml").write_text(scenario(machine, DT, hall="{csv: job.csv, channel: ambient}", plan="job.csv"))
     (folder / "job.csv").write_text(bare_csv(c["job"]))
-    truth = dict(case=index, family=machine.family, kind=kind, sized_by=c["sized_by"], effects=[faults.told(c["fault"], machine, [c["usual"]], c["nats"])], seed=SEED)
+    truth = dict(case=index, family=machine.family, kind=kind, sized_by=c["sized_by"], effects=[faults.told(c["fault"], [c["usual"]], c["nats"])], seed=SEED)
     t, u = c["noise"]["temperature"], c["noise"]["displacement"]
     sigma = [float(np.sqrt(x["sigma"] ** 2 + x["step"] ** 2 / 12)) for x in (t, u)]
     done = subprocess.run([program, "plan-test", "scenario.yaml", "--time", f"{HOURS} h", "--interval", f"{DT} s", "--noise-temperature", f"{sigma[0]:.4g} K",
