@@ -148,8 +148,8 @@ class Figures(Folder):
         with contextlib.redirect_stdout(io.StringIO()) as out:
             score.print_figures(rows, ["mine", "ridge", "none"])
         lines = out.getvalue().strip().splitlines()[2:]
-        self.assertEqual(lines, ["| mine | 3 of 3 | 1.05 | 4.00 (days_z) | 1 | 1 | 2 of 3 |",    # 2/0.5, 1/1, 1.05/1; 1.05 > drift of 1; 2/1 > 1.1; 95 and 90 %
-                                 "| ridge | 3 of 3 | 1.00 | 2.00 (days_z) | 0 | 0 | - |"])
+        self.assertEqual(lines, ["| mine | 3 of 3 | 1.05 | 4.00 (days_z) | 1 | 1 | 1.28 | 2 of 3 | 3 of 3 |",    # 2/0.5, 1/1, 1.05/1; 1.05 > drift of 1; 2/1 > 1.1; (2 1 1.05)^(1/3); 95 and 90 %, not 99
+                                 "| ridge | 3 of 3 | 1.00 | 2.00 (days_z) | 0 | 0 | 1.00 | - | - |"])
 
 
 class CommandLine(Folder):
@@ -175,7 +175,7 @@ class CommandLine(Folder):
         done = self.score("--enter", "mine", self.folder + "/mine")
         self.assertEqual(done.stderr, "")
         self.assertIn("| 0.50 (0 %) |", done.stdout)
-        self.assertRegex(done.stdout, r"\| mine \| 1 of 1 \| 0\.\d\d \| 0\.\d\d \(incubator_2021_end_inside_2\) \| 0 \| 0 \| 0 of 1 \|")
+        self.assertRegex(done.stdout, r"\| mine \| 1 of 1 \| 0\.\d\d \| 0\.\d\d \(incubator_2021_end_inside_2\) \| 0 \| 0 \| 0\.\d\d \| 0 of 1 \| 0 of 1 \|")
 
     def test_mistakes_end_with_2(self):
         for words, said in ((("--enter", "mine", self.folder + "/mine"), "mine/incubator_2021_end_inside_2.csv: this file is missing"),
