@@ -1,8 +1,8 @@
 # driftwright_target(NAME [QUICK] [HEADERS <a> <b> ...] [HEADERS_OF target]): what every target of this project has: include paths from the top folder,
 # warnings, OpenMP, and the precompiled headers that nearly every file needs (built once, with the target `base`). HEADERS: these
 # too, built for this target; HEADERS_OF: those of a target that has its own.
-# QUICK, with HEADERS: this target, and each that takes its headers, hardly computes (reports, files, options, tests). The compiler optimises it less and
-# takes a third less time. GCC takes the level from the precompiled header, whatever the command says; so both are decided here.
+# QUICK, with HEADERS: this target, and each that takes its headers, computes little by itself (reports, files, options, the diagnosis above the solver, tests). The
+# compiler optimises it less and takes a third less time. GCC takes the level from the precompiled header, whatever the command says; so both are decided here.
 #
 # The compiler spends most of its time on headers and templates, so files of a target are compiled in batches of a few dozen kB of source, each
 # one translation unit; a name in an anonymous namespace is therefore one in its room. -DDRIFTWRIGHT_BATCHED=OFF, which the
@@ -57,7 +57,7 @@ function(driftwright_target name)
   endif()
   if(ARG_QUICK)
     set_target_properties(${name} PROPERTIES DRIFTWRIGHT_QUICK ON)
-    # With -fexpensive-optimizations the digits are the same as those of -O3: products and sums are contracted in both.
+    # With -fexpensive-optimizations products and sums are contracted as with -O3: `run` of the FP3 writes the same bytes.
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-fexpensive-optimizations>)
   endif()
   # Eigen's own threads would wait for each other in loops, and sums would depend on their number.

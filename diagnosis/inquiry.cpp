@@ -41,7 +41,8 @@ bool widen_moved(Inquiry& of) {
   bool any = false;
   for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
     const Knob& k = fitter.scatter()[i];
-    if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) >= kTooFar * k.prior_sd)) continue;
+    // A number that a step has set to its limit may be below it by rounding.
+    if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) >= (1.0 - 1e-9) * kTooFar * k.prior_sd)) continue;
     if (std::find(of.moved.begin(), of.moved.end(), i) != of.moved.end()) continue;
     of.moved.push_back(i);
     fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kAmbientFault_K);
@@ -61,12 +62,14 @@ bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
          }) > 0;
 }
 
-/// Searches; if some numbers turn out to be faults, searches once more with these numbers free.
+/// Searches; as long as further numbers turn out to be faults, searches once more with these numbers free.
 void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
                          const std::vector<Knob>& known, const Listener& listener) {
   of.search = search(*of.fitter, names, how, &of.search, listener);
-  if (!widen_moved(of) || listener.wants_end()) return;
-  of.search = search(*of.fitter, names, how, &of.search, listener);
+  while (widen_moved(of)) {  // each turn frees one number at least
+    if (listener.wants_end()) return;
+    of.search = search(*of.fitter, names, how, &of.search, listener);
+  }
   if (!narrow_returned(of, known)) return;
   Twin::Workspace workspace(of.fitter->twin());
   of.fitter->settle(of.search.hypothesis, of.search.fit);

@@ -37,7 +37,8 @@ static void probe_wait(const probe_process* process, probe_estimate* e, double s
 }
 
 double probe_scale(const probe_state* state) {
-  return (1.0 + state->sum_squares) / (1.0 + state->n_known);
+  const double scale = (1.0 + state->sum_squares) / (1.0 + state->n_taken);
+  return scale > 1.0 ? scale : 1.0;
 }
 
 /* Variance of what a probing reads minus what is expected, before scaling. */
@@ -53,8 +54,8 @@ static double probe_off_um(const probe_process* process, const probe_state* stat
 }
 
 static void probe_learn_scale(const probe_process* process, probe_state* state, const probe_estimate* e, double off_um) {
-  state->sum_squares += off_um * off_um / probe_off_um2(process, e);
-  ++state->n_known;
+  const double square = off_um * off_um / probe_off_um2(process, e);
+  state->sum_squares += square < PROBE_REFUSED * PROBE_REFUSED ? square : PROBE_REFUSED * PROBE_REFUSED;
 }
 
 static void probe_learn(const probe_process* process, probe_estimate* e, double off_um) {

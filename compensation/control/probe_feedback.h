@@ -6,12 +6,13 @@
  *   drift = prediction + level + r,   dr = -r / T dt + s sqrt(2 / T) dW   (Ornstein-Uhlenbeck: deviation s, time constant T)
  *   a probing reads level + r as they were lag_s ago, + noise
  *
- * How large errors are in this run is known from other runs alone. All variances, s^2 and noise^2 among them, are therefore those above
- * times a scale, known beforehand as well as from one probing (a unit of information). Each probing that is taken adds its own:
+ * Errors of this run may be larger than those of the runs of the fit. All variances, s^2 and noise^2 among them, are therefore those
+ * above times a scale, known beforehand as well as from one probing (a unit of information), and from the n that were taken:
  *
- *   scale = (1 + sum u^2) / (1 + n),   u = (read - expected) / deviation of their difference before scaling
+ *   scale = max(1, (1 + sum min(u^2, PROBE_REFUSED^2)) / (1 + n)),   u = (read - expected) / deviation of it before scaling
  *
- * the conjugate estimate of a variance. What is expected does not depend on the scale; intervals and bounds do.
+ * the conjugate estimate of a variance, but never below that of the fit: a calm axis says nothing of the next cut. What is expected after
+ * given probings does not depend on the scale; the interval and the bound beyond which a probing is refused do.
  *
  * `level` is 0 until a jump. The filter is the one of Kalman for these two numbers. It runs lag_s late, and its answer is continued
  * over lag_s: with a constant lag that is exact.
@@ -21,8 +22,8 @@
  * filter refuses is taken if the second one expects it: two probings that agree with each other, within PROBE_REFUSED deviations
  * sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
  * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one. The third
- * refused probing in a row is taken as a jump, too, though it agrees with none: errors are then larger than was known, and it adds to
- * the scale. If no
+ * refused probing in a row is taken as a jump, too, though it agrees with none: errors are then larger than was known, and it adds
+ * to the scale. If no
  * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
  *
  * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter: Willsky &
@@ -35,7 +36,7 @@
 extern "C" {
 #endif
 
-#define PROBE_REFUSED 4.0 /* deviations; one of 16,000 good probings is refused */
+#define PROBE_REFUSED 4.0 /* deviations; one of 16,000 good probings is refused at most */
 #define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
 
@@ -80,7 +81,6 @@ typedef struct {
   double bound_um; /* by which they may differ */
   int n_taken, n_refused, n_jumps;
   int n_in_row;       /* unlikely ones since the last that was taken */
-  int n_known;        /* probings that have taught the scale */
   double sum_squares; /* of their u */
 } probe_state;
 
@@ -96,7 +96,7 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
 int probe_drift(const probe_process* process, probe_state* state, double drift_um); /* of the axis without correction */
 int probe_left(const probe_process* process, probe_state* state, double left_um);   /* of the corrected axis */
 
-/* Factor of all variances that probings of this run have taught; 1 before the first one. */
+/* Factor of all variances that probings of this run have taught; at least 1. */
 double probe_scale(const probe_state* state);
 
 /* The residual that is expected after ahead_s [um], and its deviation, 1 sigma [um]. */

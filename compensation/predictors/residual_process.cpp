@@ -77,7 +77,7 @@ probe_process probe_process_of(const ResidualProcess& process, const Probe& prob
 namespace {
 
 constexpr std::size_t kNumbersOfEstimate = 5, kNumbersOfPast = 3;
-constexpr std::size_t kNumbersOfProbings = 14 + 2 * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
+constexpr std::size_t kNumbersOfProbings = 13 + 2 * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
 
 }  // namespace
 
@@ -95,7 +95,6 @@ std::vector<double> ProbeFeedback::memory() const {
                            static_cast<double>(s.n_refused),
                            static_cast<double>(s.n_jumps),
                            static_cast<double>(s.n_in_row),
-                           static_cast<double>(s.n_known),
                            s.sum_squares};
   for (const probe_estimate& e : {s.now, s.jumped})
     m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2});
@@ -121,9 +120,8 @@ void ProbeFeedback::recall(std::span<const double> m) {
   s.n_refused = static_cast<int>(m[9]);
   s.n_jumps = static_cast<int>(m[10]);
   s.n_in_row = static_cast<int>(m[11]);
-  s.n_known = static_cast<int>(m[12]);
-  s.sum_squares = m[13];
-  const double* at = m.data() + 14;
+  s.sum_squares = m[12];
+  const double* at = m.data() + 13;
   for (probe_estimate* e : {&s.now, &s.jumped}) {
     *e = {at[0], at[1], at[2], at[3], at[4]};
     at += kNumbersOfEstimate;

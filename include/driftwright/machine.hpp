@@ -113,8 +113,9 @@ class DRIFTWRIGHT_API Machine {
 
   /// What the records say about the machine, as `driftwright diagnose`. @param measured  each with its own `source`
   /// @throws InputError  for records that cannot be compared, and for a key in `without` that no candidate has
+  /// @throws SolveError  where the machine with what was found has no solution
   [[nodiscard]] Diagnosis diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options = {}) const;
-  /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes.
+  /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes. Errors as diagnose().
   [[nodiscard]] Diagnosis calibrate(const std::vector<Record>& measured) const;
 
  private:

@@ -63,7 +63,7 @@ TEST(ProbeFeedback, ItsDeviationIsThatOfTheRiccatiEquation) {
   for (int k = 0; k < 50; ++k) {
     feedback.row(0.0, 0.0, 3600.0);
     if (k == 49) {
-      EXPECT_NEAR(feedback.deviation_um(), std::sqrt(before / 50.0), 1e-9);  // 49 probings without error scale it
+      EXPECT_NEAR(feedback.deviation_um(), std::sqrt(before), 1e-9);
     }
     EXPECT_TRUE(feedback.probe_drift_um(0.0));
   }
@@ -82,7 +82,7 @@ TEST(ProbeFeedback, LeavesAsMuchAsItSays) {
       feedback.row(0.0, 0.0, 60.0);
       if (i % 60 == 0) (void)feedback.probe_drift_um(truth.off_um[i] + random.normal());
       square += std::pow(truth.off_um[i] - feedback.estimate_um(), 2);
-      said += std::pow(feedback.deviation_um(), 2);
+      said += std::pow(feedback.deviation_um(), 2) / probe_scale(&feedback.state());  // 1 here, but for chance
       ++n;
     }
   }
@@ -90,10 +90,11 @@ TEST(ProbeFeedback, LeavesAsMuchAsItSays) {
   EXPECT_LT(square / n, 0.45 * 16.0);  // 0.40 by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ = 0.91
 }
 
-// Errors three times as large as those of the fit: after 25 probings the deviation that is said is the one that is left.
+// Errors three times as large as those of the fit: after 25 probings two thirds of the variance that is left are said, in place of a ninth.
+// The rest is that of probings which are refused or count as four deviations.
 TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
   const ResidualProcess fitted{2.0, 7200.0}, truth{6.0, 7200.0};
-  double square = 0.0, said = 0.0, fixed = 0.0;
+  double square = 0.0, said = 0.0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const ResidualSeries drift = drawn(truth, 60.0, 3000, 0.0, seed);
     Random random(seed, 5);
@@ -104,11 +105,35 @@ TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
       if (i < 1500) continue;
       square += std::pow(drift.off_um[i] - feedback.estimate_um(), 2);
       said += std::pow(feedback.deviation_um(), 2);
-      fixed += std::pow(feedback.deviation_um(), 2) / probe_scale(&feedback.state());
     }
   }
-  EXPECT_NEAR(square / said, 1.0, 0.15);
-  EXPECT_NEAR(said / fixed, 9.0, 1.8);
+  EXPECT_GT(said / square, 0.6);
+  EXPECT_LT(said / square, 1.1);
+}
+
+// A calm axis says nothing of the next cut: good probings are then taken as before.
+TEST(ProbeFeedback, IsNoStricterAfterACalmTime) {
+  ProbeFeedback feedback({3.0, 7200.0}, {.noise_um = 1.0}, true);
+  for (int hour = 0; hour < 50; ++hour) {
+    feedback.row(0.0, 0.0, 3600.0);
+    EXPECT_TRUE(feedback.probe_drift_um(0.0));
+  }
+  EXPECT_EQ(probe_scale(&feedback.state()), 1.0);
+}
+
+// Three chips in a row are taken for a jump. After them a probing may be further off than usual, by a factor of 3 at most; two good ones
+// bring the axis back.
+TEST(ProbeFeedback, ComesBackAfterThreeChipsInARow) {
+  ProbeFeedback feedback({1.5, 7200.0}, {.noise_um = 1.0}, true);
+  const std::vector<double> reads = {0.4, 40.0, -35.0, 60.0, 0.3, -0.2, 0.5};
+  double usual_um = 0.0;
+  for (std::size_t hour = 0; hour < reads.size(); ++hour) {
+    feedback.row(0.0, 0.0, 3600.0);
+    (void)feedback.probe_drift_um(reads[hour]);
+    if (hour == 1) usual_um = feedback.state().bound_um;
+    EXPECT_LT(feedback.state().bound_um, 3.0 * std::max(usual_um, 10.0)) << hour;
+  }
+  EXPECT_NEAR(feedback.estimate_um(), 0.2, 1.5);
 }
 
 /// A probing: when its value comes, and drift minus prediction as it reads it.
@@ -117,7 +142,7 @@ struct Read {
 };
 
 /// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers, whose scale
-/// is known as from one of them: no filter.
+/// is known as from one of them and is 1 at least: no filter.
 /// @param jumped_s  probings from then on read a level, too, of which nothing is known before; negative: none
 std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
                                          const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
@@ -144,7 +169,7 @@ std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& 
   const Eigen::VectorXd weights = all.ldlt().solve(with);
   // The first reading of the level, of which nothing is known, says nothing of the scale.
   const double n_known = static_cast<double>(n) - has_level(time_s);
-  const double scale = (1.0 + z.dot(all.ldlt().solve(z))) / (1.0 + n_known);
+  const double scale = std::max(1.0, (1.0 + z.dot(all.ldlt().solve(z))) / (1.0 + n_known));
   return {weights.dot(z), scale * (covariance(time_s, time_s) + unknown * has_level(time_s) - weights.dot(with))};
 }
 
@@ -216,18 +241,18 @@ TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {
   EXPECT_EQ(feedback.state().n_jumps, 1);
 }
 
-// A drift that is faster than the process ever was is refused twice. The third probing is taken and teaches how large errors are; from
-// then on no probing is refused, and what is left stays below what the axis moves from one to the next.
+// A drift that is faster than the process ever was is not refused for ever: each third probing is taken, and what is left stays below
+// what the axis moves meanwhile.
 TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
   ProbeFeedback feedback({2.0, 36000.0}, {.noise_um = 0.5}, true);
+  double most_um = 0.0;
   for (int hour = 0; hour < 24; ++hour) {
     feedback.row(0.0, 0.0, 3600.0);
-    EXPECT_EQ(feedback.probe_drift_um(20.0 * hour), hour != 1 && hour != 2) << hour;
-    if (hour > 3) {
-      EXPECT_LT(std::abs(20.0 * hour - feedback.estimate_um()), 20.0) << hour;
-    }
+    (void)feedback.probe_drift_um(20.0 * hour);
+    most_um = std::max(most_um, std::abs(20.0 * hour - feedback.estimate_um()));
   }
-  EXPECT_EQ(feedback.state().n_jumps, 1);
+  EXPECT_EQ(feedback.state().n_jumps, 7);
+  EXPECT_LT(most_um, 42.0);
 }
 
 // An axis that was knocked stays where it is: after a jump the filter is the joint distribution with a level of which nothing
@@ -254,28 +279,23 @@ TEST(ProbeFeedback, AJumpIsALevelThatDoesNotFade) {
   EXPECT_GT(feedback.estimate_um(), 38.0);
 }
 
-// Two good probings after a jump agree: the distance of two draws of the process h apart, with two noises, is often beyond one
-// deviation, and beyond the bound as seldom as normal numbers are, whose scale was learned from one: 4 sqrt((1 + u²) / 2), 0.0016.
+// Two good probings after a jump disagree by more than the bound as seldom as the header says: the distance of two draws of the
+// process h apart, with two noises, is within 4 deviations, and often beyond one.
 TEST(ProbeFeedback, TwoProbingsAfterAJumpAgreeWithinTheBound) {
   const ResidualProcess p{3.0, 3600.0};
-  int n_beyond = 0, n_refused = 0;
+  int n_beyond = 0;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     const ResidualSeries truth = drawn(p, 1800.0, 3, 0.5, seed);
     ProbeFeedback feedback(p, {.noise_um = 0.5}, false);
     for (std::size_t i = 0; i < 3; ++i) {
       feedback.row(0.0, 0.0, 1800.0);
       const bool is_taken = feedback.probe_drift_um(truth.off_um[i] + (i > 0 ? 100.0 : 0.0));
-      if (i < 2) {
-        EXPECT_EQ(is_taken, i == 0) << seed;
-      } else {
-        n_refused += is_taken ? 0 : 1;
-      }
+      EXPECT_EQ(is_taken, i != 1) << seed;
       const double other_um = std::sqrt(2.0 * 0.25 + 2.0 * 9.0 * (1.0 - std::exp(-0.5)));
       if (i == 2 && std::abs(truth.off_um[2] - truth.off_um[1]) > other_um) ++n_beyond;
     }
   }
   EXPECT_NEAR(n_beyond / 2000.0, 0.317, 0.032);  // three standard errors
-  EXPECT_LE(n_refused, 3.2 + 3.0 * std::sqrt(3.2));
 }
 
 TEST(ProbeFeedback, RefusesWhatIsNoProbingAndWrongSettings) {

@@ -344,8 +344,8 @@ TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
   FollowLine line = minute(session, 1, 12.0);
   int n_minutes = 0;
   for (; line.axes[0].probing->probe_now.empty() && n_minutes < 1000; ++n_minutes) line = minute(session, 2 + n_minutes);
-  // 12/5 sqrt(c (k² p + (1 - k²) 25)) = 5 with k = exp(-t / 2 h); the probing is 2 um off
-  const double scale = 0.5 * (1.0 + 2.0 * 2.0 / 25.25), p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2) / scale;
+  // 12/5 sqrt(k² p + (1 - k²) 25) = 5 with k = exp(-t / 2 h)
+  const double p = 0.25 * 25.0 / 25.25, um2 = std::pow(5.0 * 5.0 / 12.0, 2);
   EXPECT_EQ(n_minutes, std::ceil(-0.5 * 120.0 * std::log((25.0 - um2) / (25.0 - p))));
 }
 
