@@ -579,7 +579,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
     const std::vector<Law> laws =
         ground.add(stated, named_by(stated, catalogue, fitter.twin(), fitter.runs(), options.without));
     listener.begin(fmt::format("fitting names of statements: {} candidates", ground.candidates.size()));
-    for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, listener))
+    for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, Shapes::kUpToTheBest, listener))
       ground.columns.push_back(std::move(s));
     std::vector<FittedClaim> additions = fit_names(ground, best, best_fit, options.refits, &known, listener);
     std::vector<std::pair<Hypothesis, Fit>> tried;
@@ -598,7 +598,8 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   for (int turn = 0; turn < 2 && !best.empty() && !listener.wants_end(); ++turn) {
     listener.begin("settling the numbers");
     settle();
-    ground.columns = signatures(fitter, ground.candidates, laws_of(ground.candidates), best, best_fit, listener);
+    ground.columns =
+        signatures(fitter, ground.candidates, laws_of(ground.candidates), best, best_fit, Shapes::kUpToTheBest, listener);
     known = {};
     if (!exchange()) break;
   }
@@ -682,8 +683,8 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
   listener.begin("looking for other explanations");
   Ground ground{
       .fitter = fitter, .candidates = result.candidates, .names = result.names, .said = result.said, .columns = {}};
-  ground.columns =
-      signatures(fitter, ground.candidates, laws_of(ground.candidates), result.hypothesis, result.fit, listener);
+  ground.columns = signatures(fitter, ground.candidates, laws_of(ground.candidates), result.hypothesis, result.fit,
+                              Shapes::kUpToTheBest, listener);
   std::vector<std::pair<Hypothesis, Fit>> without_one;
   std::vector<InItsPlace> in_place;
   for (std::size_t i = 0; i < result.findings.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
@@ -79,11 +80,12 @@ std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
 }
 
 std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
+                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit, Shapes shapes,
                                   const Listener& listener) {
   if (laws.empty()) return {};
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
-  const Projection projection = projection_of(fitter, hypothesis, fit);
+  std::optional<Projection> projection;
+  if (shapes == Shapes::kUpToTheBest) projection = projection_of(fitter, hypothesis, fit);
   std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
   const TwinState known = fitter.state(hypothesis, fit.x);
@@ -121,8 +123,9 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
           const Eigen::VectorXd s = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
           if (!s.allFinite() || !(s.squaredNorm() > 1e-12)) return -1e300;
           lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), s});
-          const double ss = projection.square(s);
-          return ss > 1e-12 ? linear_gain(v, ss, s.dot(projection.rest)).gain : -1e300;
+          if (!projection) return -1e300;
+          const double ss = projection->square(s);
+          return ss > 1e-12 ? linear_gain(v, ss, s.dot(projection->rest)).gain : -1e300;
         };
         const std::vector<double>* best = nullptr;
         double most = -1e300;

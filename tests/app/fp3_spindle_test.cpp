@@ -20,6 +20,7 @@ using ::testing::HasSubstr;
 class Fp3Spindle : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
+    setenv("XDG_CACHE_HOME", fresh_folder("fp3_store").c_str(), 1);  // the first run must reduce the machine
     folder_ = fresh_folder("fp3") / "out";
     outcome_ = run_program("run scenarios/fp3_spindle.yaml -o " + folder_.string());
     ASSERT_EQ(outcome_.exit_code, 0) << outcome_.output;
