@@ -14,8 +14,9 @@ namespace driftwright {
 /// Where programs started by tests keep reduced machines: in a store that all tests of a run share (`./test` begins with an empty one),
 /// else in the test's own folder. The user's cache is not touched.
 inline std::string test_store() {
+  const std::string own = (temporary_folder() / "cache").string();  // the folder is made here, before a test changes TMPDIR
   const char* shared = std::getenv("DRIFTWRIGHT_TEST_STORE");
-  return shared ? shared : (temporary_folder() / "cache").string();
+  return shared ? shared : own;
 }
 inline const bool kHasOwnCache = setenv("XDG_CACHE_HOME", test_store().c_str(), 1) == 0;
 
