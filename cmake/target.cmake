@@ -1,7 +1,7 @@
 # driftwright_target(NAME [QUICK] [HEADERS <a> <b> ...] [HEADERS_OF target]): what every target of this project has: include paths from the top folder,
 # warnings, OpenMP, and the precompiled headers that nearly every file needs (built once, with the target `base`). HEADERS: these
 # too, built for this target; HEADERS_OF: those of a target that has its own.
-# QUICK, with HEADERS: this target, and each that takes its headers, computes little by itself (reports, files, options, the diagnosis above the solver, tests). The
+# QUICK, with HEADERS: this target, and each that takes its headers, computes little by itself (reports, files, options, studies, tests). The
 # compiler optimises it less and takes a third less time. GCC takes the level from the precompiled header, whatever the command says; so both are decided here.
 #
 # The compiler spends most of its time on headers and templates, so files of a target are compiled in batches of a few dozen kB of source, each

@@ -23,8 +23,7 @@
  * sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
  * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one. The third
  * refused probing in a row is taken as a jump, too, though it agrees with none: errors are then larger than was known, and it adds
- * to the scale. If no
- * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
+ * to the scale. If no more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
  *
  * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter: Willsky &
  * Jones, IEEE Trans. Autom. Control 21 (1976) 108; a variance that is learned with the state: West & Harrison, Bayesian Forecasting
