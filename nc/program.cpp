@@ -1,10 +1,10 @@
 #include "nc/program.hpp"
 
 #include "base/delimited_text.hpp"
-#include "nc/heidenhain_reader.hpp"
+#include "nc/heidenhain/din_reader.hpp"
+#include "nc/heidenhain/klartext_reader.hpp"
 #include "nc/iso_reader.hpp"
-#include "nc/klartext_reader.hpp"
-#include "nc/siemens_reader.hpp"
+#include "nc/siemens/reader.hpp"
 
 namespace driftwright {
 

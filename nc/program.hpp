@@ -1,7 +1,7 @@
 #pragma once
 // Reads an NC program: the spindle speeds and axis travels that it commands over time.
 //
-// siemens_reader, heidenhain_reader and klartext_reader describe the languages of Siemens and Heidenhain. The words of
+// nc/siemens/ and nc/heidenhain/ describe the languages of Siemens and Heidenhain. The words of
 // RS-274 (ISO 6983) below are used as the LinuxCNC documentation ("G-Codes", "M-Codes", "O Codes", "G-code Overview")
 // defines them unless noted; the order of execution within a block is also LinuxCNC's:
 //   G0 G1 G2 G3 (I J K or R, P turns)       straight lines and arcs; the feed applies along the path, helix included

@@ -1,6 +1,6 @@
 #pragma once
 // Executes a program of any language block by block: modes, motion, time, and the resulting steps. The readers of the
-// languages (iso_reader, siemens_reader, heidenhain_reader, klartext_reader) interpret the words and call it.
+// languages interpret the words and call it.
 
 #include <array>
 #include <optional>

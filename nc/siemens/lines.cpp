@@ -1,4 +1,4 @@
-#include "nc/siemens_lines.hpp"
+#include "nc/siemens/lines.hpp"
 
 #include <fmt/format.h>
 

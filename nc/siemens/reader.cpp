@@ -1,4 +1,4 @@
-#include "nc/siemens_reader.hpp"
+#include "nc/siemens/reader.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "nc/arc.hpp"
 #include "nc/expression.hpp"
-#include "nc/siemens_lines.hpp"
+#include "nc/siemens/lines.hpp"
 #include "nc/tapping.hpp"
 #include "nc/units.hpp"
 

@@ -1,4 +1,4 @@
-#include "nc/heidenhain_run.hpp"
+#include "nc/heidenhain/run.hpp"
 
 #include <fmt/format.h>
 

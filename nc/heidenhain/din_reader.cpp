@@ -1,4 +1,4 @@
-#include "nc/heidenhain_reader.hpp"
+#include "nc/heidenhain/din_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
-#include "nc/heidenhain_run.hpp"
+#include "nc/heidenhain/run.hpp"
 #include "nc/units.hpp"
 
 namespace driftwright {
