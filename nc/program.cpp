@@ -2,6 +2,7 @@
 
 #include "base/delimited_text.hpp"
 #include "nc/heidenhain/din_reader.hpp"
+#include "nc/heidenhain/klartext_lines.hpp"
 #include "nc/heidenhain/klartext_reader.hpp"
 #include "nc/iso_reader.hpp"
 #include "nc/siemens/reader.hpp"

@@ -3,101 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numbers>
 
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
-#include "nc/heidenhain/run.hpp"
+#include "nc/heidenhain/klartext_cycles.hpp"
+#include "nc/heidenhain/klartext_lines.hpp"
 #include "nc/units.hpp"
 
 namespace driftwright {
 namespace {
 
-/// Upper case but for texts in quotation marks, without block number and comment, blanks one by one. @param number  whether there was one
-std::string plain(const std::string& line, bool& deletable) {
-  std::string text;
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    if (c == ';' && !quoted) break;
-    const char kept = quoted                     ? c
-                      : (c == '\t' || c == '\r') ? ' '
-                                                 : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (kept == ' ' && (text.empty() || text.back() == ' ')) continue;
-    text += kept;
-  }
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  deletable = text.starts_with('/');
-  if (deletable) text.erase(0, text.find_first_not_of("/ "));
-  std::size_t i = 0;
-  while (i < text.size() && is_digit(text[i])) ++i;
-  if (i < text.size() && text[i] == ' ') text.erase(0, i + 1);
-  if (i == text.size()) text.clear();  // a number alone
-  if (text.starts_with('/')) {
-    deletable = true;
-    text.erase(0, text.find_first_not_of("/ ") == std::string::npos ? text.size() : text.find_first_not_of("/ "));
-  }
-  return text;
-}
-
-/// Splits the lines into blocks: lines that end with '~' continue, and CYCL DEF 7.1 belongs to 7.0.
-std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector<std::string>& lines) {
-  std::vector<HeidenhainLine> blocks;
-  bool goes_on = false;
-  int number = 0;
-  for (const std::string& line : lines) {
-    ++number;
-    bool deletable = false;
-    std::string text = plain(line, deletable);
-    if (text.empty() || text.starts_with('*')) continue;
-    const auto last = line.find_last_not_of(" \t\r");
-    const bool more = line[last] == '~';  // also after a comment
-    while (!text.empty() && (text.back() == ' ' || text.back() == '~')) text.pop_back();
-    const bool sub_line = text.starts_with("CYCL DEF ") && [&] {
-      const std::size_t dot = text.find('.');
-      return dot != std::string::npos && dot + 1 < text.size() && text[dot + 1] != '0' && text.find(' ', 9) > dot;
-    }();
-    if (goes_on && !blocks.empty()) {
-      blocks.back().text += " " + text;
-    } else if (sub_line && !blocks.empty() && blocks.back().text.starts_with("CYCL DEF ")) {
-      const std::size_t behind = text.find(' ', 9);
-      blocks.back().text += behind == std::string::npos ? "" : text.substr(behind);
-    } else {
-      HeidenhainLine block;
-      block.where = Where{path, number, 1, "", line};
-      block.text = text;
-      block.deletable = deletable;
-      if (text.starts_with("LBL ")) {
-        block.label = text.substr(4);
-        std::erase(block.label, '"');
-      }
-      blocks.push_back(std::move(block));
-    }
-    blocks.back().last_line = number;
-    goes_on = more;
-  }
-  return blocks;
-}
-
-/// The words after the first word of a path block.
-struct Path {
-  std::array<std::optional<double>, 3> at = {}, by = {};  ///< X and IX, as written
-  std::optional<double> pr, pa, ipr, ipa, radius, length, angle, mb;
-  std::optional<bool> clockwise;
-  bool rapid = false, automatic = false, mb_max = false;
-  std::optional<double> feed;
-  std::optional<char> side;  ///< '0', 'L', 'R'
-  std::vector<int> m;
-  bool plain = true;
-  std::string feed_word;
-};
-
 class KlartextReader {
  public:
   KlartextReader(const std::string& path, const std::vector<std::string>& lines, NcRun& run)
-      : path_(path), run_(run), lines_(blocks_of(path, lines)), tnc_(run, lines_) {}
+      : path_(path), run_(run), lines_(klartext_blocks(path, lines)), tnc_(run, lines_) {}
 
   void run() {
     while (tnc_.at < lines_.size()) {
@@ -115,6 +35,8 @@ class KlartextReader {
   }
 
  private:
+  using Path = KlartextPath;
+
   [[noreturn]] void fail(const HeidenhainLine& line, const std::string& message) const {
     throw InputError(line.where, message);
   }
@@ -148,13 +70,13 @@ class KlartextReader {
     if (begins(t, "CALL LBL")) return call_label(line), false;
     if (begins(t, "CALL PGM")) fail(line, "other programs are not called here; let the post-processor write them out");
     if (begins(t, "TOOL CALL")) return tool_call(line);
-    if (begins(t, "CYCL DEF")) return define_cycle(line), false;
+    if (begins(t, "CYCL DEF")) return define_klartext_cycle(line, tnc_, run_), false;
     if (begins(t, "CYCL CALL")) return call_cycle(line);
     if (t.starts_with("FN")) return function(line), false;
     if (t.starts_with("Q")) return formula(line), false;
     if (begins(t, "STOP")) {
       run_.halt("STOP");
-      return m_words(line, path_words(line, 4));
+      return m_words(line, klartext_path(tnc_, line, 4));
     }
     if (begins(t, "CC")) return pole(line), false;
     for (const char* word : {"APPR", "DEP"}) {
@@ -168,86 +90,10 @@ class KlartextReader {
       run_.forget();
       return false;
     }
-    if (t.starts_with('M')) return m_words(line, path_words(line, 0));
+    if (t.starts_with('M')) return m_words(line, klartext_path(tnc_, line, 0));
     const std::string word = t.substr(0, t.find(' '));
     if (ignored(word)) return false;
     fail(line, fmt::format("{} is not known here; if it has no effect on times and speeds, name it under `ignore`", word));
-  }
-
-  // --- words of a path block
-  // ----------------------------------------------------------------------------------------------------
-
-  Path path_words(const HeidenhainLine& line, std::size_t i) {
-    const std::string& t = line.text;
-    Path p;
-    const auto is = [&](const char* word) {
-      const std::string w = word;
-      if (t.compare(i, w.size(), w) != 0) return false;
-      i += w.size();
-      return true;
-    };
-    const auto value = [&] { return tnc_.value(line, t, i); };
-    while (true) {
-      while (i < t.size() && t[i] == ' ') ++i;
-      if (i >= t.size()) return p;
-      const std::size_t begin = i;
-      const bool is_axis =
-          (t[i] >= 'X' && t[i] <= 'Z') || (t[i] == 'I' && i + 1 < t.size() && t[i + 1] >= 'X' && t[i + 1] <= 'Z');
-      if (is_axis) {
-        const bool incremental = t[i] == 'I';
-        const int axis = t[incremental ? ++i : i] - 'X';
-        ++i;
-        auto& place = incremental ? p.by[axis] : p.at[axis];
-        if (place) fail(line, fmt::format("a second {} in one block is not allowed", t.substr(begin, i - begin)));
-        place = value();
-        p.plain = p.plain && !incremental && t.find('Q', begin) >= i;
-        continue;
-      }
-      if (is("IPA")) {
-        p.ipa = value();
-      } else if (is("IPR")) {
-        p.ipr = value();
-      } else if (is("PA")) {
-        p.pa = value();
-      } else if (is("PR")) {
-        p.pr = value();
-      } else if (is("DR+") || is("DR-")) {
-        p.clockwise = t[i - 1] == '-';
-      } else if (is("R0") || is("RL") || is("RR")) {
-        p.side = t[i - 1];
-        continue;
-      } else if (is("FMAX") || is("F MAX")) {
-        p.rapid = true;
-        continue;
-      } else if (is("FAUTO") || is("F AUTO")) {
-        p.automatic = true;
-        p.feed_word = "F AUTO";
-        continue;
-      } else if (is("FU") || is("FZ") || is("FT")) {
-        fail(line, fmt::format("{}: this must be a feed per minute", t.substr(begin, 2)));
-      } else if (is("F")) {
-        p.feed = value();
-        p.feed_word = t.substr(begin, i - begin);
-        continue;
-      } else if (is("MB MAX") || is("MB-MAX")) {
-        p.mb_max = true;
-      } else if (is("MB")) {
-        p.mb = value();
-      } else if (is("M")) {
-        p.m.push_back(static_cast<int>(value()));
-      } else if (is("LEN")) {
-        p.length = value();
-      } else if (is("CCA")) {
-        p.angle = value();
-      } else if (is("R")) {
-        p.radius = value();
-      } else if (is("LA")) {  // of M120
-        (void)value();
-      } else {
-        fail(line, fmt::format("'{}' is not known here", t.substr(i, t.find(' ', i) - i)));
-      }
-      p.plain = false;
-    }
   }
 
   /// @returns true  if one ends the program
@@ -313,7 +159,7 @@ class KlartextReader {
   }
 
   bool path(const HeidenhainLine& line, const std::string& word) {
-    const Path p = path_words(line, word.size());
+    const Path p = klartext_path(tnc_, line, word.size());
     NcStep& step = run_.step();
     step.plain = p.plain && word == "L" && !p.side;
     step.feed_word = p.feed_word;
@@ -383,7 +229,7 @@ class KlartextReader {
     std::size_t i = word.size() + 1;
     const std::size_t end = std::min(line.text.find(' ', i), line.text.size());
     const std::string kind = line.text.substr(i, end - i);
-    const Path p = path_words(line, end);
+    const Path p = klartext_path(tnc_, line, end);
     run_.note(word, "the way to or from the contour is counted as a straight line at the feed");
     side(p);
     if (p.feed) run_.set_feed(*p.feed);
@@ -405,7 +251,7 @@ class KlartextReader {
   }
 
   void pole(const HeidenhainLine& line) {
-    const Path p = path_words(line, 2);
+    const Path p = klartext_path(tnc_, line, 2);
     for (int axis = 0; axis < 3; ++axis) {
       if (p.at[axis]) tnc_.pole_m[axis] = *p.at[axis] * run_.unit_m;
       if (p.by[axis]) tnc_.pole_m[axis] = run_.motion.position_m[axis] + *p.by[axis] * run_.unit_m;
@@ -473,112 +319,11 @@ class KlartextReader {
     return false;
   }
 
-  /// Words and their values after a cycle's title, such as X+10 of cycle 7.
-  void define_cycle(const HeidenhainLine& line) {
-    const std::string& t = line.text;
-    std::size_t i = 9;
-    int number = 0;
-    while (i < t.size() && is_digit(t[i])) number = 10 * std::min(number, 100000) + (t[i++] - '0');
-    if (i < t.size() && t[i] == '.') {
-      while (i < t.size() && t[i] != ' ') ++i;
-    }
-    switch (number) {
-      case 7:
-        return datum(line, i);
-      case 8:
-        return tnc_.mirror(std::any_of(t.begin() + static_cast<std::ptrdiff_t>(title_end(t, i)), t.end(),
-                                       [](char c) { return c >= 'X' && c <= 'Z'; }),
-                           "CYCL DEF 8");
-      case 9:
-        return run_.motion.wait(last_number(line, i));
-      case 10:
-        return tnc_.turn(t.find("ROT", t.find("ROT", i) + 3) != std::string::npos ? last_number(line, t.rfind("ROT")) != 0.0
-                                                                                  : last_number(line, i) != 0.0,
-                         "CYCL DEF 10");
-      case 11:
-        if (last_number(line, i) != 1.0)
-          fail(line, "scaling is not computed here; let the post-processor write lengths as they are");
-        return;
-      case 13:
-        run_.motion.turning = false;
-        return;
-      case 32:
-        return;
-      case 247:
-        return tnc_.other_datum("CYCL DEF 247");
-      default:
-        break;
-    }
-    if (number < 200)
-      fail(line, fmt::format(
-                     "CYCL DEF {} is not known here; cycles 7 to 11, 13, 32, 247, 200, 201, 202, 203, 206, 207 and 240 are",
-                     number));
-    HeidenhainCycle cycle{.number = number, .q = {}};
-    for (std::size_t q = t.find(" Q", i); q != std::string::npos; q = t.find(" Q", q + 1)) {
-      std::size_t k = q + 2;
-      int n = 0;
-      while (k < t.size() && is_digit(t[k])) n = 10 * std::min(n, 100000) + (t[k++] - '0');
-      while (k < t.size() && t[k] == ' ') ++k;
-      if (k == q + 2 || k >= t.size() || t[k] != '=') continue;  // part of the title
-      ++k;
-      cycle.q[n] = tnc_.value(line, t, k);
-      tnc_.set_q(fmt::format("Q{}", n), cycle.q[n]);
-    }
-    if (cycle.q.empty()) fail(line, fmt::format("CYCL DEF {} has no Q parameters", number));
-    if (std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(number)) return tnc_.define(cycle);
-    fail(line,
-         fmt::format("CYCL DEF {}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
-                     "write the others out",
-                     number));
-  }
-
-  /// Index after the words of a title: where the first value begins.
-  static std::size_t title_end(const std::string& t, std::size_t i) {
-    while (i < t.size()) {
-      const std::size_t begin = t.find_first_not_of(' ', i);
-      if (begin == std::string::npos) return t.size();
-      const std::size_t end = std::min(t.find(' ', begin), t.size());
-      const std::string word = t.substr(begin, end - begin);
-      if (word.size() <= 1 || word.find_first_of("+-#0123456789") != std::string::npos) return begin;
-      i = end;
-    }
-    return t.size();
-  }
-
-  double last_number(const HeidenhainLine& line, std::size_t i) {
-    const std::string& t = line.text;
-    const std::size_t begin = t.find_first_of("+-0123456789", i);
-    if (begin == std::string::npos) fail(line, "the cycle has no number");
-    std::size_t k = begin;
-    if (k > 0 && t[k - 1] == 'Q') --k;
-    return tnc_.value(line, t, k);
-  }
-
-  void datum(const HeidenhainLine& line, std::size_t i) {
-    const std::string& t = line.text;
-    i = title_end(t, i);
-    bool any = false;
-    while (i < t.size()) {
-      if (t[i] == ' ') {
-        ++i;
-        continue;
-      }
-      if (t[i] == '#') return tnc_.other_datum("CYCL DEF 7 #");
-      const bool incremental = t[i] == 'I';
-      if (incremental) ++i;
-      if (i >= t.size() || t[i] < 'X' || t[i] > 'Z') fail(line, fmt::format("'{}' is no shift of X, Y or Z", t.substr(i)));
-      const int axis = t[i++] - 'X';
-      tnc_.shift_datum(axis, tnc_.value(line, t, i) * run_.unit_m, incremental);
-      any = true;
-    }
-    if (!any) fail(line, "the datum shift has no X, Y or Z");
-  }
-
   bool call_cycle(const HeidenhainLine& line) {
     const std::string& t = line.text;
     if (begins(t, "CYCL CALL PAT")) fail(line, "patterns are not followed here; write the positions out");
     const bool positions = begins(t, "CYCL CALL POS");
-    const Path p = path_words(line, positions ? 13 : 9);
+    const Path p = klartext_path(tnc_, line, positions ? 13 : 9);
     if (std::find(p.m.begin(), p.m.end(), 3) != p.m.end() || std::find(p.m.begin(), p.m.end(), 13) != p.m.end())
       run_.motion.turning = true;
     if (positions) {
@@ -656,15 +401,6 @@ class KlartextReader {
 };
 
 }  // namespace
-
-bool is_klartext(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) {
-    bool deletable = false;
-    const std::string text = plain(line, deletable);
-    if (!text.empty() && !text.starts_with('*')) return text.starts_with("BEGIN PGM");
-  }
-  return false;
-}
 
 void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run) {
   KlartextReader(path, lines, run).run();
