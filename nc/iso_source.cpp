@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/delimited_text.hpp"
 #include "nc/iso_lines.hpp"
 
 namespace driftwright {
@@ -36,9 +37,9 @@ struct Frame {
 
 class IsoSource::Impl {
  public:
-  Impl(const std::string& path, NcRun& run, NcMachineParameters machine)
+  Impl(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
       : path_(path), run_(run), machine_(std::move(machine)) {
-    const File& file = load(path);
+    const File& file = load(path, lines);
     run_.expect(file.lines.size());
     frames_.push_back({.file = &file});
   }
@@ -80,12 +81,12 @@ class IsoSource::Impl {
     throw InputError(where, message);
   }
 
+  const File& load(const std::string& path, const std::vector<std::string>& lines) {
+    return *files_.emplace(path, std::make_unique<File>(File{read_iso_lines(path, lines)})).first->second;
+  }
   const File& load(const std::string& path) {
     const auto found = files_.find(path);
-    if (found != files_.end()) return *found->second;
-    auto file = std::make_unique<File>();
-    file->lines = read_iso_lines(path);
-    return *files_.emplace(path, std::move(file)).first->second;
+    return found != files_.end() ? *found->second : load(path, read_text_lines(path));
   }
 
   // --- numbers
@@ -385,8 +386,8 @@ class IsoSource::Impl {
   std::map<std::string, NcValue> globals_;
 };
 
-IsoSource::IsoSource(const std::string& path, NcRun& run, NcMachineParameters machine)
-    : impl_(std::make_unique<Impl>(path, run, std::move(machine))) {}
+IsoSource::IsoSource(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
+    : impl_(std::make_unique<Impl>(path, lines, run, std::move(machine))) {}
 IsoSource::~IsoSource() = default;
 std::optional<NcBlock> IsoSource::next() {
   return impl_->next();

@@ -74,7 +74,7 @@ class NcRun {
   [[nodiscard]] const std::array<double, 3>& machine_zero(const std::string& word) const;
 
   [[nodiscard]] const NcSettings& settings() const { return settings_; }
-  [[nodiscard]] NcProgram result(const std::string& path, NcDialect dialect) &&;
+  [[nodiscard]] NcProgram result(const std::string& path, const NcLanguage& language) &&;
 
  private:
   void go(NcStepKind kind, const std::array<double, 3>& target_m);

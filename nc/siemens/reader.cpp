@@ -482,17 +482,6 @@ class SiemensReader {
 
 }  // namespace
 
-bool asks_for_iso_mode(const std::vector<std::string>& lines) {
-  for (std::string line : lines) {
-    line.erase(std::min(line.find(';'), line.size()));
-    line.erase(std::min(line.find('('), line.size()));
-    for (char& c : line) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (line.find("G291") != std::string::npos) return true;
-    if (line.find('X') != std::string::npos || line.find('Z') != std::string::npos) return false;
-  }
-  return false;
-}
-
 void run_siemens_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run) {
   SiemensReader(path, lines, run).run();
 }
