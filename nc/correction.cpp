@@ -78,7 +78,7 @@ class Writer {
     const NcModes& modes = steps_[step].before;
     const std::array<double, 3> from_m = written_m_;
     for (int axis = 0; axis < 3; ++axis) written_m_[axis] = as_written_m(shift_m[axis], modes.unit_m);
-    insert(index(step), language_.offset_lines(options_, options_.axes, from_m, written_m_, modes));
+    insert(index(step), language_.offset_lines(options_, {options_.axes, from_m, written_m_, modes}));
   }
 
   /// Sets the present corrections again, after a block that has removed them.
@@ -95,7 +95,7 @@ class Writer {
     if (!any) return;
     NcModes modes = own.before;
     if (step + 1 < steps_.size()) modes = steps_[step + 1].before;
-    const std::vector<std::string> lines = language_.offset_lines(options_, axes, from_m, written_m_, modes);
+    const std::vector<std::string> lines = language_.offset_lines(options_, {axes, from_m, written_m_, modes});
     const auto [place, is_new] = renewed_.emplace(own.where.line, lines);
     if (is_new) {
       insert(static_cast<std::size_t>(std::max(own.where.line, own.last_line)), lines);
@@ -125,7 +125,7 @@ class Writer {
     if (change.share > 0.0) lines = part(step, change.share);
     const std::size_t before = lines.size();
     for (const std::vector<std::string>& more :
-         {language_.offset_lines(options_, axes, from_m, written_m_, step.before), again(change, axes)})
+         {language_.offset_lines(options_, {axes, from_m, written_m_, step.before}), again(change, axes)})
       lines.insert(lines.end(), more.begin(), more.end());
     if (step.n_runs == 1) return {change.step, insert(index(change.step), lines) + before};
     std::vector<Counted>& groups = counted_[index(change.step)];
@@ -216,7 +216,7 @@ class Writer {
     for (int axis = 0; axis < 3; ++axis) {
       if (step.named[axis]) to_m[axis] = step.start_m[axis] + share * (step.end_m[axis] - step.start_m[axis]);
     }
-    return language_.straight_lines(step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before);
+    return language_.straight_lines({step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before});
   }
 
   /// Commands the axes to their present position once more, unless the block itself moves them all by rapid.
@@ -236,7 +236,7 @@ class Writer {
       in_feed = on_its_way ? step.kind == NcStepKind::kLine : in_feed || entries[axis] == NcEntry::kStepInFeed;
       to_m[axis] = step.start_m[axis] + change.share * (step.end_m[axis] - step.start_m[axis]);
     }
-    return language_.straight_lines(!in_feed, to_m, "", step.before);
+    return language_.straight_lines({!in_feed, to_m, "", step.before});
   }
 
   std::vector<std::string> lines_;

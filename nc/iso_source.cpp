@@ -90,7 +90,6 @@ class IsoSource::Impl {
   }
 
   // --- numbers
-  // ------------------------------------------------------------------------------------------------------------------
 
   NcValue look_up(const std::string& name) {
     if (name[0] == '<') {
@@ -205,7 +204,6 @@ class IsoSource::Impl {
   }
 
   // --- order of execution
-  // -------------------------------------------------------------------------------------------------------
 
   void enter(const IsoLine& line, Frame next) {
     if (frames_.size() > kDeepestSubroutine)

@@ -25,11 +25,25 @@ struct NcOffsetOptions {
   std::vector<std::string> remarks = {};             ///< for the program's user, after the first comment
 };
 
+/// A change of the corrections.
+struct NcShift {
+  std::array<bool, 3> axes;            ///< that change
+  std::array<double, 3> from_m, to_m;  ///< corrections before and after it, both as_written_m()
+  NcModes before;                      ///< in force before it
+};
+
+/// A straight motion to an absolute position.
+struct NcLine {
+  bool rapid;
+  std::array<std::optional<double>, 3> to_m;  ///< of the axes to name
+  std::string feed;                           ///< such as "F200", or none
+  NcModes before;
+};
+
 /// What inserted lines have where the program's own have it.
 struct NcBlockForm {
-  std::optional<std::string> number_letter =
-      {};                ///< before the block number, such as "N" or ""; none: no numbers are needed
-  std::string end = {};  ///< of a block, such as "*"
+  std::optional<std::string> number_letter = {};  ///< before the block number: "N", ""; none: lines need no numbers
+  std::string end = {};                           ///< of a block, such as "*"
 };
 
 /// Lines that let others apply to one run of a line that runs several times.
@@ -56,18 +70,11 @@ class NcLanguage {
 
   // --- lines of corrections
 
-  /// Lines that change the corrections of `axes` from one value to another, in addition to what the operator has set;
-  /// absolute: that set the offset.
-  /// @param from_m, to_m  corrections of the offset; both as_written_m()
-  /// @param before        modes in force
+  /// Lines that change the corrections, in addition to what the operator has set; absolute: that set the offset.
   [[nodiscard]] virtual std::vector<std::string> offset_lines(const NcOffsetOptions& options,
-                                                              const std::array<bool, 3>& axes,
-                                                              const std::array<double, 3>& from_m,
-                                                              const std::array<double, 3>& to_m,
-                                                              const NcModes& before) const = 0;
-  /// A straight line to an absolute position in any mode, with `feed` (such as "F200") or none. @param to_m  axes to name
-  [[nodiscard]] virtual std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                                                const std::string& feed, const NcModes& before) const = 0;
+                                                              const NcShift& shift) const = 0;
+  /// Lines of a straight motion in any mode. By default in words of ISO 6983: G0, G1, G90, G91.
+  [[nodiscard]] virtual std::vector<std::string> straight_lines(const NcLine& line) const;
   /// A comment.
   [[nodiscard]] virtual std::string remark_line(const std::string& text) const = 0;
   /// Lines before the first offset: they stop the program where corrections would go wrong.

@@ -39,13 +39,12 @@ class Heidenhain : public NcLanguage {
 
  protected:
   /// The datum shift to write: of all corrected axes (absolute), or the increment of those that change.
-  static std::array<std::optional<double>, 3> shift_m(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                                      const std::array<double, 3>& from_m,
-                                                      const std::array<double, 3>& to_m) {
+  static std::array<std::optional<double>, 3> shift_m(const NcOffsetOptions& options, const NcShift& shift) {
     std::array<std::optional<double>, 3> x_m{};
     for (int axis = 0; axis < 3; ++axis) {
-      if (options.absolute && options.axes[axis]) x_m[axis] = options.base_m[axis] + to_m[axis];
-      if (!options.absolute && axes[axis] && to_m[axis] != from_m[axis]) x_m[axis] = to_m[axis] - from_m[axis];
+      if (options.absolute && options.axes[axis]) x_m[axis] = options.base_m[axis] + shift.to_m[axis];
+      if (!options.absolute && shift.axes[axis] && shift.to_m[axis] != shift.from_m[axis])
+        x_m[axis] = shift.to_m[axis] - shift.from_m[axis];
     }
     return x_m;
   }
@@ -59,19 +58,17 @@ class HeidenhainDin final : public Heidenhain {
   void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
     run_heidenhain_program(path, lines, run);
   }
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& from_m, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
-    const std::string words = axis_words(shift_m(options, axes, from_m, to_m), before.unit_m, signed_length);
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
+    const std::string words = axis_words(shift_m(options, shift), shift.before.unit_m, signed_length);
     if (words.empty() && !options.absolute) return {};
-    std::vector<std::string> lines = {(!options.absolute ? "G54 G91" : before.absolute ? "G54" : "G54 G90") + words};
-    if (options.absolute != before.absolute) lines.emplace_back(before.absolute ? "G90" : "G91");  // restores the mode
+    std::vector<std::string> lines = {(!options.absolute ? "G54 G91" : shift.before.absolute ? "G54" : "G54 G90") + words};
+    if (options.absolute != shift.before.absolute)
+      lines.emplace_back(shift.before.absolute ? "G90" : "G91");  // restores the mode
     return lines;
   }
-  std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                          const std::string& feed, const NcModes& before) const override {
-    return iso_straight_lines((rapid ? "G00" : "G01") + axis_words(to_m, before.unit_m, signed_length), feed,
-                              before.absolute);
+  std::vector<std::string> straight_lines(const NcLine& line) const override {
+    return iso_straight_lines((line.rapid ? "G00" : "G01") + axis_words(line.to_m, line.before.unit_m, signed_length),
+                              line.feed, line.before.absolute);
   }
   NcBlockForm block_form() const override { return {.number_letter = "N", .end = "*"}; }
   std::string unit_words() const override { return "%NAME G71 or %NAME G70"; }
@@ -85,22 +82,19 @@ class Klartext final : public Heidenhain {
   void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
     run_klartext_program(path, lines, run);
   }
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& from_m, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
-    const std::array<std::optional<double>, 3> x_m = shift_m(options, axes, from_m, to_m);
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
+    const std::array<std::optional<double>, 3> x_m = shift_m(options, shift);
     std::vector<std::string> lines = {"CYCL DEF 7.0 DATUM SHIFT"};
     for (int axis = 0; axis < 3; ++axis) {
       if (x_m[axis])
         lines.push_back(fmt::format("CYCL DEF 7.{} {}{}{}", lines.size(), options.absolute ? "" : "I", "XYZ"[axis],
-                                    signed_length(*x_m[axis], before.unit_m)));
+                                    signed_length(*x_m[axis], shift.before.unit_m)));
     }
     return lines.size() > 1 ? lines : std::vector<std::string>{};
   }
-  std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                          const std::string& feed, const NcModes& before) const override {
-    const std::string line = "L" + axis_words(to_m, before.unit_m, signed_length) + (feed.empty() ? "" : " " + feed);
-    return {rapid ? line + " FMAX" : line};
+  std::vector<std::string> straight_lines(const NcLine& line) const override {
+    const std::string words = "L" + axis_words(line.to_m, line.before.unit_m, signed_length);
+    return {words + (line.feed.empty() ? "" : " " + line.feed) + (line.rapid ? " FMAX" : "")};
   }
   NcBlockForm block_form() const override { return {.number_letter = "", .end = ""}; }
   std::string unit_words() const override { return "BEGIN PGM NAME MM"; }

@@ -12,6 +12,7 @@
 #include "nc/arc.hpp"
 #include "nc/heidenhain/run.hpp"
 #include "nc/units.hpp"
+#include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
@@ -221,9 +222,6 @@ class HeidenhainReader {
   }
 
   static bool has(const Block& b, char letter) { return b.words.contains(letter); }
-  static bool contains(const std::vector<int>& codes, int code) {
-    return std::find(codes.begin(), codes.end(), code) != codes.end();
-  }
   double length_m(const Block& b, char letter) const { return b.words.at(letter).value * run_.unit_m; }
 
   bool run_block(const HeidenhainLine& line, const Block& b) {
@@ -244,22 +242,12 @@ class HeidenhainReader {
         moves = false;
         continue;
       }
+      if (std::set<int>{0, 1, 2, 3, 5, 6, 10, 11, 12, 13, 15, 16}.contains(g)) {
+        run_.motion_word = 10 * g;
+        step.motion_word = true;
+        continue;
+      }
       switch (g) {
-        case 0:
-        case 1:
-        case 2:
-        case 3:
-        case 5:
-        case 6:
-        case 10:
-        case 11:
-        case 12:
-        case 13:
-        case 15:
-        case 16:
-          run_.motion_word = 10 * g;
-          step.motion_word = true;
-          break;
         case 4:
           dwells = true;
           break;

@@ -10,6 +10,7 @@
 #include "nc/heidenhain/klartext_cycles.hpp"
 #include "nc/heidenhain/klartext_lines.hpp"
 #include "nc/units.hpp"
+#include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
@@ -169,11 +170,10 @@ class KlartextReader {
       if (!automatic_feed_) fail(line, "F AUTO requires a feed in TOOL CALL");
       run_.motion.feed = *automatic_feed_;
     }
-    if (std::find(p.m.begin(), p.m.end(), 3) != p.m.end() || std::find(p.m.begin(), p.m.end(), 13) != p.m.end() ||
-        std::find(p.m.begin(), p.m.end(), 4) != p.m.end() || std::find(p.m.begin(), p.m.end(), 14) != p.m.end())
+    if (contains(p.m, 3) || contains(p.m, 13) || contains(p.m, 4) || contains(p.m, 14))
       run_.motion.turning = true;  // at the start of the block
     move(line, word, p);
-    if (run_.modal_cycle && std::find(p.m.begin(), p.m.end(), 99) == p.m.end()) tnc_.call_cycle();
+    if (run_.modal_cycle && !contains(p.m, 99)) tnc_.call_cycle();
     return m_words(line, p);
   }
 
@@ -185,7 +185,7 @@ class KlartextReader {
     std::optional<bool> clockwise = p.clockwise;
     if (word == "L" || word == "LP") {
       if (!any && word == "L") return;
-      if (std::find(p.m.begin(), p.m.end(), 91) != p.m.end()) {
+      if (contains(p.m, 91)) {
         std::array<double, 3> target_m = run_.motion.position_m;
         const std::array<double, 3>& zero_m = run_.machine_zero("M91");
         for (int axis = 0; axis < 3; ++axis) {
@@ -260,7 +260,6 @@ class KlartextReader {
   }
 
   // --- the rest
-  // -----------------------------------------------------------------------------------------------------------------
 
   void call_label(const HeidenhainLine& line) {
     std::string label = line.text.substr(9);
@@ -324,8 +323,7 @@ class KlartextReader {
     if (begins(t, "CYCL CALL PAT")) fail(line, "patterns are not followed here; write the positions out");
     const bool positions = begins(t, "CYCL CALL POS");
     const Path p = klartext_path(tnc_, line, positions ? 13 : 9);
-    if (std::find(p.m.begin(), p.m.end(), 3) != p.m.end() || std::find(p.m.begin(), p.m.end(), 13) != p.m.end())
-      run_.motion.turning = true;
+    if (contains(p.m, 3) || contains(p.m, 13)) run_.motion.turning = true;
     if (positions) {
       if (p.feed) run_.set_feed(*p.feed);
       tnc_.line_to(target(p), p.rapid);

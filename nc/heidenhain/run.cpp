@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "nc/arc.hpp"
 #include "nc/expression.hpp"
@@ -158,6 +159,8 @@ void HeidenhainRun::change_tool() {
 }
 
 bool HeidenhainRun::m_word(int m) {
+  static const std::set<int> kWithoutEffect = {7, 8, 9, 90, 97, 98, 101, 102, 107, 108, 120, 126, 127, 129, 148, 149};
+  if (kWithoutEffect.contains(m)) return false;
   switch (m) {
     case 0:
     case 1:
@@ -179,23 +182,6 @@ bool HeidenhainRun::m_word(int m) {
     case 6:  // the tool call has already counted its time
       run_.motion.turning = false;
       run_.halt("M6");
-      return false;
-    case 7:
-    case 8:
-    case 9:
-    case 90:
-    case 97:
-    case 98:
-    case 101:
-    case 102:
-    case 107:
-    case 108:
-    case 120:
-    case 126:
-    case 127:
-    case 129:
-    case 148:
-    case 149:
       return false;
     case 89:
       run_.modal_cycle = true;

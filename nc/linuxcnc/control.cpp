@@ -24,30 +24,23 @@ class LinuxCnc final : public NcLanguage {
     run_iso_program(path, lines, run, {});
   }
 
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& from_m, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
+    const double unit_m = shift.before.unit_m;
     if (options.shares_shift && !options.absolute) {
       std::string words;
       for (int axis = 0; axis < 3; ++axis) {  // the present position then has another number
-        if (axes[axis] && to_m[axis] != from_m[axis])
-          words +=
-              fmt::format(" {}[#{}{}]", "XYZ"[axis], 5420 + axis, signed_length(from_m[axis] - to_m[axis], before.unit_m));
+        if (shift.axes[axis] && shift.to_m[axis] != shift.from_m[axis])
+          words += fmt::format(" {}[#{}{}]", "XYZ"[axis], 5420 + axis,
+                               signed_length(shift.from_m[axis] - shift.to_m[axis], unit_m));
       }
       return words.empty() ? std::vector<std::string>{} : std::vector<std::string>{"G92" + words};
     }
     std::array<std::optional<double>, 3> x_m{};
     for (int axis = 0; axis < 3; ++axis) {
-      if (axes[axis]) x_m[axis] = (options.absolute ? options.base_m[axis] : 0.0) + to_m[axis];
+      if (shift.axes[axis]) x_m[axis] = (options.absolute ? options.base_m[axis] : 0.0) + shift.to_m[axis];
     }
     const std::string word = options.absolute ? fmt::format("G10 L2 P{}", work_offset_number(options.work_offset)) : "G52";
-    return {word + axis_words(x_m, before.unit_m, written_length)};
-  }
-
-  std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                          const std::string& feed, const NcModes& before) const override {
-    return iso_straight_lines((rapid ? "G0" : "G1") + axis_words(to_m, before.unit_m, written_length), feed,
-                              before.absolute);
+    return {word + axis_words(x_m, unit_m, written_length)};
   }
 
   std::string remark_line(const std::string& text) const override { return fmt::format("({})", text); }

@@ -19,29 +19,22 @@ namespace {
 /// ($P_BFRAME), which G54 or a reset loads anew.
 class Siemens : public NcLanguage {
  public:
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& /*from_m*/, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
+    const double unit_m = shift.before.unit_m;
     std::vector<std::string> lines;
     for (int axis = 0; axis < 3; ++axis) {
-      if (!axes[axis]) continue;
+      if (!shift.axes[axis]) continue;
       const char letter = "XYZ"[axis];
       if (options.absolute) {
         lines.push_back(
-            fmt::format("$P_BFRAME[{},TR]={}", letter, written_length(options.base_m[axis] + to_m[axis], before.unit_m)));
+            fmt::format("$P_BFRAME[{},TR]={}", letter, written_length(options.base_m[axis] + shift.to_m[axis], unit_m)));
       } else {
-        const bool is_zero = written_length(to_m[axis], before.unit_m) == "0";
+        const bool is_zero = written_length(shift.to_m[axis], unit_m) == "0";
         lines.push_back(fmt::format("$P_BFRAME[{},TR]=$P_UBFR[{},TR]{}", letter, letter,
-                                    is_zero ? "" : signed_length(to_m[axis], before.unit_m)));
+                                    is_zero ? "" : signed_length(shift.to_m[axis], unit_m)));
       }
     }
     return lines;
-  }
-
-  std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                          const std::string& feed, const NcModes& before) const override {
-    return iso_straight_lines((rapid ? "G0" : "G1") + axis_words(to_m, before.unit_m, written_length), feed,
-                              before.absolute);
   }
 
   std::string offset_name(const NcOffsetOptions& /*options*/) const override { return "The base frame"; }
@@ -87,10 +80,8 @@ class SiemensIso final : public Siemens {
   void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
     run_iso_program(path, lines, run, {.has_g291 = true, .work_offset_resets = true});
   }
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& from_m, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
-    std::vector<std::string> lines = Siemens::offset_lines(options, axes, from_m, to_m, before);
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
+    std::vector<std::string> lines = Siemens::offset_lines(options, shift);
     if (lines.empty()) return lines;
     lines.insert(lines.begin(), "G290");
     lines.emplace_back("G291");

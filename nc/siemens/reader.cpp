@@ -13,6 +13,7 @@
 #include "nc/siemens/words.hpp"
 #include "nc/tapping.hpp"
 #include "nc/units.hpp"
+#include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
@@ -143,7 +144,6 @@ class SiemensReader {
   }
 
   // --- interpretation
-  // -----------------------------------------------------------------------------------------------------------
 
   [[nodiscard]] static bool has(const Block& b, const char* name) { return b.words.contains(name); }
   double number(const Block& b, const char* name) { return value_of(*b.line, *b.words.at(name)); }
@@ -159,9 +159,6 @@ class SiemensReader {
       fail_at(*b.line, b.words.at(name)->column,
               fmt::format("{}: the value must be a whole number from 0 to 100000", b.words.at(name)->text));
     return static_cast<int>(x);
-  }
-  static bool contains(const std::vector<int>& codes, int code) {
-    return std::find(codes.begin(), codes.end(), code) != codes.end();
   }
 
   /// @returns true  if it ends the program

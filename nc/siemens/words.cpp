@@ -1,6 +1,8 @@
 #include "nc/siemens/words.hpp"
 
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace driftwright {
 
@@ -27,44 +29,19 @@ bool is_siemens_g_without_effect(int g) {
 }
 
 const char* siemens_g_hint(int g) {
-  switch (g) {
-    case 20:
-    case 21:
-      return "this control's inch and mm are G70 and G71, or G700 and G710; programs in ISO code begin with G291";
-    case 28:
-    case 30:
-    case 43:
-    case 49:
-    case 80:
-    case 81:
-    case 82:
-    case 83:
-    case 98:
-    case 99:
-      return "this is a word of ISO code, which this control knows only after G291";
-    case 33:
-    case 34:
-    case 35:
-      return "threading is not computed here; write G1 with G95";
-    case 96:
-    case 961:
-      return "constant surface speed is not computed here; write the spindle speeds with G97";
-    case 110:
-    case 111:
-    case 112:
-      return "polar coordinates are not computed here; let the post-processor write X, Y, Z";
-    case 147:
-    case 148:
-    case 247:
-    case 248:
-    case 347:
-    case 348:
-      return "soft approach and retraction are not computed here; let the post-processor write them out";
-    case 291:
-      return "a change to ISO code within a program is not followed; write it in the first block";
-    default:
-      return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
+  static const std::vector<std::pair<std::set<int>, const char*>> kHints = {
+      {{20, 21}, "this control's inch and mm are G70 and G71, or G700 and G710; programs in ISO code begin with G291"},
+      {{28, 30, 43, 49, 80, 81, 82, 83, 98, 99}, "this is a word of ISO code, which this control knows only after G291"},
+      {{33, 34, 35}, "threading is not computed here; write G1 with G95"},
+      {{96, 961}, "constant surface speed is not computed here; write the spindle speeds with G97"},
+      {{110, 111, 112}, "polar coordinates are not computed here; let the post-processor write X, Y, Z"},
+      {{147, 148, 247, 248, 347, 348},
+       "soft approach and retraction are not computed here; let the post-processor write them out"},
+      {{291}, "a change to ISO code within a program is not followed; write it in the first block"}};
+  for (const auto& [codes, hint] : kHints) {
+    if (codes.contains(g)) return hint;
   }
+  return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
 }
 
 }  // namespace driftwright

@@ -46,18 +46,16 @@ class Marker final : public NcLanguage {
     throw InputError(path + ": the program has no STOP");
   }
 
-  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const std::array<bool, 3>& axes,
-                                        const std::array<double, 3>& /*from_m*/, const std::array<double, 3>& to_m,
-                                        const NcModes& before) const override {
+  std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
     std::array<std::optional<double>, 3> x_m{};
     for (int axis = 0; axis < 3; ++axis) {
-      if (axes[axis]) x_m[axis] = to_m[axis] + (options.absolute ? options.base_m[axis] : 0.0);
+      if (shift.axes[axis]) x_m[axis] = shift.to_m[axis] + (options.absolute ? options.base_m[axis] : 0.0);
     }
-    return {"SHIFT" + axis_words(x_m, before.unit_m, written_length)};
+    return {"SHIFT" + axis_words(x_m, shift.before.unit_m, written_length)};
   }
-  std::vector<std::string> straight_lines(bool rapid, const std::array<std::optional<double>, 3>& to_m,
-                                          const std::string& feed, const NcModes& before) const override {
-    return {(rapid ? "JUMP" : "LINE") + axis_words(to_m, before.unit_m, written_length) + (feed.empty() ? "" : " " + feed)};
+  std::vector<std::string> straight_lines(const NcLine& line) const override {
+    const std::string words = axis_words(line.to_m, line.before.unit_m, written_length);
+    return {(line.rapid ? "JUMP" : "LINE") + words + (line.feed.empty() ? "" : " " + line.feed)};
   }
   std::string remark_line(const std::string& text) const override { return "! " + text; }
   NcBlockForm block_form() const override { return {.number_letter = ":", .end = "."}; }
