@@ -34,62 +34,30 @@ double modulus(double a, double b) {
   const double rest = std::fmod(a, b);
   return rest < 0.0 ? rest + std::abs(b) : rest;
 }
-double power(double a, double b) {
-  return std::pow(a, b);
-}
-double times(double a, double b) {
-  return a * b;
-}
-double plus(double a, double b) {
-  return a + b;
-}
-double minus(double a, double b) {
-  return a - b;
-}
-double whole_quotient(double a, double b) {
-  return std::trunc(checked_quotient(a, b));
-}
-double equal(double a, double b) {
-  return std::abs(a - b) < kSame ? 1.0 : 0.0;
-}
-double unequal(double a, double b) {
-  return 1.0 - equal(a, b);
-}
-double same(double a, double b) {
-  return a == b ? 1.0 : 0.0;
-}
-double different(double a, double b) {
-  return a != b ? 1.0 : 0.0;
-}
-double greater(double a, double b) {
-  return a > b ? 1.0 : 0.0;
-}
-double at_least(double a, double b) {
-  return a >= b ? 1.0 : 0.0;
-}
-double less(double a, double b) {
-  return a < b ? 1.0 : 0.0;
-}
-double at_most(double a, double b) {
-  return a <= b ? 1.0 : 0.0;
-}
-double both(double a, double b) {
-  return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
-}
-double either(double a, double b) {
-  return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
-}
-double one_of(double a, double b) {
-  return (a != 0.0) != (b != 0.0) ? 1.0 : 0.0;
-}
+constexpr auto power = [](double a, double b) { return std::pow(a, b); };
+constexpr auto product = [](double a, double b) { return a * b; };
+constexpr auto plus = [](double a, double b) { return a + b; };
+constexpr auto minus = [](double a, double b) { return a - b; };
+constexpr auto whole_quotient = [](double a, double b) { return std::trunc(checked_quotient(a, b)); };
+constexpr auto equal = [](double a, double b) { return std::abs(a - b) < kSame ? 1.0 : 0.0; };
+constexpr auto unequal = [](double a, double b) { return 1.0 - equal(a, b); };
+constexpr auto same = [](double a, double b) { return a == b ? 1.0 : 0.0; };
+constexpr auto different = [](double a, double b) { return a != b ? 1.0 : 0.0; };
+constexpr auto greater = [](double a, double b) { return a > b ? 1.0 : 0.0; };
+constexpr auto at_least = [](double a, double b) { return a >= b ? 1.0 : 0.0; };
+constexpr auto less = [](double a, double b) { return a < b ? 1.0 : 0.0; };
+constexpr auto at_most = [](double a, double b) { return a <= b ? 1.0 : 0.0; };
+constexpr auto both = [](double a, double b) { return a != 0.0 && b != 0.0 ? 1.0 : 0.0; };
+constexpr auto either = [](double a, double b) { return a != 0.0 || b != 0.0 ? 1.0 : 0.0; };
+constexpr auto one_of = [](double a, double b) { return (a != 0.0) != (b != 0.0) ? 1.0 : 0.0; };
 
 /// Longer operators first, if one begins with another.
 const std::vector<Operator>& operators(NcSyntax syntax) {
   static const std::vector<Operator> kLinuxCnc = {
-      {"**", 5, power}, {"*", 4, times},    {"/", 4, checked_quotient}, {"MOD", 4, modulus}, {"+", 3, plus},
+      {"**", 5, power}, {"*", 4, product},  {"/", 4, checked_quotient}, {"MOD", 4, modulus}, {"+", 3, plus},
       {"-", 3, minus},  {"EQ", 2, equal},   {"NE", 2, unequal},         {"GT", 2, greater},  {"GE", 2, at_least},
       {"LT", 2, less},  {"LE", 2, at_most}, {"AND", 1, both},           {"OR", 1, either},   {"XOR", 1, one_of}};
-  static const std::vector<Operator> kSiemens = {{"*", 5, times},
+  static const std::vector<Operator> kSiemens = {{"*", 5, product},
                                                  {"/", 5, checked_quotient},
                                                  {"DIV", 5, whole_quotient},
                                                  {"MOD", 5, modulus},
@@ -105,7 +73,7 @@ const std::vector<Operator>& operators(NcSyntax syntax) {
                                                  {"XOR", 1, one_of},
                                                  {"OR", 1, either}};
   static const std::vector<Operator> kHeidenhain = {
-      {"^", 3, power}, {"*", 2, times}, {"/", 2, checked_quotient}, {"+", 1, plus}, {"-", 1, minus}};
+      {"^", 3, power}, {"*", 2, product}, {"/", 2, checked_quotient}, {"+", 1, plus}, {"-", 1, minus}};
   return syntax == NcSyntax::kLinuxCnc ? kLinuxCnc : syntax == NcSyntax::kSiemens ? kSiemens : kHeidenhain;
 }
 

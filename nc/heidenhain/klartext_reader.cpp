@@ -38,10 +38,6 @@ class KlartextReader {
  private:
   using Path = KlartextPath;
 
-  [[noreturn]] void fail(const HeidenhainLine& line, const std::string& message) const {
-    throw InputError(line.where, message);
-  }
-
   static bool begins(const std::string& text, const char* word) {
     const std::string w = word;
     return text.compare(0, w.size(), w) == 0 && (text.size() == w.size() || text[w.size()] == ' ');
@@ -54,7 +50,7 @@ class KlartextReader {
     const std::string& t = line.text;
     if (begins(t, "BEGIN PGM")) {
       const bool inch = t.ends_with(" INCH");
-      if (!inch && !t.ends_with(" MM")) fail(line, "BEGIN PGM has no unit; write MM or INCH at its end");
+      if (!inch && !t.ends_with(" MM")) tnc_.fail(line, "BEGIN PGM has no unit; write MM or INCH at its end");
       run_.unit_m = inch ? kInch_m : 1e-3;
       run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
       run_.step().unit_word = true;
@@ -69,7 +65,7 @@ class KlartextReader {
       return false;
     }
     if (begins(t, "CALL LBL")) return call_label(line), false;
-    if (begins(t, "CALL PGM")) fail(line, "other programs are not called here; let the post-processor write them out");
+    if (begins(t, "CALL PGM")) tnc_.fail(line, "other programs are not called here; let the post-processor write them out");
     if (begins(t, "TOOL CALL")) return tool_call(line);
     if (begins(t, "CYCL DEF")) return define_klartext_cycle(line, tnc_, run_), false;
     if (begins(t, "CYCL CALL")) return call_cycle(line);
@@ -94,7 +90,8 @@ class KlartextReader {
     if (t.starts_with('M')) return m_words(line, klartext_path(tnc_, line, 0));
     const std::string word = t.substr(0, t.find(' '));
     if (ignored(word)) return false;
-    fail(line, fmt::format("{} is not known here; if it has no effect on times and speeds, name it under `ignore`", word));
+    tnc_.fail(line,
+              fmt::format("{} is not known here; if it has no effect on times and speeds, name it under `ignore`", word));
   }
 
   /// @returns true  if one ends the program
@@ -119,7 +116,7 @@ class KlartextReader {
     } else if (p.mb) {
       target_m[run_.normal] += *p.mb * run_.unit_m;
     } else {
-      fail(line, "M140 requires MB and its length, or MB MAX");
+      tnc_.fail(line, "M140 requires MB and its length, or MB MAX");
     }
     run_.step().named[run_.normal] = true;
     tnc_.line_to(target_m, !p.feed);
@@ -144,7 +141,7 @@ class KlartextReader {
     std::array<double, 3> target_m = target(p);
     const double from = std::atan2(here_m[v] - tnc_.pole_m[v], here_m[u] - tnc_.pole_m[u]);
     const double distance_m = std::hypot(here_m[v] - tnc_.pole_m[v], here_m[u] - tnc_.pole_m[u]);
-    if (!p.pa && !p.ipa && !p.pr && !p.ipr) fail(line, "polar coordinates require PR or PA");
+    if (!p.pa && !p.ipa && !p.pr && !p.ipr) tnc_.fail(line, "polar coordinates require PR or PA");
     const double angle = p.ipa ? from + *p.ipa * kDegree : p.pa ? *p.pa * kDegree : from;
     const double radius_m = p.ipr ? distance_m + *p.ipr * run_.unit_m : p.pr ? *p.pr * run_.unit_m : distance_m;
     target_m[u] = tnc_.pole_m[u] + radius_m * std::cos(angle);
@@ -167,7 +164,7 @@ class KlartextReader {
     side(p);
     if (p.feed) run_.set_feed(*p.feed);
     if (p.automatic) {
-      if (!automatic_feed_) fail(line, "F AUTO requires a feed in TOOL CALL");
+      if (!automatic_feed_) tnc_.fail(line, "F AUTO requires a feed in TOOL CALL");
       run_.motion.feed = *automatic_feed_;
     }
     if (contains(p.m, 3) || contains(p.m, 13) || contains(p.m, 4) || contains(p.m, 14))
@@ -189,7 +186,7 @@ class KlartextReader {
         std::array<double, 3> target_m = run_.motion.position_m;
         const std::array<double, 3>& zero_m = run_.machine_zero("M91");
         for (int axis = 0; axis < 3; ++axis) {
-          if (p.by[axis]) fail(line, "M91 does not allow an incremental coordinate");
+          if (p.by[axis]) tnc_.fail(line, "M91 does not allow an incremental coordinate");
           if (!p.at[axis]) continue;
           step.named[axis] = true;
           target_m[axis] = zero_m[axis] + *p.at[axis] * run_.unit_m;
@@ -207,10 +204,10 @@ class KlartextReader {
     }
     const std::array<double, 3> target_m = word == "CP" ? polar_target(line, p, turns, clockwise) : target(p);
     if (!clockwise) clockwise = last_clockwise_;
-    if (!clockwise) fail(line, "the arc has no sense; write DR+ or DR-");
+    if (!clockwise) tnc_.fail(line, "the arc has no sense; write DR+ or DR-");
     last_clockwise_ = clockwise;
     if (word == "CR") {
-      if (!p.radius) fail(line, "CR requires its radius R");
+      if (!p.radius) tnc_.fail(line, "CR requires its radius R");
       tnc_.circle_to(target_m, run_.centre_of(target_m, *p.radius * run_.unit_m, *clockwise), *clockwise, 1);
     } else {
       tnc_.circle_to(target_m, tnc_.pole_m, *clockwise, turns);
@@ -239,10 +236,10 @@ class KlartextReader {
     } else if (p.length || p.radius) {
       const double length_m =
           (p.length ? std::abs(*p.length) : std::abs(*p.radius) * p.angle.value_or(90.0) * kDegree) * run_.unit_m;
-      if (!(run_.motion.feed > 0.0)) fail(line, "the feed move has no feed");
+      if (!(run_.motion.feed > 0.0)) tnc_.fail(line, "the feed move has no feed");
       run_.motion.wait(length_m / run_.motion.feed);
     } else {
-      fail(line, fmt::format("{} {} requires its end, LEN or R", word, kind));
+      tnc_.fail(line, fmt::format("{} {} requires its end, LEN or R", word, kind));
     }
     if (word == "DEP") run_.compensated = false;
     run_.forget();
@@ -270,7 +267,7 @@ class KlartextReader {
       std::size_t i = 0;
       const double n = count.empty() ? 1.0 : tnc_.value(line, count, i);
       if (!(n >= 1.0 && n <= kMostRuns && n == std::floor(n)))
-        fail(line, fmt::format("REP {} must be a count from 1", count));
+        tnc_.fail(line, fmt::format("REP {} must be a count from 1", count));
       times = static_cast<int>(n);
       label.erase(rep);
     }
@@ -289,7 +286,7 @@ class KlartextReader {
       const char c = t[i];
       if (c == '"') {
         i = t.find('"', i + 1);
-        if (i == std::string::npos) fail(line, "the tool's name has no closing '\"'");
+        if (i == std::string::npos) tnc_.fail(line, "the tool's name has no closing '\"'");
         ++i;
         named = true;
       } else if (is_digit(c) || c == 'Q') {
@@ -301,7 +298,7 @@ class KlartextReader {
         ++i;
       } else if (c == 'S') {
         run_.motion.programmed_rpm = tnc_.value(line, t, ++i);
-        if (run_.motion.programmed_rpm < 0.0) fail(line, "the speed must be zero or above");
+        if (run_.motion.programmed_rpm < 0.0) tnc_.fail(line, "the speed must be zero or above");
       } else if (c == 'F') {
         const double before = run_.motion.feed;
         run_.set_feed(tnc_.value(line, t, ++i));
@@ -311,7 +308,7 @@ class KlartextReader {
         i += t.compare(i, 3, "DR2") == 0 ? 3 : 2;
         (void)tnc_.value(line, t, i);
       } else {
-        fail(line, fmt::format("'{}' is not known in TOOL CALL", t.substr(i, t.find(' ', i) - i)));
+        tnc_.fail(line, fmt::format("'{}' is not known in TOOL CALL", t.substr(i, t.find(' ', i) - i)));
       }
     }
     if (named) tnc_.change_tool();
@@ -320,7 +317,7 @@ class KlartextReader {
 
   bool call_cycle(const HeidenhainLine& line) {
     const std::string& t = line.text;
-    if (begins(t, "CYCL CALL PAT")) fail(line, "patterns are not followed here; write the positions out");
+    if (begins(t, "CYCL CALL PAT")) tnc_.fail(line, "patterns are not followed here; write the positions out");
     const bool positions = begins(t, "CYCL CALL POS");
     const Path p = klartext_path(tnc_, line, positions ? 13 : 9);
     if (contains(p.m, 3) || contains(p.m, 13)) run_.motion.turning = true;
@@ -334,14 +331,14 @@ class KlartextReader {
 
   void formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
+    if (equals == std::string::npos) tnc_.fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     if (name.starts_with("QS")) return;  // texts
     std::size_t i = equals + 1;
     tnc_.set_q(name, tnc_.value(line, line.text, i, true));
     if (line.text.find_first_not_of(' ', i) != std::string::npos)
-      fail(line, fmt::format("'{}' is not allowed here", line.text.substr(i)));
+      tnc_.fail(line, fmt::format("'{}' is not allowed here", line.text.substr(i)));
   }
 
   /// FN 1: Q5 = +Q2 + +5; FN 9: IF +Q1 EQU +Q3 GOTO LBL 5.
@@ -351,11 +348,11 @@ class KlartextReader {
     while (i < t.size() && t[i] == ' ') ++i;
     int n = 0;
     while (i < t.size() && is_digit(t[i])) n = 10 * std::min(n, 1000) + (t[i++] - '0');
-    if (i >= t.size() || t[i] != ':') fail(line, "FN and its number are expected, such as FN 0: Q1 = +5");
+    if (i >= t.size() || t[i] != ':') tnc_.fail(line, "FN and its number are expected, such as FN 0: Q1 = +5");
     ++i;
     if (n >= 9 && n <= 12) {
       const std::size_t condition = t.find("IF", i), jump = t.find("GOTO LBL");
-      if (condition == std::string::npos || jump == std::string::npos) fail(line, "IF ... GOTO LBL is expected");
+      if (condition == std::string::npos || jump == std::string::npos) tnc_.fail(line, "IF ... GOTO LBL is expected");
       i = condition + 2;
       const double a = tnc_.value(line, t, i);
       i = t.find_first_of("ENGL", i);  // EQU, NE, GT, LT
@@ -368,7 +365,7 @@ class KlartextReader {
       return;
     }
     const std::size_t equals = t.find('=', i);
-    if (equals == std::string::npos) fail(line, fmt::format("FN {} is not known here", n));
+    if (equals == std::string::npos) tnc_.fail(line, fmt::format("FN {} is not known here", n));
     std::string q = t.substr(i, equals - i);
     std::erase(q, ' ');
     i = equals + 1;
@@ -387,7 +384,8 @@ class KlartextReader {
       }
       b = tnc_.value(line, t, i);
     }
-    if (!tnc_.function(line, n, q, a, b)) fail(line, fmt::format("FN {}: what it reads is known only at the machine", n));
+    if (!tnc_.function(line, n, q, a, b))
+      tnc_.fail(line, fmt::format("FN {}: what it reads is known only at the machine", n));
   }
 
   std::string path_;
