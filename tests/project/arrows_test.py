@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Checks the dependencies between rooms: a file includes only headers of its own room and of rooms that its CMakeLists.txt links, no room depends on itself,
-and the library does not depend on the command line. A folder without a target of its own belongs to the room around it.
+and the library does not depend on the command line. A folder without a
+CMakeLists.txt belongs to the room around it, and no file outside of it includes its headers: the room does not know what is special there (the controls of nc/).
 
     arrows_test.py FOLDER_OF_THE_PROJECT
 """
@@ -56,6 +57,9 @@ def main():
             if room_around(file.parent.relative_to(top).as_posix(), target) != folder:
                 continue
             for included in INCLUDE.findall(file.read_text()):
+                its = top / included
+                if its.is_dir() and not (its / "CMakeLists.txt").exists() and its != file.parent:
+                    wrong.append(f"{file.relative_to(top)} includes a header of {included}, which is for that folder alone")
                 other = room_around(included, target)
                 if other and target[other] not in allowed:
                     wrong.append(f"{file.relative_to(top)} includes a header of {included}, which driftwright_{name} does not link")
