@@ -10,12 +10,41 @@
 
 #include "base/delimited_text.hpp"
 #include "nc/iso_lines.hpp"
+#include "nc/operators.hpp"
 
 namespace driftwright {
 namespace {
 
 constexpr std::size_t kDeepestSubroutine = 10;  // nested subroutines, LinuxCNC's limit
 constexpr int kLocals = 30;
+
+/// Upper case without blanks; [ ], #1, #<NAME>, ** MOD EQ NE GT GE LT LE AND OR XOR, SIN[ ] in degrees, ATAN[ ]/[ ].
+/// Source: LinuxCNC documentation "G-code Overview" (Parameters, Expressions, Binary Operators, Functions).
+const NcSyntax& iso_syntax() {
+  static const NcSyntax syntax = {
+      .operators = {{"**", 5, op::power},
+                    {"*", 4, op::product},
+                    {"/", 4, op::quotient},
+                    {"MOD", 4, op::modulus},
+                    {"+", 3, op::plus},
+                    {"-", 3, op::minus},
+                    {"EQ", 2, op::equal},
+                    {"NE", 2, op::unequal},
+                    {"GT", 2, op::greater},
+                    {"GE", 2, op::at_least},
+                    {"LT", 2, op::less},
+                    {"LE", 2, op::at_most},
+                    {"AND", 1, op::both},
+                    {"OR", 1, op::either},
+                    {"XOR", 1, op::one_of}},
+      .functions = {{"FIX", [](double x) { return std::floor(x); }}, {"FUP", [](double x) { return std::ceil(x); }}},
+      .angle_of_ratio = "ATAN",
+      .open = '[',
+      .close = ']',
+      .has_numbered = true,
+      .is_joined = true};
+  return syntax;
+}
 
 struct File {
   std::vector<IsoLine> lines;
@@ -123,7 +152,7 @@ class IsoSource::Impl {
 
   NcValue value(const IsoLine& line, std::size_t& i, bool whole) {
     try {
-      return evaluate(line.text, i, NcSyntax::kLinuxCnc, lookup(), whole);
+      return evaluate(line.text, i, iso_syntax(), lookup(), whole);
     } catch (const RangeError& e) {
       fail(line, i, e.what());
     }
@@ -152,7 +181,7 @@ class IsoSource::Impl {
         ++i;
         std::string name;
         try {
-          name = parameter_name(text, i, lookup());
+          name = parameter_name(text, i, iso_syntax(), lookup());
         } catch (const RangeError& e) {
           fail(line, i, e.what());
         }

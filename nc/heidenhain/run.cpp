@@ -7,14 +7,37 @@
 #include <numbers>
 #include <set>
 
+#include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/expression.hpp"
+#include "nc/operators.hpp"
 #include "nc/tapping.hpp"
 
 namespace driftwright {
 namespace {
 
 constexpr std::size_t kDeepestSubprogram = 8;  // nested subprograms, the limit of the control
+
+/// ( ) optional after functions, Q1 QL1 QR1, + - * / ^, SQ SQRT SIN COS TAN ASIN ACOS ATAN LN LOG EXP NEG INT ABS FRAC PI.
+/// Source: Heidenhain, TNC 640 User's Manual, Q parameters, formulas.
+const NcSyntax& heidenhain_syntax() {
+  static const NcSyntax syntax = {
+      .operators =
+          {{"^", 3, op::power}, {"*", 2, op::product}, {"/", 2, op::quotient}, {"+", 1, op::plus}, {"-", 1, op::minus}},
+      .functions = {{"SQ", [](double x) { return x * x; }},
+                    {"NEG", [](double x) { return -x; }},
+                    {"INT", [](double x) { return std::trunc(x); }},
+                    {"FRAC", [](double x) { return x - std::trunc(x); }},
+                    {"SGN", [](double x) { return x > 0.0   ? 1.0
+                                                  : x < 0.0 ? -1.0
+                                                            : 0.0; }},
+                    {"ATAN", [](double x) { return std::atan(x) / kDegree; }}},
+      .constants = {{"PI", std::numbers::pi}},
+      .is_variable = [](const std::string& name) { return name[0] == 'Q' && name.size() > 1 && is_digit(name.back()); },
+      .has_decimal_comma = true,
+      .has_bare_arguments = true};
+  return syntax;
+}
 
 }  // namespace
 
@@ -27,7 +50,7 @@ double HeidenhainRun::value(const HeidenhainLine& line, const std::string& text,
     return {found->second};
   };
   try {
-    return evaluate(text, i, NcSyntax::kHeidenhain, lookup, whole).value;
+    return evaluate(text, i, heidenhain_syntax(), lookup, whole).value;
   } catch (const RangeError& e) {
     fail(line, e.what());
   }

@@ -8,9 +8,37 @@
 #include <map>
 
 #include "nc/expression.hpp"
+#include "nc/operators.hpp"
 
 namespace driftwright {
 namespace {
+
+/// ( ), names and R1 as variables, DIV MOD == <> < > <= >= AND OR NOT, SIN( ) in degrees, ATAN2( , ).
+/// Source: Siemens, SINUMERIK 840D sl / 828D, Programming Manual Job Planning, arithmetic functions and comparisons.
+const NcSyntax& siemens_syntax() {
+  static const NcSyntax syntax = {
+      .operators = {{"*", 5, op::product},
+                    {"/", 5, op::quotient},
+                    {"DIV", 5, op::whole_quotient},
+                    {"MOD", 5, op::modulus},
+                    {"+", 4, op::plus},
+                    {"-", 4, op::minus},
+                    {"==", 3, op::same},
+                    {"<>", 3, op::different},
+                    {"<=", 3, op::at_most},
+                    {">=", 3, op::at_least},
+                    {"<", 3, op::less},
+                    {">", 3, op::greater},
+                    {"AND", 2, op::both},
+                    {"XOR", 1, op::one_of},
+                    {"OR", 1, op::either}},
+      .functions = {{"TRUNC", [](double x) { return std::trunc(x); }}, {"POT", [](double x) { return x * x; }}},
+      .constants = {{"TRUE", 1.0}, {"FALSE", 0.0}},
+      .negation = "NOT",
+      .angle_of_two = "ATAN2",
+      .has_named_variables = true};
+  return syntax;
+}
 
 struct Repetition {
   std::size_t first = 0, last = 0;  ///< lines, both included
@@ -42,7 +70,7 @@ class SiemensSource::Impl {
   double value_of(const SiemensLine& line, const std::string& text, std::size_t column, bool alone) const {
     std::size_t at = 0;
     try {
-      const double x = evaluate(text, at, NcSyntax::kSiemens, lookup(), true).value;
+      const double x = evaluate(text, at, siemens_syntax(), lookup(), true).value;
       if (alone && text.find_first_not_of(" \t", at) != std::string::npos)
         throw RangeError("the expression has more text after its end");
       return x;
@@ -68,7 +96,7 @@ class SiemensSource::Impl {
 
   double value(const SiemensLine& line, const std::string& text, std::size_t& at) const {
     try {
-      return evaluate(text, at, NcSyntax::kSiemens, lookup(), true).value;
+      return evaluate(text, at, siemens_syntax(), lookup(), true).value;
     } catch (const RangeError& e) {
       fail_at(line, at, e.what());
     }
