@@ -13,8 +13,7 @@
 namespace driftwright::output {
 namespace {
 
-constexpr double kColumn =
-    0.5;  // width of a column whose samples may be merged [px]; screens may have two pixels for one of a plot's
+constexpr double kColumn = 0.5;  // width of a column whose samples may be merged [px]; screens may show a pixel as two
 
 struct PlotPoint {
   double x = 0.0, y = 0.0;  // [px]

@@ -116,7 +116,7 @@ std::string drawn_under_curves(const Plot& plot, const PlotFrame& frame) {
   for (std::size_t b = 0; b < plot.bands.size(); ++b) {
     if (plot.bands[b].low != plot.bands[b].high) out += band_svg(plot.bands[b], b, frame);
   }
-  out += "</g>\n<path class=\"grid\" shape-rendering=\"crispEdges\" stroke=\"#dddddd\" d=\"";
+  out += "</g>\n<path class=\"grid\" shape-rendering=\"crispEdges\" stroke=\"#e4e4e4\" d=\"";
   for (const double value : frame.x_ticks.values)
     out += fmt::format("M{:.2f},{:.2f}V{:.2f}", frame.x(value), frame.bottom, frame.top);
   for (const double value : frame.y_ticks.values)
