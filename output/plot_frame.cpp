@@ -131,7 +131,7 @@ std::string drawn_under_curves(const Plot& plot, const PlotFrame& frame) {
   for (std::size_t b = 0; b < plot.bands.size(); ++b) {
     if (plot.bands[b].low == plot.bands[b].high) out += band_svg(plot.bands[b], b, frame);
   }
-  out += "</g>\n<g class=\"marks\" stroke=\"#777777\" stroke-dasharray=\"2 3\">\n";
+  out += "</g>\n<g class=\"marks\" stroke=\"#8c8c8c\" stroke-dasharray=\"2 3\">\n";
   for (const SectionMark& mark : plot.marks)
     out += fmt::format("<path d=\"M{:.2f},{:.2f}V{:.2f}\"/>\n", frame.x(mark.x), frame.bottom, frame.top);
   return out + "</g>\n";
