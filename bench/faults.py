@@ -132,10 +132,12 @@ def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None
 
 
 def results(out):
-    """Bytes of a folder or file of results by name; None if it does not exist."""
+    """Bytes of a folder or file of results by name, with OUT in place of its path; None if it does not exist."""
+    def bytes_of(path):
+        return path.read_bytes().replace(str(out).encode(), b"OUT")
     if out.is_file():
-        return {out.name: out.read_bytes()}
-    return {str(p.relative_to(out)): p.read_bytes() for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
+        return {out.name: bytes_of(out)}
+    return {str(p.relative_to(out)): bytes_of(p) for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
 
 
 def judged(trial, also=()):
