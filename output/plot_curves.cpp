@@ -120,12 +120,10 @@ std::string drawn_series(const Plot& plot, std::size_t series, const AxisScale& 
   if (line.empty() && dots.empty()) return "";
   std::string points;
   append_dots(points, std::move(dots));
-  // Seen as a dot beside a line of its width, but not taken for a point of a series of points.
-  const double diameter = style == Series::Style::kPoints ? 2.0 * s.width : 1.5 * s.width;
   const std::string color = series_color(plot, series);
   return fmt::format("<g class=\"curve\"><title>{}</title>\n{}{}</g>\n", escaped_line(s.label),
                      stroked(line, color, s.width, style == Series::Style::kDashed ? " stroke-dasharray=\"7 5\"" : ""),
-                     stroked(points, color, diameter, " stroke-linecap=\"round\""));
+                     stroked(points, color, 2.0 * s.width, " stroke-linecap=\"round\""));
 }
 
 }  // namespace driftwright::output
