@@ -4,8 +4,8 @@ whose records others published, and docs/how-to/library.md, whose programs `inst
 
     documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
 
-Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what an earlier one wrote. Each line of a shown output must
-be printed. Several blanks count as one; a line that ends with "..." is the beginning of a line; "..." alone means any number of lines.
+Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what an earlier one wrote. A command that several pages show
+runs once; each page must show what it printed. Each line of a shown output must be printed. Several blanks count as one; a line that ends with "..." is the beginning of a line; "..." alone means any number of lines.
 """
 import os, re, subprocess, sys, tempfile, time
 import xml.etree.ElementTree as xml
@@ -62,7 +62,7 @@ def examples(program):
 def main():
     program, top = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     failures = n = 0
-    done_before = set()
+    done_before = {}  # of each command, as it is typed without ./ and remarks: how it ended
     with tempfile.TemporaryDirectory(prefix="driftwright-documents-") as folder:
         work = Path(folder)
         (work / "scenarios").symlink_to(top / "scenarios")
@@ -72,9 +72,11 @@ def main():
         for page in sys.argv[3:] or PAGES:
             for number, command, shown in blocks((top / page).read_text()):
                 n += 1
-                done_before.add(command.removeprefix("./").split("  #")[0].strip())
+                typed = command.removeprefix("./").split("  #")[0].strip()
                 begun = time.monotonic()
-                done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+                if typed not in done_before:
+                    done_before[typed] = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+                done = done_before[typed]
                 missed = not_printed(shown, done.stdout) if done.returncode == 0 else None
                 print(f"{time.monotonic() - begun:6.1f} s  {page}:{number}: {command}", flush=True)
                 if done.returncode != 0 or missed:
