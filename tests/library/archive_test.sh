@@ -10,11 +10,10 @@ unshare --user --map-root-user --mount --pid --fork --net true 2>/dev/null || sk
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 root=$work/root
-mkdir -p "$root"/{opt,tmp,proc,dev,lib64,lib/x86_64-linux-gnu}
-for name in ld-linux-x86-64.so.2 libc.so.6 libm.so.6 libpthread.so.0 libdl.so.2 librt.so.1 libresolv.so.2 libmvec.so.1; do
-  cp -L "$(ldconfig -p | sed -n "s/.*$name (.*x86-64.*) => //p" | head -n 1)" "$root/lib/x86_64-linux-gnu/$name" || skip "glibc's $name is not found"
-done
-mv "$root/lib/x86_64-linux-gnu/ld-linux-x86-64.so.2" "$root/lib64/"
+glibc=$(dirname "$(ldd "$BASH" | sed -n 's/.*libc\.so\.6 => \([^ ]*\).*/\1/p')")
+mkdir -p "$root"/{opt,tmp,proc,dev,lib64} "$root$glibc"
+cp -L /lib64/ld-linux-x86-64.so.2 "$root/lib64/"
+for name in libc.so.6 libm.so.6 libmvec.so.1 libpthread.so.0 libdl.so.2 librt.so.1 libresolv.so.2; do cp -L "$glibc/$name" "$root$glibc/"; done
 touch "$root/dev/null"
 
 "$python" "$top/cmake/bundle.py" archive "$build" "$work"
