@@ -228,11 +228,12 @@ def rename_libraries(folder, others):
         stem, dot, rest = file.name.partition(".so")
         new_name[file.name] = f"{stem}-{hashlib.sha256(file.read_bytes()).hexdigest()[:8]}{dot}{rest}"
     for file in [*sorted(folder.iterdir()), *others]:
-        change = [a for n in dynamic_section(file)[0] if n in new_name for a in ("--replace-needed", n, new_name[n])]
-        if file.parent == folder:
-            change += ["--set-soname", new_name[file.name]]
         origin = "$ORIGIN" if file.parent == folder else f"$ORIGIN/{os.path.relpath(folder, file.parent)}"
-        run("patchelf", *change, "--force-rpath", "--set-rpath", origin, file)
+        changes = [[a for n in dynamic_section(file)[0] if n in new_name for a in ("--replace-needed", n, new_name[n])], ["--force-rpath", "--set-rpath", origin]]
+        if file.parent == folder:
+            changes.append(["--set-soname", new_name[file.name]])
+        for change in filter(None, changes):  # one kind a call: patchelf 0.14 mixes up the words of several
+            run("patchelf", *change, file)
     for old, new in new_name.items():
         (folder / old).rename(folder / new)
 
