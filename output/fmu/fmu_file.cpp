@@ -27,8 +27,8 @@ bool is_wanted(const std::string& name, const FmuOrder& order) {
 
 /// Compiled with Driftwright, with the numbers of this model at its end.
 std::string binary(const FmuOrder& order, const std::string& guid) {
-  const std::string name = fmt::format("fmi{}_{}.so", order.version == FmiVersion::k2 ? 2 : 3,
-                                       order.model.observer ? "observer" : "machine");
+  const std::string name =
+      fmt::format("fmi{}_{}.so", order.version == FmiVersion::k2 ? 2 : 3, order.model.observer ? "observer" : "machine");
   const std::vector<SourceFile>& all = fmu_binaries();
   const auto found = std::find_if(all.begin(), all.end(), [&](const SourceFile& b) { return b.name == name; });
   if (found == all.end()) throw std::logic_error(name + " is not among the binaries");
@@ -91,8 +91,7 @@ std::vector<FmuEntry> fmu_entries(const FmuOrder& order, const Provenance& made_
   std::vector<FmuEntry> entries = {{"modelDescription.xml", description(guid)}};
   for (const SourceFile& s : sources) entries.push_back({"sources/" + s.name, s.text});
   if (!is_2) entries.push_back({"sources/buildDescription.xml", build_description(identifier, c_files)});
-  entries.push_back(
-      {fmt::format("binaries/{}/{}.so", is_2 ? "linux64" : "x86_64-linux", identifier), binary(order, guid)});
+  entries.push_back({fmt::format("binaries/{}/{}.so", is_2 ? "linux64" : "x86_64-linux", identifier), binary(order, guid)});
   entries.push_back({"documentation/index.html", page(order, made_by, guid)});
   if (!order.reference_out.empty()) {
     entries.push_back({"resources/reference_in.csv", order.reference_in});

@@ -185,8 +185,7 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
   block.add(lists.powers);
   for (const auto* list : {&lists.exchanges, &lists.to_ambient, &lists.offsets}) block.add(*list);
   block.add(lists.coefficients);
-  for (const auto* list :
-       {&lists.outputs, &lists.outputs_ambient, &lists.factor, &lists.offset, &lists.start, &lists.ones})
+  for (const auto* list : {&lists.outputs, &lists.outputs_ambient, &lists.factor, &lists.offset, &lists.start, &lists.ones})
     block.add(*list);
   block.add(model.start_ambient_K);
   block.add_counts(model.start_follows_ambient ? 1 : 0);
@@ -205,8 +204,8 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
     block.add_counts(o.sensors.size());
     for (int output : o.sensor_output) block.add_counts(output);
     block.add_counts(o.drift_output);
-    for (double value : {s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk, s.longest_step_s,
-                         s.drift_um})
+    for (double value :
+         {s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk, s.longest_step_s, s.drift_um})
       block.add(value);
     block.add(lists.factor_mean);
     block.add(lists.factor_covariance);

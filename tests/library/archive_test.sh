@@ -26,7 +26,7 @@ bare() {
   unshare --user --map-root-user --mount --pid --fork --net -- bash -ec '
     mount -t proc proc "$1/proc"
     mount --bind /dev/null "$1/dev/null"
-    exec env -i HOME=/tmp PATH=/nowhere chroot "$1" "${@:2}"' bare "$root" "$here/driftwright" "$@" || fail "in the bare root: driftwright $*"
+    exec env -i HOME=/tmp PATH=/nowhere "$(PATH=$PATH:/usr/sbin command -v chroot)" "$1" "${@:2}"' bare "$root" "$here/driftwright" "$@" || fail "in the bare root: driftwright $*"
 }
 # rows FILE: a record without the comments that name the scenario.
 rows() { grep -v '^#' "$1"; }
@@ -43,7 +43,7 @@ echo "first prediction and main job: $((SECONDS - began)) s"
 # A drawing (OpenCASCADE, Gmsh), fields in VTK, and in HDF5.
 bare mesh "$here/scenarios/parts/vertical_mill.step" -o /tmp/mesh --quiet
 [ -s "$root/tmp/mesh/mesh.vtu" ] || fail "mesh has written no mesh.vtu"
-bare init /tmp/mill --from "$here/scenarios/parts/vertical_mill.step" --quiet
+bare init /tmp/mill --from "$here/scenarios/parts/vertical_mill.step" >/dev/null
 bare run /tmp/mill/mill.yaml -o /tmp/mill_run --quiet
 cp -r "$unpacked/scenarios/" "$root/tmp/scenarios"
 sed -i 's/fields_format: vtu/fields_format: xdmf/' "$root/tmp/scenarios/fp3_spindle.yaml"
@@ -63,8 +63,8 @@ bare diagnose "$here/scenarios/lumped_spindle.yaml" --measured /tmp/lumped/recor
 bare schedule "$here/scenarios/fp3_spindle.yaml" --program "$here/scenarios/parts/fp3_part.ngc" -o /tmp/part --quiet
 bare follow "$here/scenarios/fp3_spindle.yaml" --replay "$records/monday.csv" >"$work/lines"
 [ "$(wc -l <"$work/lines")" -gt 60 ] || fail "follow"
-bare view "$here/scenarios/fp3_spindle.yaml" -o /tmp/twin.html --quiet
-for fmi in 2 3; do bare export "$here/scenarios/fp3_spindle.yaml" --fmu --fmi $fmi -o /tmp/unit$fmi.fmu; done
+bare view "$here/scenarios/fp3_spindle.yaml" -o /tmp/twin.html >/dev/null
+for fmi in 2 3; do bare export "$here/scenarios/fp3_spindle.yaml" --fmu --fmi $fmi -o /tmp/unit$fmi.fmu >/dev/null; done
 [ -s "$root/tmp/unit2.fmu" ] && [ -s "$root/tmp/unit3.fmu" ] || fail "no functional mock-up unit"
 echo "all jobs: $((SECONDS - began)) s"
 

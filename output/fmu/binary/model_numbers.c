@@ -149,7 +149,7 @@ static double* numbers_of(FILE* file, long* n) {
 
 /* Whether a loaded file is the one that this code is in; if so, *found is its path. */
 static int is_own(struct dl_phdr_info* loaded, size_t size, void* found) {
-  const ElfW(Addr) own = (ElfW(Addr))&thermal;
+  const ElfW(Addr) own = (ElfW(Addr)) & thermal;
   int i;
   (void)size;
   for (i = 0; i < loaded->dlpi_phnum; ++i) {
