@@ -370,7 +370,8 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   };
   const Told told = import_unit(unit, inputs, outputs, {.tells_behind_step = true});
   expect_it(told);
-  EXPECT_EQ(told.of, import_unit(of_sources(unit), inputs, outputs, {.tells_behind_step = true}).of);
+  const Told other = import_unit(of_sources(unit), inputs, outputs, {.tells_behind_step = true});
+  for (std::size_t o = 0; o < outputs.size(); ++o) EXPECT_EQ(largest_gap(told.of[o], other.of[o], n), 0.0) << outputs[o];
   expect_it(import_unit(unit, inputs, outputs, {.step_s = 20.0, .rewind_at_row = 130, .tells_behind_step = true}));
   const Told exchanged = import_unit(unit, inputs, outputs, {.co_simulation = false});
   EXPECT_LT(largest_gap(exchanged.of[0], seen.drift_um, n + 1), kSame_um);

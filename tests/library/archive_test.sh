@@ -33,10 +33,12 @@ rows() { grep -v '^#' "$1"; }
 
 began=$SECONDS
 bare --version
-bare predict "$here/scenarios/first_machine.yaml" --cyclogram shift -o /tmp/first | grep -q 'nose_z *µm *85.0' || fail "README's first prediction"
+bare predict "$here/scenarios/first_machine.yaml" --cyclogram shift -o /tmp/first >"$work/said"
+grep -q 'nose_z *µm *85.0' "$work/said" || fail "README's first prediction: $(cat "$work/said")"
 "$build/app/driftwright" predict "$top/scenarios/first_machine.yaml" --cyclogram shift -o "$work/first" --quiet
 cmp <(rows "$root/tmp/first/record.csv") <(rows "$work/first/record.csv") || fail "another prediction than that of the build folder"
-bare run "$here/scenarios/fp3_spindle.yaml" -o /tmp/fp3 | grep -q 'Inside 10 µm by at least one strategy' || fail "README's main job"
+bare run "$here/scenarios/fp3_spindle.yaml" -o /tmp/fp3 >"$work/said"
+grep -q 'Inside 10 µm by at least one strategy' "$work/said" || fail "README's main job: $(cat "$work/said")"
 for file in report.html fields.pvd; do [ -s "$root/tmp/fp3/$file" ] || fail "run has written no $file"; done
 echo "first prediction and main job: $((SECONDS - began)) s"
 
@@ -57,7 +59,8 @@ bare identify --record "$records/monday.csv" --record "$records/tuesday.csv" -o 
 bare validate "$here/scenarios/fp3_spindle.yaml" --train "$records/monday.csv" --test "$records/tuesday.csv" -o /tmp/validated --quiet
 [ -s "$root/tmp/validated/report.html" ] || fail "validate has written no report"
 bare simulate "$here/scenarios/lumped_spindle.yaml" --cyclogram shift -o /tmp/lumped --quiet
-bare diagnose "$here/scenarios/lumped_spindle.yaml" --measured /tmp/lumped/record.csv -o /tmp/diagnosed | grep -qi consistent || fail "diagnose"
+bare diagnose "$here/scenarios/lumped_spindle.yaml" --measured /tmp/lumped/record.csv -o /tmp/diagnosed >"$work/said"
+grep -qi consistent "$work/said" || fail "diagnose: $(cat "$work/said")"
 
 # For others: corrections in a part program, a page, units that need no compiler.
 bare schedule "$here/scenarios/fp3_spindle.yaml" --program "$here/scenarios/parts/fp3_part.ngc" -o /tmp/part --quiet
