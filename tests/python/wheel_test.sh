@@ -34,4 +34,7 @@ if len(own) < 50 or others:
 PY
 "$work/venv/bin/python" "$work/loaded.py" || fail "libraries of the system are loaded"
 "$work/venv/bin/python" tests/python/python_test.py "$build/app/driftwright"
+if "$python" -c 'import nbconvert, meshio, matplotlib' 2>/dev/null; then
+  PYTHONPATH=$("$work/venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))') tests/python/notebooks_test.sh "$top"
+fi
 echo "wheel: all pass"
