@@ -17,7 +17,7 @@
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
-#include "scenarios/reader/read_cyclogram.hpp"
+#include "nc/controls.hpp"
 #include "scenarios/reader/read_schedule.hpp"
 
 namespace {
@@ -609,14 +609,16 @@ int app::command_line(int argc, const char* const* argv) {
       cli, "schedule",
       "predicts the drift that an NC program will cause and writes corrections into the program (docs/how-to/schedule.md)",
       "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
-  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain")->required();
+  verb->add_option("--program", schedule.program, "NC program for " + enumerated(of_each_control(&NcControl::title), " or "))
+      ->required();
   verb->add_option("--policy", schedule.policy,
                    "when offsets change: paper (by steps of the tolerance) or minimal (as few changes as possible) [the "
                    "scenario's, else minimal]")
       ->check(CLI::IsMember(scenarios::kSchedulePolicies));
   verb->add_option("--dialect", schedule.dialect,
-                   "language of the program: linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
-      ->check(CLI::IsMember(scenarios::kDialects));
+                   fmt::format("language of the program: {} [the scenario's, else {}]",
+                               enumerated(of_each_control(&NcControl::key), " or "), nc_controls().front().key))
+      ->check(CLI::IsMember(of_each_control(&NcControl::key)));
   verb->add_flag("--beyond", schedule.beyond,
                  "also accepts blocks beyond the limits of the machine; corrections are not changed there");
   verb->add_flag("--split", schedule.split, "divides straight blocks in which one offset cannot keep the tolerance");

@@ -139,7 +139,7 @@ std::vector<std::string> limit_remarks(const CorrectedSeries& series) {
 /// Plans all parts and writes the programs.
 void correct(CorrectedSeries& series, const std::string& bytes) {
   const scenarios::ScheduleSettings& settings = series.settings;
-  NcOffsetOptions offsets{.dialect = series.program.dialect,
+  NcOffsetOptions offsets{.language = series.program.language,
                           .absolute = settings.absolute,
                           .work_offset = settings.work_offset,
                           .base_m = settings.base_offset_m,
@@ -184,7 +184,7 @@ void schedule(const ScheduleVerbOptions& options) {
     throw InputError(
         fmt::format("{}: `schedule` writes a file or folder of this name of its own; rename the program", options.program));
   if (!options.policy.empty()) series.settings.policy = options.policy;
-  if (!options.dialect.empty()) series.settings.nc.control = scenarios::control_of(options.dialect);
+  if (!options.dialect.empty()) series.settings.nc.control = options.dialect;
   const scenarios::ScheduleSettings& settings = series.settings;
   const int parts = options.parts > 0 ? options.parts : settings.parts;
   if (!options.between.empty() && parts == 1)

@@ -7,7 +7,7 @@
 The machine is lumped; with --meshed `init` makes it from a drawing, a box of 100 mm, with the mesh size of `init` or with --cell.
 
 Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
-that is missing or takes no file, an empty PATH (no gnuplot), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
+that is missing or takes no file, an empty PATH, a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
 random parts of the usual time, and a second run after each.
 
 A verb passes if three things hold. It ends in time with 0, 2 or 3 (130 after Ctrl-C) and a message. Its results are then complete or absent. Runs that end
@@ -132,10 +132,12 @@ def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None
 
 
 def results(out):
-    """Bytes of a folder or file of results by name; None if it does not exist."""
+    """Bytes of a folder or file of results by name, with OUT in place of its path; None if it does not exist."""
+    def bytes_of(path):
+        return path.read_bytes().replace(str(out).encode(), b"OUT")
     if out.is_file():
-        return {out.name: out.read_bytes()}
-    return {str(p.relative_to(out)): p.read_bytes() for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
+        return {out.name: bytes_of(out)}
+    return {str(p.relative_to(out)): bytes_of(p) for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
 
 
 def judged(trial, also=()):

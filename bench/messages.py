@@ -11,7 +11,7 @@ A message is a sentence with a subject. It says what is wrong, where, what is al
 "[key]" after it.
 
 This is an approximation. A message is a literal (joined with adjacent literals) of three words or more that does not look like code (style sheets, C,
-NC programs, gnuplot). Literals joined by `+` count as several.
+NC programs, SVG). Literals joined by `+` count as several.
 """
 import argparse, re, sys
 from collections import Counter
@@ -72,7 +72,7 @@ def literals(source):
 
 
 def is_message(text):
-    if re.match(r"(?:re)?set[p ]", text):  # gnuplot, halcmd
+    if re.match(r"(?:re)?set[p ]", text):  # halcmd
         return False
     words = PLACE.sub(" ", text)
     n_letters = len(re.findall(r"[A-Za-z]", words))

@@ -11,7 +11,6 @@
 #include "findings/iso230_3_section.hpp"
 #include "findings/prediction_document.hpp"
 #include "findings/run_section.hpp"
-#include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -211,44 +210,6 @@ Table changes_table(const CorrectedSeries& series) {
   return table;
 }
 
-const char* language_of(NcDialect dialect) {
-  switch (dialect) {
-    case NcDialect::kLinuxCnc:
-      return "LinuxCNC";
-    case NcDialect::kSiemens:
-      return "Siemens (G290)";
-    case NcDialect::kSiemensIso:
-      return "Siemens in ISO code (G291)";
-    case NcDialect::kHeidenhainIso:
-      return "Heidenhain DIN/ISO";
-    case NcDialect::kKlartext:
-      return "Heidenhain plain language";
-  }
-  return "";
-}
-
-/// Where the corrections are written, and whether such programs have been run on a control.
-std::string proven_words(const CorrectedSeries& series) {
-  switch (series.program.dialect) {
-    case NcDialect::kLinuxCnc:
-      return series.settings.absolute
-                 ? "Corrections overwrite the work offset (G10 L2)."
-                 : "Corrections are added above the work offsets (G52, or G92 where the program has one), which stay as the "
-                   "operator has set "
-                   "them. After an abort the one in force stays until G92.1; the program refuses to start above it.";
-    case NcDialect::kSiemens:
-    case NcDialect::kSiemensIso:
-      return "Corrections go into the base frame in force ($P_BFRAME); the one that is set ($P_UBFR) and all work offsets "
-             "stay, and a reset brings them back. "
-             "Written by the maker's manuals: no SINUMERIK has run this program here; run it without a tool in the work "
-             "first.";
-    default:
-      return "Corrections are added to the datum shift in force by differences and taken back at the end; after an abort "
-             "select the program anew. "
-             "Written by the maker's manuals: no TNC has run this program here; run it without a tool in the work first.";
-  }
-}
-
 output::Verdict overwrites(const CorrectedSeries& series) {
   std::string values;
   for (const auto& axis : series.settings.axes)
@@ -346,7 +307,7 @@ output::Document document_of(const CorrectedSeries& series, const std::string& s
   output::Document document{.made_by = made_by,
                             .title = fmt::format("{}: corrections of {}", scenario_name, series.file),
                             .subtitle = fmt::format("policy {}, written for {}; {}{}; drift predicted by the {}",
-                                                    series.settings.policy, language_of(series.program.dialect),
+                                                    series.settings.policy, series.program.language->name(),
                                                     extent_words(series), start_words(series), prediction.predicted_by)};
   Section& body = document.body;
   add(body, verdict_of(series));
@@ -358,14 +319,14 @@ output::Document document_of(const CorrectedSeries& series, const std::string& s
   put("predicted_by", prediction.predicted_by);
   put("started_from", prediction.started_from.empty() ? Datum() : Datum(prediction.started_from));
   put("policy", series.settings.policy);
-  put("dialect", scenarios::dialect_of(series.settings.nc.control));
-  put("language", language_of(series.program.dialect));
+  put("dialect", series.settings.nc.control);
+  put("language", series.program.language->name());
   put("offset", series.settings.absolute ? "absolute" : "add");
   if (series.settings.absolute) add(body, overwrites(series));
   Table beyond = beyond_table(series);
   if (!beyond.rows.empty()) add(body, beyond_verdict(series));
   add(body, std::move(beyond));
-  add(body, output::Text{.words = proven_words(series), .key = "proven"});
+  add(body, output::Text{.words = series.program.language->advice(series.settings.absolute), .key = "proven"});
   int n_divided = 0;
   for (const CorrectedProgram& program : series.programs) n_divided += program.shared.plan.n_divided;
   add(body, Value{.key = "n_divided_blocks", .words = n_divided > 0 ? "blocks divided" : "", .datum = n_divided});

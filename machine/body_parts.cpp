@@ -47,7 +47,7 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
   }
 
   std::vector<solver::ThermalLoad> loads;  // of each region's expansion alone
-  for (std::size_t r = 0; machine.elasticity && r < mesh.regions.size(); ++r) {
+  for (std::size_t r = 0; !machine.responses.empty() && r < mesh.regions.size(); ++r) {
     solver::RegionMaterials expanding = machine.placed.materials;
     for (std::size_t other = 0; other < expanding.size(); ++other) {
       if (other != r) expanding[other].expansion_1_K = 0.0;
@@ -71,10 +71,9 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
       }
     }
     if (displacement && !displacement->points) continue;
-    if (!machine.elasticity) throw std::logic_error("body_parts: displacements of a mesh require its elasticity");
-    const Eigen::VectorXd response = machine.elasticity->response(machine.placed.functionals[f]);
+    if (machine.responses.empty()) throw std::logic_error("body_parts: displacements of a mesh require its elasticity");
     for (std::size_t r = 0; r < loads.size(); ++r) {
-      parts[r].outputs.col(output).head(mesh.n_nodes()) += loads[r].transposed(response);
+      parts[r].outputs.col(output).head(mesh.n_nodes()) += loads[r].transposed(machine.responses[f]);
     }
   }
   return parts;

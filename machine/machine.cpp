@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <span>
 
 #include "base/quantity.hpp"
 #include "machine/runnable.hpp"
@@ -14,6 +15,7 @@
 #include "mesh/shape.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/steady_state.hpp"
+#include "solver/thermal_load.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -304,14 +306,26 @@ bool has_points(const MachineModel& model, std::size_t functional) {
   return functional >= model.displacements.size() || model.displacements[functional].points;
 }
 
+/// Elastic responses, one of each displacement or tilt; empty where that has no points.
+std::vector<Eigen::VectorXd> responses(const MachineModel& model, const PlacedMachine& placed,
+                                       const solver::Elasticity& elasticity) {
+  std::vector<Eigen::VectorXd> all(placed.functionals.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (has_points(model, i)) all[i] = elasticity.response(placed.functionals[i]);
+  }
+  return all;
+}
+
 Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed,
-                           const std::optional<solver::Elasticity>& elasticity) {
+                           std::span<const Eigen::VectorXd> responses) {
   Eigen::MatrixXd influence =
       Eigen::MatrixXd::Zero(placed.mesh.n_nodes(), static_cast<Eigen::Index>(placed.functionals.size()));
+  std::optional<solver::ThermalLoad> load;
   for (std::size_t i = 0; i < placed.functionals.size(); ++i) {
     if (!has_points(model, i)) continue;
-    if (!elasticity) throw std::logic_error("influences: a displacement without elasticity");
-    influence.col(static_cast<Eigen::Index>(i)) = elasticity->influence(placed.functionals[i]);
+    if (responses.empty()) throw std::logic_error("influences: a displacement without elasticity");
+    if (!load) load.emplace(placed.mesh, placed.materials);
+    influence.col(static_cast<Eigen::Index>(i)) = load->transposed(responses[i]);
   }
   return influence;
 }
@@ -395,14 +409,19 @@ bool needs_elasticity(const PlacedMachine& placed, bool with_fields) {
 
 Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed) {
   const bool is_elastic = needs_elasticity(placed, false);
-  return influences(model, placed, is_elastic ? factorise(model, placed, n_functionals(placed)) : std::nullopt);
+  const std::optional<solver::Elasticity> elasticity =
+      is_elastic ? factorise(model, placed, n_functionals(placed)) : std::nullopt;
+  return influences(model, placed, elasticity ? responses(model, placed, *elasticity) : std::vector<Eigen::VectorXd>{});
 }
 
 Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity, int n_fields) {
   std::optional<solver::Elasticity> elasticity =
       with_elasticity ? factorise(model, placed, n_functionals(placed) + n_fields) : std::nullopt;
-  const Eigen::MatrixXd influence = influences(model, placed, elasticity);
+  std::vector<Eigen::VectorXd> solved;
+  if (elasticity) solved = responses(model, placed, *elasticity);
+  const Eigen::MatrixXd influence = influences(model, placed, solved);
   Machine machine = build_with_influences(model, std::move(placed), influence);
+  machine.responses = std::move(solved);
   if (elasticity) machine.elasticity.emplace(std::move(*elasticity));
   return machine;
 }
@@ -445,7 +464,7 @@ solver::Outputs output_names(const MachineModel& model, const PlacedMachine& pla
 }
 
 Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence) {
-  Machine machine{std::move(placed), std::nullopt, {}};
+  Machine machine{std::move(placed), std::nullopt, {}, {}};
   machine.system =
       solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
   solver::Outputs& out = machine.system.outputs;

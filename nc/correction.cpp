@@ -10,7 +10,7 @@
 #include "base/characters.hpp"
 #include "nc/places.hpp"
 #include "nc/units.hpp"
-#include "nc/words.hpp"
+#include "nc/written_words.hpp"
 
 namespace driftwright {
 namespace {
@@ -32,11 +32,11 @@ std::string line_end(const std::vector<std::string>& lines, std::size_t i) {
   return like.ends_with("\r\n") ? "\r\n" : "\n";
 }
 
-/// The form of block number and '*' in inserted lines, as in the program.
+/// Block number and end of inserted lines, as in the program.
 struct BlockStyle {
   bool numbered = false;
   std::string letter = {};  ///< before the number: "N" or none
-  bool star = false;
+  std::string end = {};     ///< such as " *"
 };
 
 /// Position of the digits of a line's block number, or none.
@@ -50,14 +50,14 @@ std::optional<std::pair<std::size_t, std::size_t>> block_number(const std::strin
   return std::pair{i, end};
 }
 
-BlockStyle style_of(const std::vector<std::string>& lines, const std::vector<NcStep>& steps, NcDialect dialect) {
+BlockStyle style_of(const std::vector<std::string>& lines, const std::vector<NcStep>& steps, const NcBlockForm& form) {
   BlockStyle style;
-  if (dialect != NcDialect::kHeidenhainIso && dialect != NcDialect::kKlartext) return style;
-  style.letter = dialect == NcDialect::kHeidenhainIso ? "N" : "";
+  if (!form.number_letter && form.end.empty()) return style;
   const std::string& line = lines[static_cast<std::size_t>(steps[steps.size() / 2].where.line) - 1];
-  style.numbered = block_number(line, style.letter).has_value();
-  const auto last = line.find_last_not_of(" \t\r\n");
-  style.star = dialect == NcDialect::kHeidenhainIso && last != std::string::npos && line[last] == '*';
+  style.letter = form.number_letter.value_or("");
+  style.numbered = form.number_letter && block_number(line, style.letter);
+  const std::string block = line.substr(0, line.find_last_not_of(" \t\r\n") + 1);
+  if (!form.end.empty() && block.ends_with(form.end)) style.end = " " + form.end;
   return style;
 }
 
@@ -68,7 +68,8 @@ class Writer {
         before_(lines_.size() + 1),
         steps_(steps),
         options_(options),
-        style_(style_of(lines_, steps, options.dialect)) {}
+        language_(*options.language),
+        style_(style_of(lines_, steps, language_.block_form())) {}
 
   void put(std::size_t step, const std::vector<std::string>& lines) { insert(index(step), lines); }
 
@@ -77,7 +78,7 @@ class Writer {
     const NcModes& modes = steps_[step].before;
     const std::array<double, 3> from_m = written_m_;
     for (int axis = 0; axis < 3; ++axis) written_m_[axis] = as_written_m(shift_m[axis], modes.unit_m);
-    insert(index(step), offset_lines(options_, options_.axes, from_m, written_m_, modes));
+    insert(index(step), language_.offset_lines(options_, {options_.axes, from_m, written_m_, modes}));
   }
 
   /// Sets the present corrections again, after a block that has removed them.
@@ -94,7 +95,7 @@ class Writer {
     if (!any) return;
     NcModes modes = own.before;
     if (step + 1 < steps_.size()) modes = steps_[step + 1].before;
-    const std::vector<std::string> lines = offset_lines(options_, axes, from_m, written_m_, modes);
+    const std::vector<std::string> lines = language_.offset_lines(options_, {axes, from_m, written_m_, modes});
     const auto [place, is_new] = renewed_.emplace(own.where.line, lines);
     if (is_new) {
       insert(static_cast<std::size_t>(std::max(own.where.line, own.last_line)), lines);
@@ -124,7 +125,7 @@ class Writer {
     if (change.share > 0.0) lines = part(step, change.share);
     const std::size_t before = lines.size();
     for (const std::vector<std::string>& more :
-         {offset_lines(options_, axes, from_m, written_m_, step.before), again(change, axes)})
+         {language_.offset_lines(options_, {axes, from_m, written_m_, step.before}), again(change, axes)})
       lines.insert(lines.end(), more.begin(), more.end());
     if (step.n_runs == 1) return {change.step, insert(index(change.step), lines) + before};
     std::vector<Counted>& groups = counted_[index(change.step)];
@@ -139,15 +140,15 @@ class Writer {
     std::vector<std::string>& place = before_.at(index(front));
     std::size_t at = 0;
     for (const auto& [line, groups] : counted_)
-      place.insert(place.begin() + static_cast<std::ptrdiff_t>(at++), fmt::format("{}=0", counter(line)));
+      place.insert(place.begin() + static_cast<std::ptrdiff_t>(at++), counter(line, groups.front()).zero);
     n_counters_ = {index(front), at};
     for (const auto& [line, groups] : counted_) {
-      std::vector<std::string> lines = {fmt::format("{}=[{}+1]", counter(line), counter(line))};
+      std::vector<std::string> lines = {counter(line, groups.front()).count};
       for (const Counted& group : groups) {
-        const std::string label = fmt::format("o<driftwright_{}_{}>", line + 1, group.nth_run);
-        lines.push_back(fmt::format("{} if [{} EQ {}]", label, counter(line), group.nth_run));
+        const NcRunCounter words = counter(line, group);
+        lines.push_back(words.open);
         lines.insert(lines.end(), group.lines.begin(), group.lines.end());
-        lines.push_back(label + " endif");
+        lines.push_back(words.close);
       }
       insert(line, lines);
     }
@@ -162,7 +163,7 @@ class Writer {
       if (i < lines_.size()) first_inserted[i] = n;
       for (const std::string& line : before_[i]) {
         if (style_.numbered) program.text += fmt::format("{}{} ", style_.letter, ++number);
-        program.text += line + (style_.star ? " *" : "") + line_end(lines_, std::min(i, lines_.size() - 1));
+        program.text += line + style_.end + line_end(lines_, std::min(i, lines_.size() - 1));
       }
       n += static_cast<int>(before_[i].size()) + 1;
       if (i < lines_.size()) program.text += numbered(lines_[i], number);
@@ -187,7 +188,9 @@ class Writer {
     std::vector<std::string> lines;
   };
 
-  static std::string counter(std::size_t line) { return fmt::format("#<_driftwright_{}>", line + 1); }
+  NcRunCounter counter(std::size_t line, const Counted& group) const {
+    return language_.run_counter(line + 1, group.nth_run).value();
+  }
 
   std::size_t index(std::size_t step) const { return static_cast<std::size_t>(steps_[step].where.line) - 1; }
 
@@ -213,7 +216,7 @@ class Writer {
     for (int axis = 0; axis < 3; ++axis) {
       if (step.named[axis]) to_m[axis] = step.start_m[axis] + share * (step.end_m[axis] - step.start_m[axis]);
     }
-    return straight_lines(options_.dialect, step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before);
+    return language_.straight_lines({step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before});
   }
 
   /// Commands the axes to their present position once more, unless the block itself moves them all by rapid.
@@ -233,13 +236,14 @@ class Writer {
       in_feed = on_its_way ? step.kind == NcStepKind::kLine : in_feed || entries[axis] == NcEntry::kStepInFeed;
       to_m[axis] = step.start_m[axis] + change.share * (step.end_m[axis] - step.start_m[axis]);
     }
-    return straight_lines(options_.dialect, !in_feed, to_m, "", step.before);
+    return language_.straight_lines({!in_feed, to_m, "", step.before});
   }
 
   std::vector<std::string> lines_;
   std::vector<std::vector<std::string>> before_;  // inserted before each line, and after the last
   const std::vector<NcStep>& steps_;
   const NcOffsetOptions& options_;
+  const NcLanguage& language_;
   BlockStyle style_;
   std::array<double, 3> written_m_ = {0, 0, 0};  // corrections in force
   std::map<int, std::vector<std::string>> renewed_;
@@ -247,85 +251,28 @@ class Writer {
   std::pair<std::size_t, std::size_t> n_counters_ = {0, 0};
 };
 
-bool has_inches(NcDialect dialect, const NcStep& step) {
-  return dialect != NcDialect::kLinuxCnc && step.before.unit_m != kMillimetre_m;
-}
-
-void check(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
-  const bool siemens = options.dialect == NcDialect::kSiemens || options.dialect == NcDialect::kSiemensIso;
+void check_unit(const std::vector<NcStep>& steps) {
   for (const NcStep& step : steps) {
-    if (has_inches(options.dialect, step))
+    if (step.before.unit_m != kMillimetre_m)
       throw InputError(
           step.where,
           "the program is in inches; corrections for this control are written in mm, so write the program in mm");
-    if (!options.absolute || siemens) continue;
-    if (options.dialect == NcDialect::kLinuxCnc) {
-      if (step.sets_offset || step.own_shift != std::array<bool, 3>{})
-        throw InputError(
-            step.where,
-            "G10, G52 and G92 move the offset that absolute corrections overwrite; `offset: add` goes with them");
-      if (step.system && *step.system != options.work_offset) {
-        throw InputError(
-            step.where,
-            fmt::format("{}: absolute offsets go into {}, which `work_offset` names, and into no other; `offset: add` "
-                        "corrects them all",
-                        nc_word_name('G', *step.system), nc_word_name('G', options.work_offset)));
-      }
-    } else if (step.resets[0] || step.resets[1] || step.resets[2]) {
-      throw InputError(step.where,
-                       "a datum shift of the program's own, which absolute offsets would undo; `offset: add` adds to it");
-    }
-  }
-}
-
-bool moves(const NcStep& step) {
-  return step.kind != NcStepKind::kNone;
-}
-
-/// A work offset that the program does not name is the one left by an earlier program: G54 after a start, otherwise unknown.
-void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
-  if (options.dialect != NcDialect::kLinuxCnc || !options.absolute || options.work_offset == 540) return;
-  for (const NcStep& step : steps) {
-    if (step.system && !step.deletable) return;
-    if (!moves(step)) continue;
-    throw InputError(
-        step.where,
-        fmt::format(
-            "no work offset is named before this first motion; write {}, which `work_offset` names, into the program",
-            nc_word_name('G', options.work_offset)));
   }
 }
 
 /// The step before which the first offset is inserted: the first that moves or turns on cutter compensation, which forbids
 /// offsets, or the last step before it that runs only once.
-std::size_t front_of(const std::vector<NcStep>& steps, NcDialect dialect) {
+std::size_t front_of(const std::vector<NcStep>& steps, const NcLanguage& language) {
   std::size_t first = 0;
-  while (first + 1 < steps.size() && !moves(steps[first]) && !steps[first].compensated) ++first;
+  while (first + 1 < steps.size() && !steps[first].moves() && !steps[first].compensated) ++first;
   std::size_t front = first;
   while (front > 0 && (steps[front].n_runs > 1 || steps[front].where.file != steps.back().where.file)) --front;
   for (std::size_t i = 0; i < front; ++i) {
     if (steps[i].unit_word && !steps[i].deletable) return front;
   }
-  const bool siemens = dialect == NcDialect::kSiemens;
   throw InputError(steps[front].where, fmt::format("no unit is stated before this block, and the offset written in front of "
                                                    "it needs one; write {} in a block before the first motion, G41 and G42",
-                                                   siemens ? "G710 or G71" : "G21 or G20"));
-}
-
-/// A G92 gives the present position another number: it keeps a correction that the axis has, and loses one that it has not
-/// moved to yet.
-void check_own_shifts(const std::vector<NcStep>& steps, std::size_t front, const NcOffsetOptions& options) {
-  if (!options.shares_g92) return;
-  for (std::size_t i = front; i < steps.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!options.axes[axis] || !steps[i].own_shift[axis] || steps[i].resets[axis] || steps[i].known[axis]) continue;
-      throw InputError(
-          steps[i].where,
-          fmt::format(
-              "G92 of {}, which no block before has moved in G90: a correction in force would be lost in it; move {} before",
-              "XYZ"[axis], "XYZ"[axis]));
-    }
-  }
+                                                   language.unit_words()));
 }
 
 /// The line that removes corrections is inserted before the last block.
@@ -338,7 +285,7 @@ void check_end(const NcStep& last, std::vector<std::string>& notes) {
     throw InputError(last.where,
                      "the offset must change at the end, but the end lies in a subprogram or another file, or a mirror, a "
                      "rotation or a modal cycle is still on there");
-  const bool offset_counts = moves(last) && last.kind != NcStepKind::kMachine;
+  const bool offset_counts = last.moves() && last.kind != NcStepKind::kMachine;
   if (!offset_counts) return;
   if (last.kind != NcStepKind::kRapid && last.duration_s() > 0.0) {
     throw InputError(
@@ -350,34 +297,14 @@ void check_end(const NcStep& last, std::vector<std::string>& notes) {
 
 /// The comment at the start of the program, for its user.
 std::string remark(const NcOffsetOptions& options) {
-  if (options.absolute) {
-    std::string values;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (options.axes[axis]) values += fmt::format(" {}{:g}", "XYZ"[axis], options.base_m[axis] / kMillimetre_m);
-    }
-    const bool linuxcnc = options.dialect == NcDialect::kLinuxCnc,
-               siemens = options.dialect == NcDialect::kSiemens || options.dialect == NcDialect::kSiemensIso;
-    return fmt::format(
-        "driftwright: ABSOLUTE OFFSETS. {} is overwritten, from{} mm on; what the operator has set there is lost",
-        linuxcnc  ? nc_word_name('G', options.work_offset)
-        : siemens ? "The base frame"
-                  : "The datum shift",
-        values);
+  if (!options.absolute) return options.language->remark(options);
+  std::string values;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (options.axes[axis]) values += fmt::format(" {}{:g}", "XYZ"[axis], options.base_m[axis] / kMillimetre_m);
   }
-  switch (options.dialect) {
-    case NcDialect::kLinuxCnc:
-      return options.shares_g92 ? "driftwright: corrections of drift added by differences to the G92 or G52 of this "
-                                  "program. After an abort set that anew"
-                                : "driftwright: corrections of drift by G52, added to the work offsets, which stay. After "
-                                  "an abort G92.1 takes them away";
-    case NcDialect::kSiemens:
-    case NcDialect::kSiemensIso:
-      return "driftwright: corrections of drift in the base frame in force, added to the one that is set. A reset takes "
-             "them away";
-    default:
-      return "driftwright: corrections of drift as datum shifts, added to the one in force. After an abort select the "
-             "program anew";
-  }
+  return fmt::format(
+      "driftwright: ABSOLUTE OFFSETS. {} is overwritten, from{} mm on; what the operator has set there is lost",
+      options.language->offset_name(options), values);
 }
 
 }  // namespace
@@ -385,36 +312,27 @@ std::string remark(const NcOffsetOptions& options) {
 CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                         const std::array<double, 3>& initial_m, const std::vector<NcOffsetChange>& changes,
                                         const NcOffsetOptions& asked) {
+  if (asked.language == nullptr) throw std::logic_error("corrections without the language of their program");
+  const NcLanguage& language = *asked.language;
   NcOffsetOptions options = asked;
-  options.shares_g92 =
-      options.dialect == NcDialect::kLinuxCnc &&
-      std::any_of(steps.begin(), steps.end(), [](const NcStep& s) { return s.own_shift != std::array<bool, 3>{}; });
-  check(steps, options);
-  check_offset_named(steps, options);
+  options.shares_shift = language.shares_shift(steps);
+  if (!language.writes_inches()) check_unit(steps);
+  language.check(steps, options);
   if (changes.empty() && initial_m == std::array<double, 3>{0, 0, 0}) return {bytes, {}};
   if (steps.empty() || !steps.back().ends_program) throw std::logic_error("a program without its last block");
   Writer writer(bytes, steps, options);
   std::vector<std::string> notes;
   check_end(steps.back(), notes);
-  const std::size_t first = front_of(steps, options.dialect);
-  check_own_shifts(steps, first, options);
+  const std::size_t first = front_of(steps, language);
+  language.check_written(steps, first, options);
   std::vector<Writer::Mark> marks;
-  writer.put(first, {remark_line(options.dialect, remark(options))});
-  for (const std::string& text : options.remarks) writer.put(first, {remark_line(options.dialect, "driftwright: " + text)});
-  writer.put(first, guard_lines(options));
+  writer.put(first, {language.remark_line(remark(options))});
+  for (const std::string& text : options.remarks) writer.put(first, {language.remark_line("driftwright: " + text)});
+  writer.put(first, language.guard_lines(options));
   writer.set_all(first, initial_m);
   std::size_t next = first;
   const auto renew_until = [&](std::size_t end) {
-    for (; next < end; ++next) {
-      const NcStep& step = steps[next];
-      const bool resets = step.resets[0] || step.resets[1] || step.resets[2];
-      if (!resets) continue;
-      if (moves(step) && options.dialect != NcDialect::kLinuxCnc)
-        throw InputError(step.where,
-                         "this control may load its base frame again at a work offset; write the offset in a block of its "
-                         "own, before the motion");
-      writer.renew(next);
-    }
+    for (; next < end; ++next) writer.renew(next);
   };
   for (const NcOffsetChange& change : changes) {
     renew_until(change.step);

@@ -16,105 +16,15 @@
 namespace driftwright {
 namespace {
 
-constexpr double kSame = 1e-4;        // tolerance of LinuxCNC's EQ and NE
+constexpr double kSame = 1e-4;        // a parameter's number may be off a whole one by this much
 constexpr int kDeepestBracket = 100;  // nested brackets
-
-struct Operator {
-  const char* text;
-  int level;  ///< higher binds more closely
-  double (*apply)(double a, double b);
-};
-
-double checked_quotient(double a, double b) {
-  if (b == 0.0) throw RangeError("the expression divides by zero");
-  return a / b;
-}
-double modulus(double a, double b) {
-  if (b == 0.0) throw RangeError("the expression divides by zero");
-  const double rest = std::fmod(a, b);
-  return rest < 0.0 ? rest + std::abs(b) : rest;
-}
-double power(double a, double b) {
-  return std::pow(a, b);
-}
-double times(double a, double b) {
-  return a * b;
-}
-double plus(double a, double b) {
-  return a + b;
-}
-double minus(double a, double b) {
-  return a - b;
-}
-double whole_quotient(double a, double b) {
-  return std::trunc(checked_quotient(a, b));
-}
-double equal(double a, double b) {
-  return std::abs(a - b) < kSame ? 1.0 : 0.0;
-}
-double unequal(double a, double b) {
-  return 1.0 - equal(a, b);
-}
-double same(double a, double b) {
-  return a == b ? 1.0 : 0.0;
-}
-double different(double a, double b) {
-  return a != b ? 1.0 : 0.0;
-}
-double greater(double a, double b) {
-  return a > b ? 1.0 : 0.0;
-}
-double at_least(double a, double b) {
-  return a >= b ? 1.0 : 0.0;
-}
-double less(double a, double b) {
-  return a < b ? 1.0 : 0.0;
-}
-double at_most(double a, double b) {
-  return a <= b ? 1.0 : 0.0;
-}
-double both(double a, double b) {
-  return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
-}
-double either(double a, double b) {
-  return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
-}
-double one_of(double a, double b) {
-  return (a != 0.0) != (b != 0.0) ? 1.0 : 0.0;
-}
-
-/// Longer operators first, if one begins with another.
-const std::vector<Operator>& operators(NcSyntax syntax) {
-  static const std::vector<Operator> kLinuxCnc = {
-      {"**", 5, power}, {"*", 4, times},    {"/", 4, checked_quotient}, {"MOD", 4, modulus}, {"+", 3, plus},
-      {"-", 3, minus},  {"EQ", 2, equal},   {"NE", 2, unequal},         {"GT", 2, greater},  {"GE", 2, at_least},
-      {"LT", 2, less},  {"LE", 2, at_most}, {"AND", 1, both},           {"OR", 1, either},   {"XOR", 1, one_of}};
-  static const std::vector<Operator> kSiemens = {{"*", 5, times},
-                                                 {"/", 5, checked_quotient},
-                                                 {"DIV", 5, whole_quotient},
-                                                 {"MOD", 5, modulus},
-                                                 {"+", 4, plus},
-                                                 {"-", 4, minus},
-                                                 {"==", 3, same},
-                                                 {"<>", 3, different},
-                                                 {"<=", 3, at_most},
-                                                 {">=", 3, at_least},
-                                                 {"<", 3, less},
-                                                 {">", 3, greater},
-                                                 {"AND", 2, both},
-                                                 {"XOR", 1, one_of},
-                                                 {"OR", 1, either}};
-  static const std::vector<Operator> kHeidenhain = {
-      {"^", 3, power}, {"*", 2, times}, {"/", 2, checked_quotient}, {"+", 1, plus}, {"-", 1, minus}};
-  return syntax == NcSyntax::kLinuxCnc ? kLinuxCnc : syntax == NcSyntax::kSiemens ? kSiemens : kHeidenhain;
-}
 
 double arc_of(double x, double (*f)(double)) {
   if (!(std::abs(x) <= 1.0)) throw RangeError(fmt::format("there is no angle whose sine or cosine is {:g}", x));
   return f(x) / kDegree;
 }
 
-std::optional<double> function_of(const std::string& name, double x, NcSyntax syntax) {
+std::optional<double> function_of(const std::string& name, double x, const NcSyntax& syntax) {
   if (name == "SIN") return std::sin(x * kDegree);
   if (name == "COS") return std::cos(x * kDegree);
   if (name == "TAN") return std::tan(x * kDegree);
@@ -131,32 +41,23 @@ std::optional<double> function_of(const std::string& name, double x, NcSyntax sy
     return name == "LN" ? std::log(x) : std::log10(x);
   }
   if (name == "ROUND") return std::round(x);
-  if (syntax == NcSyntax::kLinuxCnc && name == "FIX") return std::floor(x);
-  if (syntax == NcSyntax::kLinuxCnc && name == "FUP") return std::ceil(x);
-  if (syntax == NcSyntax::kSiemens && name == "TRUNC") return std::trunc(x);
-  if (syntax == NcSyntax::kSiemens && name == "POT") return x * x;
-  if (syntax == NcSyntax::kHeidenhain) {
-    if (name == "SQ") return x * x;
-    if (name == "NEG") return -x;
-    if (name == "INT") return std::trunc(x);
-    if (name == "FRAC") return x - std::trunc(x);
-    if (name == "SGN") return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
-    if (name == "ATAN") return std::atan(x) / kDegree;
-  }
+  const auto further = syntax.functions.find(name);
+  if (further != syntax.functions.end()) return further->second(x);
   return std::nullopt;
 }
 
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$';
 }
+
 class Reader {
  public:
-  Reader(const std::string& text, std::size_t& at, NcSyntax syntax, const NcLookup& lookup)
+  Reader(const std::string& text, std::size_t& at, const NcSyntax& syntax, const NcLookup& lookup)
       : text_(text), at_(at), syntax_(syntax), lookup_(lookup) {}
 
   NcValue expression(int lowest) {
     NcValue left = primary();
-    while (const Operator* op = next_operator(lowest)) {
+    while (const NcSyntax::Operator* op = next_operator(lowest)) {
       const NcValue right = expression(op->level + 1);
       left = {op->apply(left.value, right.value), left.certain && right.certain};
       if (!std::isfinite(left.value)) throw RangeError("the result is too large for a number");
@@ -191,25 +92,25 @@ class Reader {
     return at_ < text_.size() ? text_[at_] : '\0';
   }
 
-  [[nodiscard]] char opening() const { return syntax_ == NcSyntax::kLinuxCnc ? '[' : '('; }
+  void take(char expected) {
+    if (peek() != expected) throw RangeError(fmt::format("'{}' is expected here", expected));
+    ++at_;
+  }
 
   NcValue bracket() {
-    const char close = syntax_ == NcSyntax::kLinuxCnc ? ']' : ')';
-    if (peek() != opening()) throw RangeError(fmt::format("'{}' is expected here", opening()));
-    ++at_;
+    take(syntax_.open);
     const NcValue value = expression(0);
-    if (peek() != close) throw RangeError(fmt::format("'{}' is expected here", close));
-    ++at_;
+    take(syntax_.close);
     return value;
   }
 
-  const Operator* next_operator(int lowest) {
+  const NcSyntax::Operator* next_operator(int lowest) {
     const char c = peek();
     if (c == '\0') return nullptr;
-    for (const Operator& op : operators(syntax_)) {
+    for (const NcSyntax::Operator& op : syntax_.operators) {
       const std::string word = op.text;
       if (text_.compare(at_, word.size(), word) != 0) continue;
-      if (is_letter(word[0]) && syntax_ != NcSyntax::kLinuxCnc && at_ + word.size() < text_.size() &&
+      if (is_letter(word[0]) && !syntax_.is_joined && at_ + word.size() < text_.size() &&
           is_letter(text_[at_ + word.size()]))
         continue;
       if (op.level < lowest) return nullptr;
@@ -223,7 +124,7 @@ class Reader {
     const std::size_t begin = at_;
     std::string digits;
     while (at_ < text_.size() &&
-           (is_digit(text_[at_]) || text_[at_] == '.' || (text_[at_] == ',' && syntax_ == NcSyntax::kHeidenhain)))
+           (is_digit(text_[at_]) || text_[at_] == '.' || (text_[at_] == ',' && syntax_.has_decimal_comma)))
       digits += text_[at_] == ',' ? '.' : text_[at_], ++at_;
     double value = 0.0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
@@ -237,39 +138,35 @@ class Reader {
 
   std::string name() {
     std::string name;
-    while (at_ < text_.size() && (is_letter(text_[at_]) || (is_digit(text_[at_]) && syntax_ != NcSyntax::kLinuxCnc)))
+    while (at_ < text_.size() && (is_letter(text_[at_]) || (is_digit(text_[at_]) && !syntax_.is_joined)))
       name += static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_++])));
     return name;
   }
 
   NcValue call(const std::string& function) {
-    if (syntax_ == NcSyntax::kLinuxCnc && function == "EXISTS") {
+    if (syntax_.has_numbered && function == "EXISTS") {
       if (peek() != '[' || at_ + 1 >= text_.size() || text_[at_ + 1] != '#')
         throw RangeError("EXISTS must be written as EXISTS[#<name>]");
       at_ += 2;
       const std::string name = parameter();
-      if (peek() != ']') throw RangeError("']' is expected here");
-      ++at_;
+      take(']');
       try {
         return {1.0, lookup_(name).certain};
       } catch (const RangeError&) {
         return {0.0};
       }
     }
-    if (syntax_ == NcSyntax::kSiemens && function == "ATAN2") {
-      if (peek() != '(') throw RangeError("'(' is expected here");
-      ++at_;
+    if (function == syntax_.angle_of_two) {
+      take(syntax_.open);
       const NcValue y = expression(0);
-      if (peek() != ',') throw RangeError("',' is expected here");
-      ++at_;
+      take(',');
       const NcValue x = expression(0);
-      if (peek() != ')') throw RangeError("')' is expected here");
-      ++at_;
+      take(syntax_.close);
       return {std::atan2(y.value, x.value) / kDegree, y.certain && x.certain};
     }
-    const bool bare = syntax_ == NcSyntax::kHeidenhain && peek() != '(';
+    const bool bare = syntax_.has_bare_arguments && peek() != syntax_.open;
     const NcValue x = bare ? primary() : bracket();
-    if (syntax_ == NcSyntax::kLinuxCnc && function == "ATAN") {
+    if (function == syntax_.angle_of_ratio) {
       if (peek() != '/') throw RangeError("ATAN must be written as ATAN[y]/[x]");
       ++at_;
       const NcValue along = bracket();
@@ -287,20 +184,18 @@ class Reader {
       const NcValue value = primary();
       return {c == '-' ? -value.value : value.value, value.certain};
     }
-    if (c == opening()) return bracket();
-    if (c == '#' && syntax_ == NcSyntax::kLinuxCnc) {
+    if (c == syntax_.open) return bracket();
+    if (c == '#' && syntax_.has_numbered) {
       ++at_;
       return lookup_(parameter());
     }
     if (is_letter(c)) {
       const std::size_t begin = at_;
       const std::string word = name();
-      if (syntax_ == NcSyntax::kSiemens && word == "NOT") return {primary().value == 0.0 ? 1.0 : 0.0};
-      if (syntax_ == NcSyntax::kSiemens && (word == "TRUE" || word == "FALSE")) return {word == "TRUE" ? 1.0 : 0.0};
-      if (syntax_ == NcSyntax::kHeidenhain && word == "PI") return {std::numbers::pi};
+      if (word == syntax_.negation) return {primary().value == 0.0 ? 1.0 : 0.0};
+      if (const auto constant = syntax_.constants.find(word); constant != syntax_.constants.end()) return {constant->second};
       const bool variable =
-          (syntax_ == NcSyntax::kHeidenhain && word[0] == 'Q' && word.size() > 1 && is_digit(word.back())) ||
-          (syntax_ == NcSyntax::kSiemens && peek() != '(');
+          (syntax_.is_variable && syntax_.is_variable(word)) || (syntax_.has_named_variables && peek() != syntax_.open);
       if (variable) {
         try {
           return lookup_(word);
@@ -316,20 +211,20 @@ class Reader {
 
   const std::string& text_;
   std::size_t& at_;
-  NcSyntax syntax_;
+  const NcSyntax& syntax_;
   const NcLookup& lookup_;
   int depth_ = 0;
 };
 
 }  // namespace
 
-NcValue evaluate(const std::string& text, std::size_t& at, NcSyntax syntax, const NcLookup& lookup, bool whole) {
+NcValue evaluate(const std::string& text, std::size_t& at, const NcSyntax& syntax, const NcLookup& lookup, bool whole) {
   Reader reader(text, at, syntax, lookup);
   return whole ? reader.expression(0) : reader.primary();
 }
 
-std::string parameter_name(const std::string& text, std::size_t& at, const NcLookup& lookup) {
-  return Reader(text, at, NcSyntax::kLinuxCnc, lookup).parameter();
+std::string parameter_name(const std::string& text, std::size_t& at, const NcSyntax& syntax, const NcLookup& lookup) {
+  return Reader(text, at, syntax, lookup).parameter();
 }
 
 }  // namespace driftwright

@@ -1,8 +1,10 @@
 #pragma once
-// Expressions of NC programs: LinuxCNC's [#1 + 2], Siemens' R1+2*SIN(30), Heidenhain's Q1 = Q2 * 2.
+// Expressions of NC programs, such as [#1 + 2], R1+2*SIN(30), Q2 * 2.
 
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "nc/units.hpp"
 
@@ -15,29 +17,40 @@ struct NcValue {
   bool certain = true;
 };
 
-enum class NcSyntax {
-  /// Upper case without blanks; [ ], #1, #<NAME>, ** MOD EQ NE GT GE LT LE AND OR XOR, SIN[ ] in degrees, ATAN[ ]/[ ].
-  kLinuxCnc,
-  /// ( ), names and R1 as variables, DIV MOD == <> < > <= >= AND OR NOT, SIN( ) in degrees, ATAN2( , ).
-  kSiemens,
-  /// ( ) optional after functions, Q1 QL1 QR1, + - * / ^, SQ SQRT SIN COS TAN ASIN ACOS ATAN LN LOG EXP NEG INT ABS FRAC PI.
-  kHeidenhain,
+/// How a language writes expressions. All have signs, brackets, SIN COS TAN ASIN ACOS in degrees, ABS EXP SQRT LN LOG ROUND.
+struct NcSyntax {
+  struct Operator {
+    const char* text;
+    int level;  ///< higher binds more closely
+    double (*apply)(double a, double b);
+  };
+  std::vector<Operator> operators;  ///< longer ones first, if one begins with another
+  std::map<std::string, double (*)(double x)> functions = {};
+  std::map<std::string, double> constants = {};
+  std::string negation = {};        ///< such as "NOT"
+  std::string angle_of_ratio = {};  ///< the function of [y]/[x] in degrees, such as "ATAN"
+  std::string angle_of_two = {};    ///< the function of (y, x) in degrees, such as "ATAN2"
+  char open = '(', close = ')';
+  bool (*is_variable)(const std::string& name) = nullptr;
+  bool has_named_variables = false;  ///< a name is a variable if no bracket follows
+  bool has_numbered = false;         ///< #1, #<NAME>, EXISTS[#<NAME>]
+  bool has_decimal_comma = false;
+  bool has_bare_arguments = false;  ///< a function's argument needs no brackets
+  bool is_joined = false;           ///< without blanks: a name has no digits, and a letter may follow an operator
 };
 
-/// The value of a variable, named "1" or "<NAME>" (LinuxCNC), "R1", "NAME" or "Q1". @throws RangeError  if it is unknown
+/// The value of a variable, named as it is written, without '#': "1", "<NAME>", "R1", "Q1". @throws RangeError  if it is unknown
 using NcLookup = std::function<NcValue(const std::string& name)>;
 
 /// The value of the expression that begins at text[at]; `at` is then the index after it. With `whole`, the longest
-/// expression; else (LinuxCNC) one number, parameter, function or bracket, as after a word's letter.
+/// expression; else one number, parameter, function or bracket, as after a word's letter.
 /// @throws RangeError  with `at` at the error: for text that is not an expression, a division by zero, a function outside
 ///                     its range
-/// Source: LinuxCNC documentation "G-code Overview" (Parameters, Expressions, Binary Operators, Functions; EQ and NE within
-/// 0.0001); Siemens, SINUMERIK Programming Manual Job Planning, arithmetic functions and comparisons; Heidenhain, User's
-/// Manual, Q parameters, formulas.
-[[nodiscard]] NcValue evaluate(const std::string& text, std::size_t& at, NcSyntax syntax, const NcLookup& lookup,
+[[nodiscard]] NcValue evaluate(const std::string& text, std::size_t& at, const NcSyntax& syntax, const NcLookup& lookup,
                                bool whole);
 
-/// The name of the parameter after the '#' at text[at] (LinuxCNC): "5420" or "<NAME>"; `at` is then the index after it.
-[[nodiscard]] std::string parameter_name(const std::string& text, std::size_t& at, const NcLookup& lookup);
+/// The name of the parameter after the '#' at text[at]: "5420" or "<NAME>"; `at` is then the index after it.
+[[nodiscard]] std::string parameter_name(const std::string& text, std::size_t& at, const NcSyntax& syntax,
+                                         const NcLookup& lookup);
 
 }  // namespace driftwright

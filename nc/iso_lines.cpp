@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/characters.hpp"
-#include "base/delimited_text.hpp"
 
 namespace driftwright {
 namespace {
@@ -109,11 +108,11 @@ std::vector<NcWord> plain_words(const IsoLine& line) {
   return words;
 }
 
-std::vector<IsoLine> read_iso_lines(const std::string& path) {
+std::vector<IsoLine> read_iso_lines(const std::string& path, const std::vector<std::string>& texts) {
   std::vector<IsoLine> lines;
   bool started = false;
   int number = 0;
-  for (const std::string& text : read_text_lines(path)) {
+  for (const std::string& text : texts) {
     ++number;
     IsoLine line;
     line.where = Where{path, number, 1, "", text};

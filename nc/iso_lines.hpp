@@ -26,10 +26,10 @@ struct IsoLine {
   std::size_t rest = 0;      ///< index in `text` where the computed label, or the part after the keyword, begins
 };
 
-/// All lines that are not empty, up to the second '%'.
-/// @throws InputError  file, line and column: for a file that cannot be opened, a '(' without ')', a letter without a number
+/// All lines of a text that are not empty, up to the second '%'.
+/// @throws InputError  file, line and column: for a '(' without ')', a letter without a number
 /// Source: LinuxCNC documentation, "G-code Overview", Format of a line, Numbers, Comments, File requirements.
-[[nodiscard]] std::vector<IsoLine> read_iso_lines(const std::string& path);
+[[nodiscard]] std::vector<IsoLine> read_iso_lines(const std::string& path, const std::vector<std::string>& texts);
 
 /// The words of a line from text[at] on, where all values are plain numbers. @throws InputError
 [[nodiscard]] std::vector<NcWord> plain_words(const IsoLine& line);

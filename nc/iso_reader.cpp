@@ -17,18 +17,13 @@
 namespace driftwright {
 namespace {
 
-/// The work offset's number P: 1 for G54 ... 9 for G59.3.
-int number_of(NcCode system) {
-  return system <= 590 ? (system - 540) / 10 + 1 : 6 + system - 590;
-}
-
 bool is_drilling(std::optional<NcCode> motion) {
   return motion && is_canned_cycle(*motion);
 }
 
 class IsoReader {
  public:
-  explicit IsoReader(NcRun& run) : run_(run), motion_(run.motion), origin_(run) {}
+  IsoReader(NcRun& run, const IsoVariant& variant) : run_(run), variant_(variant), motion_(run.motion), origin_(run) {}
 
   /// The value of a parameter that the machine itself provides, or none.
   std::optional<NcValue> parameter(const std::string& name) {
@@ -79,8 +74,7 @@ class IsoReader {
     const bool waits = !m.empty() || !words.unknown().empty() || words.has_any("ST") || of_group(g, "coordinate system") ||
                        of_group(g, "origin") || contains(g, 100);
     if (waits) motion_.stop();
-    if (const auto language = of_group(g, "language");
-        language && (*language != 2910 || run_.settings().control != NcControl::kSiemens))
+    if (const auto language = of_group(g, "language"); language && (*language != 2910 || !variant_.has_g291))
       run_.fail(fmt::format("{}: Siemens programs are in ISO code (G291) as a whole or not at all here",
                             nc_word_name('G', *language)));
     for (const NcCode cancel : {500, 501}) {  // alone they end scaling and mirroring, which do not begin here
@@ -106,7 +100,7 @@ class IsoReader {
     step.motion_word = of_group(g, "motion").has_value() || contains(g, 800);
     step.unit_word = contains(g, 200) || contains(g, 210);
     step.system = of_group(g, "coordinate system");
-    if (step.system && run_.settings().control == NcControl::kSiemens) step.resets = {true, true, true};
+    if (step.system && variant_.work_offset_resets) step.resets = {true, true, true};
     step.ends_program = contains(m, 20) || contains(m, 300);
     if (of_group(g, "tool length")) run_.forget();
     run_.end();
@@ -169,7 +163,8 @@ class IsoReader {
       (void)words.take('D');
     }
     if (contains(g, 490)) (void)words.take('H');
-    if (const auto system = of_group(g, "coordinate system")) origin_.use(number_of(*system), nc_word_name('G', *system));
+    if (const auto system = of_group(g, "coordinate system"))
+      origin_.use(work_offset_number(*system), nc_word_name('G', *system));
     if (contains(g, 100)) set_offset(words);
     if (const auto shift = of_group(g, "origin")) shift_origin(*shift, words);
     if (contains(g, 610) || contains(g, 611)) motion_.blend_m = 0.0;
@@ -385,6 +380,7 @@ class IsoReader {
   }
 
   NcRun& run_;
+  const IsoVariant variant_;
   NcMotion& motion_;
   IsoOrigin origin_;
   bool absolute_centre_ = false, to_initial_level_ = true;
@@ -395,9 +391,9 @@ class IsoReader {
 
 }  // namespace
 
-void run_iso_program(const std::string& path, NcRun& run) {
-  IsoReader reader(run);
-  IsoSource source(path, run, [&](const std::string& name) { return reader.parameter(name); });
+void run_iso_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run, const IsoVariant& variant) {
+  IsoReader reader(run, variant);
+  IsoSource source(path, lines, run, [&](const std::string& name) { return reader.parameter(name); });
   while (const std::optional<NcBlock> block = source.next()) {
     if (!reader.read(*block)) return;
   }

@@ -8,13 +8,43 @@
 #include <filesystem>
 #include <set>
 
+#include "base/delimited_text.hpp"
 #include "nc/iso_lines.hpp"
+#include "nc/operators.hpp"
 
 namespace driftwright {
 namespace {
 
 constexpr std::size_t kDeepestSubroutine = 10;  // nested subroutines, LinuxCNC's limit
 constexpr int kLocals = 30;
+
+/// Upper case without blanks; [ ], #1, #<NAME>, ** MOD EQ NE GT GE LT LE AND OR XOR, SIN[ ] in degrees, ATAN[ ]/[ ].
+/// Source: LinuxCNC documentation "G-code Overview" (Parameters, Expressions, Binary Operators, Functions).
+const NcSyntax& iso_syntax() {
+  static const NcSyntax syntax = {
+      .operators = {{"**", 5, op::power},
+                    {"*", 4, op::product},
+                    {"/", 4, op::quotient},
+                    {"MOD", 4, op::modulus},
+                    {"+", 3, op::plus},
+                    {"-", 3, op::minus},
+                    {"EQ", 2, op::equal},
+                    {"NE", 2, op::unequal},
+                    {"GT", 2, op::greater},
+                    {"GE", 2, op::at_least},
+                    {"LT", 2, op::less},
+                    {"LE", 2, op::at_most},
+                    {"AND", 1, op::both},
+                    {"OR", 1, op::either},
+                    {"XOR", 1, op::one_of}},
+      .functions = {{"FIX", [](double x) { return std::floor(x); }}, {"FUP", [](double x) { return std::ceil(x); }}},
+      .angle_of_ratio = "ATAN",
+      .open = '[',
+      .close = ']',
+      .has_numbered = true,
+      .is_joined = true};
+  return syntax;
+}
 
 struct File {
   std::vector<IsoLine> lines;
@@ -36,9 +66,9 @@ struct Frame {
 
 class IsoSource::Impl {
  public:
-  Impl(const std::string& path, NcRun& run, NcMachineParameters machine)
+  Impl(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
       : path_(path), run_(run), machine_(std::move(machine)) {
-    const File& file = load(path);
+    const File& file = load(path, lines);
     run_.expect(file.lines.size());
     frames_.push_back({.file = &file});
   }
@@ -80,16 +110,15 @@ class IsoSource::Impl {
     throw InputError(where, message);
   }
 
+  const File& load(const std::string& path, const std::vector<std::string>& lines) {
+    return *files_.emplace(path, std::make_unique<File>(File{read_iso_lines(path, lines)})).first->second;
+  }
   const File& load(const std::string& path) {
     const auto found = files_.find(path);
-    if (found != files_.end()) return *found->second;
-    auto file = std::make_unique<File>();
-    file->lines = read_iso_lines(path);
-    return *files_.emplace(path, std::move(file)).first->second;
+    return found != files_.end() ? *found->second : load(path, read_text_lines(path));
   }
 
   // --- numbers
-  // ------------------------------------------------------------------------------------------------------------------
 
   NcValue look_up(const std::string& name) {
     if (name[0] == '<') {
@@ -123,7 +152,7 @@ class IsoSource::Impl {
 
   NcValue value(const IsoLine& line, std::size_t& i, bool whole) {
     try {
-      return evaluate(line.text, i, NcSyntax::kLinuxCnc, lookup(), whole);
+      return evaluate(line.text, i, iso_syntax(), lookup(), whole);
     } catch (const RangeError& e) {
       fail(line, i, e.what());
     }
@@ -152,7 +181,7 @@ class IsoSource::Impl {
         ++i;
         std::string name;
         try {
-          name = parameter_name(text, i, lookup());
+          name = parameter_name(text, i, iso_syntax(), lookup());
         } catch (const RangeError& e) {
           fail(line, i, e.what());
         }
@@ -204,7 +233,6 @@ class IsoSource::Impl {
   }
 
   // --- order of execution
-  // -------------------------------------------------------------------------------------------------------
 
   void enter(const IsoLine& line, Frame next) {
     if (frames_.size() > kDeepestSubroutine)
@@ -385,8 +413,8 @@ class IsoSource::Impl {
   std::map<std::string, NcValue> globals_;
 };
 
-IsoSource::IsoSource(const std::string& path, NcRun& run, NcMachineParameters machine)
-    : impl_(std::make_unique<Impl>(path, run, std::move(machine))) {}
+IsoSource::IsoSource(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
+    : impl_(std::make_unique<Impl>(path, lines, run, std::move(machine))) {}
 IsoSource::~IsoSource() = default;
 std::optional<NcBlock> IsoSource::next() {
   return impl_->next();

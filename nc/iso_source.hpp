@@ -31,7 +31,7 @@ using NcMachineParameters = std::function<std::optional<NcValue>(const std::stri
 /// Source: LinuxCNC documentation, "O Codes" and "G-code Overview".
 class IsoSource {
  public:
-  IsoSource(const std::string& path, NcRun& run, NcMachineParameters machine);
+  IsoSource(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine);
   ~IsoSource();
   /// The next block with words; none after the last line.
   [[nodiscard]] std::optional<NcBlock> next();

@@ -11,7 +11,6 @@ namespace {
 // Share of the acceleration for the normal direction; 0.5 remains along the path.
 constexpr double kNormalShare = 0.8660254037844386;
 constexpr double kKinkShare = 0.25;
-constexpr double kPi = std::numbers::pi;
 
 /// The largest value along a direction that exceeds no axis' limit.
 double along(const std::array<double, 3>& limit, const std::array<double, 3>& direction) {
@@ -118,7 +117,7 @@ class Planner {
       return;
     }
     s.end_m_s = at_once;
-    if (p.blend_m == 0.0 || kink > kPi - 1e-3 || p.radius_m > 0.0 || next.radius_m > 0.0)
+    if (p.blend_m == 0.0 || kink > std::numbers::pi - 1e-3 || p.radius_m > 0.0 || next.radius_m > 0.0)
       return;  // arcs exist between lines only
     // The corner's arc turns through its plane: the limits of every axis of the plane apply.
     double turning = a, fastest = wanted;
@@ -127,7 +126,7 @@ class Planner {
       turning = std::min(turning, limits_.acceleration_m_s2[axis]);
       fastest = std::min(fastest, limits_.velocity_m_s[axis]);
     }
-    const double theta = 0.5 * (kPi - kink);
+    const double theta = 0.5 * (std::numbers::pi - kink);
     const double tolerance_m = p.blend_m < 0.0 ? std::numeric_limits<double>::infinity() : p.blend_m;
     double d_m = std::min(
         {0.5 * p.length_m, 0.5 * next.length_m, s.length_m, tolerance_m * std::cos(theta) / (1.0 - std::sin(theta))});

@@ -1,10 +1,11 @@
 #include "nc/program.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "base/delimited_text.hpp"
-#include "nc/heidenhain_reader.hpp"
-#include "nc/iso_reader.hpp"
-#include "nc/klartext_reader.hpp"
-#include "nc/siemens_reader.hpp"
+#include "nc/run.hpp"
 
 namespace driftwright {
 
@@ -14,28 +15,17 @@ double NcProgram::duration_s() const {
   return sum_s;
 }
 
-NcProgram read_nc_program(const std::string& path, const NcSettings& settings) {
-  NcRun run(settings);
-  if (settings.control == NcControl::kLinuxCnc) {
-    run_iso_program(path, run);
-    return std::move(run).result(path, NcDialect::kLinuxCnc);
-  }
+NcProgram read_nc_program(const std::string& path, const NcSettings& settings, const std::vector<NcControl>& controls) {
+  const NcControl& control = nc_control(settings.control, controls);
   const std::vector<std::string> lines = read_text_lines(path);
+  const auto language = std::find_if(control.languages.begin(), control.languages.end(),
+                                     [&](const NcLanguage* known) { return known->recognises(lines); });
+  if (language == control.languages.end())
+    throw InputError(fmt::format("{}: the program is in no language of {} ({})", path, control.title, control.about));
+  NcRun run(settings);
   run.expect(lines.size());
-  if (settings.control == NcControl::kSiemens) {
-    if (asks_for_iso_mode(lines)) {
-      run_iso_program(path, run);
-      return std::move(run).result(path, NcDialect::kSiemensIso);
-    }
-    run_siemens_program(path, lines, run);
-    return std::move(run).result(path, NcDialect::kSiemens);
-  }
-  if (is_klartext(lines)) {
-    run_klartext_program(path, lines, run);
-    return std::move(run).result(path, NcDialect::kKlartext);
-  }
-  run_heidenhain_program(path, lines, run);
-  return std::move(run).result(path, NcDialect::kHeidenhainIso);
+  (*language)->read(path, lines, run);
+  return std::move(run).result(path, **language);
 }
 
 }  // namespace driftwright

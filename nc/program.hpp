@@ -1,7 +1,7 @@
 #pragma once
 // Reads an NC program: the spindle speeds and axis travels that it commands over time.
 //
-// siemens_reader, heidenhain_reader and klartext_reader describe the languages of Siemens and Heidenhain. The words of
+// nc/siemens/ and nc/heidenhain/ describe the languages of Siemens and Heidenhain. The words of
 // RS-274 (ISO 6983) below are used as the LinuxCNC documentation ("G-Codes", "M-Codes", "O Codes", "G-code Overview")
 // defines them unless noted; the order of execution within a block is also LinuxCNC's:
 //   G0 G1 G2 G3 (I J K or R, P turns)       straight lines and arcs; the feed applies along the path, helix included
@@ -33,7 +33,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/dialect.hpp"
+#include "nc/controls.hpp"
 #include "nc/limits.hpp"
 #include "nc/step.hpp"
 
@@ -46,7 +46,7 @@ struct NcSettings {
   double dwell_P_s = 1.0;               ///< duration of P1 with G4 and in canned cycles [s]: 1, or 1e-3 as on Fanuc
   std::optional<std::array<double, 3>> machine_zero_m;  ///< in the coordinates of the program
   std::set<std::string> ignored;                        ///< G and M words to ignore, with their P Q R L E, such as "M88"
-  NcControl control = NcControl::kLinuxCnc;             ///< control whose language the program uses
+  std::string control = "linuxcnc";                     ///< key of the control whose language the program uses
   /// Numbered parameters that the machine holds, such as 5221 of G54 in mm (LinuxCNC).
   std::map<int, double> parameters = {};
   std::optional<NcLimits> limits = {};  ///< of the axes; none: all speeds are as programmed
@@ -55,15 +55,19 @@ struct NcSettings {
 /// A program as executed.
 struct NcProgram {
   std::vector<NcMove> moves;
-  std::vector<NcStep> steps;       ///< its blocks in order of execution; the last one ends it
-  std::vector<std::string> notes;  ///< words that were ignored and might matter, with their lines
-  NcDialect dialect = NcDialect::kLinuxCnc;
+  std::vector<NcStep> steps;             ///< its blocks in order of execution; the last one ends it
+  std::vector<std::string> notes;        ///< words that were ignored and might matter, with their lines
+  const NcLanguage* language = nullptr;  ///< that it is in; null only before it is read
 
   [[nodiscard]] double duration_s() const;
 };
 
+/// Reads a program in the first language of its control that recognises it.
+/// @param controls  that are known; the program keeps pointers to their languages
 /// @throws InputError  file, line, column: for a word that is unknown, refused, unused in its block or in conflict with
-///                     another, for a move that cannot be timed, for a program without end (M2, M30 or '%')
-[[nodiscard]] NcProgram read_nc_program(const std::string& path, const NcSettings& settings);
+///                     another, for a move that cannot be timed, for a program without end (M2, M30 or '%'); without place
+///                     for a control that is not known, for a program in none of its languages
+[[nodiscard]] NcProgram read_nc_program(const std::string& path, const NcSettings& settings,
+                                        const std::vector<NcControl>& controls = nc_controls());
 
 }  // namespace driftwright

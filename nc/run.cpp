@@ -124,15 +124,15 @@ const std::array<double, 3>& NcRun::machine_zero(const std::string& word) const 
   return *settings_.machine_zero_m;
 }
 
-NcProgram NcRun::result(const std::string& path, NcDialect dialect) && {
+NcProgram NcRun::result(const std::string& path, const NcLanguage& language) && {
   std::map<std::pair<std::string, int>, int> runs;  // of each line
   for (NcStep& step : steps_) step.nth_run = ++runs[{step.where.file, step.where.line}];
   for (NcStep& step : steps_) {
     step.n_runs = runs[{step.where.file, step.where.line}];
     const bool elsewhere = step.where.file != path;
-    step.no_place = step.no_place || elsewhere || (step.n_runs > 1 && dialect != NcDialect::kLinuxCnc);
+    step.no_place = step.no_place || elsewhere || (step.n_runs > 1 && !language.counts_runs());
   }
-  NcProgram program{motion.moves(), std::move(steps_), std::move(notes_), dialect};
+  NcProgram program{motion.moves(), std::move(steps_), std::move(notes_), &language};
   if (!settings_.limits) return program;
   const std::vector<double> durations_s = planned_durations_s(motion.path(), *settings_.limits);
   double now_s = 0.0;

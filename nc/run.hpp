@@ -1,6 +1,6 @@
 #pragma once
 // Executes a program of any language block by block: modes, motion, time, and the resulting steps. The readers of the
-// languages (iso_reader, siemens_reader, heidenhain_reader, klartext_reader) interpret the words and call it.
+// languages interpret the words and call it.
 
 #include <array>
 #include <optional>
@@ -74,7 +74,7 @@ class NcRun {
   [[nodiscard]] const std::array<double, 3>& machine_zero(const std::string& word) const;
 
   [[nodiscard]] const NcSettings& settings() const { return settings_; }
-  [[nodiscard]] NcProgram result(const std::string& path, NcDialect dialect) &&;
+  [[nodiscard]] NcProgram result(const std::string& path, const NcLanguage& language) &&;
 
  private:
   void go(NcStepKind kind, const std::array<double, 3>& target_m);

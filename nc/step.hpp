@@ -58,7 +58,6 @@ struct NcStep {
   int nth_run = 1, n_runs = 1;     ///< count of the runs of its line, in loops and subprograms
   /// Axes whose corrections the block removes, as a datum shift or a work offset of the program does on some controls.
   std::array<bool, 3> resets = {false, false, false};
-  std::array<std::optional<double>, 3> local_shift_m = {};  ///< of a G52 in the program itself (LinuxCNC)
   std::array<bool, 3> own_shift = {
       false, false, false};  ///< axes of a G52 or G92 in the program itself (LinuxCNC); corrections share this offset
   bool sets_offset = false;  ///< G10 L2, L20 (LinuxCNC)
@@ -66,6 +65,7 @@ struct NcStep {
   bool certain = true;       ///< false: its end is known only at the machine (a probe, an offset read there)
 
   [[nodiscard]] double duration_s() const { return end_s - start_s; }
+  [[nodiscard]] bool moves() const { return kind != NcStepKind::kNone; }
 };
 
 }  // namespace driftwright

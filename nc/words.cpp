@@ -86,6 +86,10 @@ std::string nc_word_name(char letter, NcCode code) {
   return code % 10 == 0 ? fmt::format("{}{}", letter, code / 10) : fmt::format("{}{}.{}", letter, code / 10, code % 10);
 }
 
+int work_offset_number(NcCode system) {
+  return system <= 590 ? (system - 540) / 10 + 1 : 6 + system - 590;
+}
+
 std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group) {
   for (NcCode c : codes) {
     if (g_groups().at(c) == group) return c;

@@ -16,6 +16,9 @@ using NcCode = int;
 /// Name of a word: "G5.1" for ('G', 51).
 [[nodiscard]] std::string nc_word_name(char letter, NcCode code);
 
+/// The number P of a work offset: 1 for G54 ... 9 for G59.3.
+[[nodiscard]] int work_offset_number(NcCode system);
+
 /// The code in `codes` that belongs to that group of G words (such as "motion").
 [[nodiscard]] std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group);
 

@@ -13,8 +13,7 @@ namespace driftwright::output {
 [[nodiscard]] std::vector<html::ReportBlock> page_blocks(const Section& section);
 
 /// The page, and its figures as files.
-/// @throws std::runtime_error  when plots cannot be drawn, see draw_svgs()
-/// @throws std::logic_error    when a table's row is not as long as its columns, or a plot is ill-formed
+/// @throws std::logic_error  when a table's row is not as long as its columns, or a plot is ill-formed
 [[nodiscard]] html::Rendered document_html(const Document& document);
 
 }  // namespace driftwright::output

@@ -7,12 +7,14 @@
 #include <cstdio>
 
 #include "output/markup.hpp"
+#include "output/plot_legend.hpp"
+#include "output/text_width.hpp"
 
 namespace driftwright::output {
 namespace {
 
 constexpr const char* kHead = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-constexpr double kTitle = 34, kLine = 24, kLetter = 7.4, kMargin = 16;
+constexpr double kTitle = 34, kMargin = 16, kTitleFont = 16, kBold = 1.1;  // bold letters are a tenth wider [px, -]
 
 /// Width and height from its viewBox.
 std::array<double, 2> size_of(const std::string& svg) {
@@ -34,19 +36,10 @@ std::string with_attribute(std::string svg, const std::string& text) {
   return fmt::format("{} {}{}", svg.substr(0, at), text, svg.substr(at));
 }
 
-std::string swatch(const Plot& plot, std::size_t series, double x, double y) {
-  const std::string color = series_color(plot, series);
-  const Series::Style style = drawn_style(plot, series);
-  if (style == Series::Style::kPoints)
-    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"/>", x + 12.0, y, color);
-  return fmt::format("<path d=\"M{:.1f} {:.1f}h24\" stroke=\"{}\" stroke-width=\"3\"{}/>", x, y, color,
-                     style == Series::Style::kDashed ? " stroke-dasharray=\"7 4\"" : "");
-}
-
-std::size_t n_letters(const std::string& text) {
-  std::size_t n = 0;
-  for (char c : text) n += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1U : 0U;
-  return n;
+/// Smaller where the title is longer than the room.
+double title_font(const std::string& title, double room) {
+  const double width = kBold * text_width(title, kTitleFont);
+  return width > room ? kTitleFont * room / width : kTitleFont;
 }
 
 }  // namespace
@@ -59,45 +52,18 @@ std::string svg_file(const std::string& svg) {
 std::string plot_file(const Plot& plot, const std::string& svg) {
   const auto [width, height] = size_of(svg);
   const double top = plot.title.empty() ? 0.0 : kTitle;
-  std::string legend;
-  double x = kMargin, y = top + height + 0.5 * kLine;
-  const auto add = [&](const auto& drawn, const std::string& label) {
-    if (label.empty()) return;
-    const double wide = 32.0 + kLetter * static_cast<double>(n_letters(label)) + 22.0;
-    if (x > kMargin && x + wide > width) {
-      x = kMargin;
-      y += kLine;
-    }
-    legend += fmt::format("{}<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", drawn(x, y), x + 32.0, y + 5.0, escaped(label));
-    x += wide;
-  };
-  for (std::size_t s = 0; s < plot.series.size(); ++s)
-    add([&](double at_x, double at_y) { return swatch(plot, s, at_x, at_y); }, plot.series[s].label);
-  for (std::size_t b = 0; b < plot.bands.size(); ++b) {
-    const bool is_line = plot.bands[b].low == plot.bands[b].high;
-    add(
-        [&](double at_x, double at_y) {
-          return is_line
-                     ? fmt::format(
-                           "<path d=\"M{:.1f} {:.1f}h24\" stroke=\"#777777\" stroke-width=\"2\" stroke-dasharray=\"6 4\"/>",
-                           at_x, at_y)
-                     : fmt::format(
-                           "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"24\" height=\"14\" fill=\"{}\" stroke=\"#c3ccd3\"/>",
-                           at_x, at_y - 7.0, band_color(b));
-        },
-        plot.bands[b].label);
-  }
-  const double bottom = legend.empty() ? top + height : y + kLine;
-  const std::string title = plot.title.empty()
-                                ? ""
-                                : fmt::format("<text x=\"{:.0f}\" y=\"23\" font-weight=\"600\" font-size=\"16\">{}</text>\n",
-                                              kMargin, escaped(plot.title));
+  const DrawnLegend legend = drawn_legend(legend_entries(plot), width, top + height);
+  const double bottom = top + height + legend.height + (legend.height > 0.0 ? kMargin / 2.0 : 0.0);
+  const std::string title =
+      plot.title.empty() ? ""
+                         : fmt::format("<text x=\"{:.0f}\" y=\"23\" font-weight=\"600\" font-size=\"{:.3g}\">{}</text>\n",
+                                       kMargin, title_font(plot.title, width - 2.0 * kMargin), escaped_line(plot.title));
   return fmt::format(
       "{}<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"system-ui, Arial, "
       "sans-serif\" "
       "font-size=\"14\" fill=\"#1d2329\">\n<rect width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#ffffff\"/>\n{}{}\n{}</svg>\n",
       kHead, width, bottom, width, bottom, title,
-      with_attribute(svg, fmt::format("y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\"", top, width, height)), legend);
+      with_attribute(svg, fmt::format("y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\"", top, width, height)), legend.svg);
 }
 
 void FigureFiles::add(const std::string& title, std::string svg) {

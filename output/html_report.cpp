@@ -7,6 +7,7 @@
 
 #include "output/figure_file.hpp"
 #include "output/markup.hpp"
+#include "output/plot_legend.hpp"
 
 namespace driftwright::output::html {
 namespace {
@@ -70,7 +71,7 @@ figure svg { display: block; width: 100%; height: auto; }
 .legend i.dashed { border-top-style: dashed; }
 .legend i.points { width: 8px; height: 8px; border: 0; border-radius: 50%; background: var(--c); margin: 0 8px; }
 .legend i.band { height: 14px; border: 1px solid #c3ccd3; background: var(--c); }
-.legend i.limit { border-top: 2px dashed #777777; }
+.legend i.limit { border-top: 2px dashed var(--c); }
 .bars td { border: 0; padding: 2px 10px; } .bars td.long { width: 45%; }
 .bars { width: 100%; } .bars i { display: block; height: 14px; margin-top: 5px; background: var(--neutral); border-radius: 2px; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: 12px 16px; overflow-x: auto;
@@ -187,20 +188,28 @@ std::string html(const Picture& picture) {
                      picture.svg);
 }
 
+/// The class of a swatch in the style sheet.
+const char* class_of(LegendEntry::Swatch swatch) {
+  switch (swatch) {
+    case LegendEntry::Swatch::kLine:
+      return "line";
+    case LegendEntry::Swatch::kDashed:
+      return "dashed";
+    case LegendEntry::Swatch::kPoints:
+      return "points";
+    case LegendEntry::Swatch::kBand:
+      return "band";
+    case LegendEntry::Swatch::kLimit:
+      return "limit";
+  }
+  throw std::logic_error("a legend entry of unknown kind");
+}
+
 std::string legend(const Plot& plot) {
   std::string items;
-  const auto add = [&](const std::string& kind, const std::string& color, const std::string& label) {
-    if (label.empty()) return;
-    items += fmt::format("<li><i class=\"{}\" style=\"--c:{}\"></i>{}</li>", kind, color, escaped(label));
-  };
-  for (std::size_t s = 0; s < plot.series.size(); ++s) {
-    const Series::Style style = drawn_style(plot, s);
-    const char* kind = style == Series::Style::kPoints ? "points" : style == Series::Style::kDashed ? "dashed" : "line";
-    add(kind, series_color(plot, s), plot.series[s].label);
-  }
-  for (std::size_t b = 0; b < plot.bands.size(); ++b) {
-    add(plot.bands[b].low == plot.bands[b].high ? "limit" : "band", band_color(b), plot.bands[b].label);
-  }
+  for (const LegendEntry& entry : legend_entries(plot))
+    items += fmt::format("<li><i class=\"{}\" style=\"--c:{}\"></i>{}</li>", class_of(entry.swatch), entry.color,
+                         escaped(entry.label));
   return items.empty() ? "" : fmt::format("<ul class=\"legend\">{}</ul>", items);
 }
 

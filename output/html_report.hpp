@@ -71,8 +71,7 @@ struct Report {
 
 /// The page and its figures. All text is escaped, and nothing is loaded from elsewhere. The same report gives the same
 /// bytes.
-/// @throws std::runtime_error  when plots cannot be drawn, see draw_svgs()
-/// @throws std::logic_error    when a table's row has another length than its headers, or a plot is ill-formed
+/// @throws std::logic_error  when a table's row has another length than its headers, or a plot is ill-formed
 [[nodiscard]] Rendered render_html(const Report& report);
 
 }  // namespace driftwright::output::html

@@ -25,4 +25,12 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+std::string escaped_line(const std::string& text) {
+  std::string out = escaped(text);
+  for (char& c : out) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  }
+  return out;
+}
+
 }  // namespace driftwright::output

@@ -1,5 +1,5 @@
 #pragma once
-// Line plots, drawn by gnuplot as SVG elements that fit together in one page.
+// Line plots as SVG elements that fit together in one page.
 
 #include <span>
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace driftwright::output {
 
-/// One curve. Values are drawn as they are: no sample is left out, and NaN leaves a gap.
+/// One curve. NaN, infinite values and those beyond 1e300 leave a gap. Samples of a long record that share a column of half
+/// a pixel are merged where that leaves the picture as it is (plot_curves.hpp); no peak is lost.
 struct Series {
   enum class Style {
     kLine,
@@ -58,11 +59,10 @@ struct Bars {
   std::vector<Bar> bars = {};
 };
 
-/// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). Their ids are
-/// unique across plots. gnuplot runs once for all of them; the same plots give the same bytes.
-/// @throws InputError          when gnuplot is missing, is killed, or does not finish a plot
-/// @throws std::runtime_error  when gnuplot rejects our commands, with its message
-/// @throws std::logic_error    when x and y of a series differ in length, or a band's limits are not finite
+/// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). They have no ids, so
+/// any number of them fits in a page. The same plots give the same bytes.
+/// @throws std::logic_error  when x and y of a series differ in length, its width is not positive, or a band's limits or the
+///                           place of a mark are not finite (beyond 1e300 counts as infinite)
 [[nodiscard]] std::vector<std::string> draw_svgs(std::span<const Plot> plots);
 
 /// The style in which a series is drawn: its own, but dashed for a line with the colour of an earlier one.

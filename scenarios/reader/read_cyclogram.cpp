@@ -172,6 +172,15 @@ void repeat_columns(Cyclogram& cyclogram, int times) {
 
 namespace {
 
+/// The controls whose words and calls may have names.
+std::string titles_with_names() {
+  std::vector<std::string> titles;
+  for (const NcControl& control : nc_controls()) {
+    if (control.named_words) titles.push_back(control.title);
+  }
+  return enumerated(titles, " and ");
+}
+
 schema::Map limits_schema() {
   using namespace schema;
   return {.name = "limits of an NC program",
@@ -189,10 +198,11 @@ schema::Map limits_schema() {
 
 std::vector<schema::Key> nc_keys() {
   using namespace schema;
+  std::vector<std::string> languages;
+  for (const NcControl& control : nc_controls()) languages.push_back(fmt::format("{} ({})", control.title, control.about));
   return {
-      schema::optional("dialect", choice(kDialects), kDialects.front().c_str(),
-                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO after G291), Heidenhain "
-                       "(DIN/ISO or plain language)"),
+      schema::optional("dialect", choice(of_each_control(&NcControl::key)), nc_controls().front().key.c_str(),
+                       "of the program: " + enumerated(languages, ", ")),
       schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
                        "speed of rapids along their line; compulsory for programs with rapids"),
       schema::optional("tool_change", quantity("s", 0.0, 3600.0), "time of M6; compulsory for programs with M6"),
@@ -201,8 +211,9 @@ std::vector<schema::Key> nc_keys() {
       schema::optional("machine_zero", schema::vector3("m"),
                        "in the coordinates of the program; compulsory with G28, G30, G53"),
       schema::optional("ignore", list(text()),
-                       "G and M words to pass over, with P, Q, R, L, E of their block; of Siemens and Heidenhain names of "
-                       "words and calls as well"),
+                       fmt::format("G and M words to pass over, with P, Q, R, L, E of their block; of {} names of words and "
+                                   "calls as well",
+                                   titles_with_names())),
       schema::optional(
           "parameters", text(),
           "LinuxCNC's parameter file, for what G54 to G59.3 hold where a program uses several (its #5221 and on, in mm)"),
@@ -307,12 +318,6 @@ std::map<int, double> read_parameter_file(const std::string& path) {
 
 }  // namespace
 
-NcControl control_of(const std::string& dialect) {
-  return dialect == "siemens"      ? NcControl::kSiemens
-         : dialect == "heidenhain" ? NcControl::kHeidenhain
-                                   : NcControl::kLinuxCnc;
-}
-
 std::string rows_yaml(const Cyclogram& cyclogram) {
   std::vector<double> changes_s;
   for (const Cyclogram::Column& column : cyclogram.columns)
@@ -347,13 +352,9 @@ std::string rows_yaml(const Cyclogram& cyclogram) {
   return fmt::format("{{columns: [{}], rows: [{}]}}", fmt::join(names, ", "), text);
 }
 
-const std::string& dialect_of(NcControl control) {
-  return kDialects[static_cast<std::size_t>(control)];
-}
-
 NcSettings read_nc_settings(const ConfigMap& in) {
   NcSettings settings;
-  settings.control = control_of(in.choice("dialect"));
+  settings.control = in.choice("dialect");
   if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid");
   if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change");
   settings.dwell_P_s = in.choice("dwell_unit") == "s" ? 1.0 : 1e-3;
@@ -375,17 +376,19 @@ NcSettings read_nc_settings(const ConfigMap& in) {
     settings.limits = limits;
   }
   if (in.has("ignore")) {
+    const bool has_names = nc_control(settings.control).named_words;
     for (const std::string& word : in.texts("ignore")) {
-      const bool name = settings.control != NcControl::kLinuxCnc && word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' &&
+      const bool name = has_names && word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' &&
                         word.find_first_of("0123456789") != 1 &&
                         word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string::npos;
       const bool fine =
           name || (word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
                    word.find_first_not_of("0123456789.", 1) == std::string::npos);
       if (!fine)
-        in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero), nor, of Siemens and "
-                                      "Heidenhain, a name such as SHOPTOOL",
-                                      word));
+        in.fail("ignore",
+                fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero), nor, of {}, a name such "
+                            "as SHOPTOOL",
+                            word, titles_with_names()));
       settings.ignored.insert(word);
     }
   }

@@ -20,11 +20,6 @@ namespace driftwright::scenarios {
 /// all columns are constant. Numbers have 9 digits.
 [[nodiscard]] std::string rows_yaml(const Cyclogram& cyclogram);
 
-/// Names in scenarios of the NC languages.
-inline const std::vector<std::string> kDialects = {"linuxcnc", "siemens", "heidenhain"};
-[[nodiscard]] NcControl control_of(const std::string& dialect);
-[[nodiscard]] const std::string& dialect_of(NcControl control);
-
 /// Reads the keys dialect, rapid, tool_change, dwell_unit, machine_zero and ignore of an NC program. @throws InputError
 [[nodiscard]] NcSettings read_nc_settings(const ConfigMap& in);
 

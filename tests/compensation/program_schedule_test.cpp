@@ -38,7 +38,7 @@ Corrected correct(const std::string& text, const NcProgram& program, const std::
                   const std::vector<ProgramAxis>& axes, const ProgramScheduleOptions& options) {
   Corrected c{plan_program(program.steps, time_s, axes, options), {}};
   NcOffsetOptions offsets{
-      .dialect = NcDialect::kLinuxCnc, .absolute = true, .work_offset = 540, .base_m = {0.25, 0, 0}, .axes = {}};
+      .language = program.language, .absolute = true, .work_offset = 540, .base_m = {0.25, 0, 0}, .axes = {}};
   for (const ProgramAxis& axis : axes) offsets.axes[axis.axis] = true;
   c.text =
       corrected_nc_program(text, program.steps, initial_shift_m(c.plan, axes), offset_changes(c.plan, axes), offsets).text;

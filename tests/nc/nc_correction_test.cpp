@@ -127,16 +127,11 @@ TEST(NcPlaces, SayWhyABlockCannotBeDivided) {
   EXPECT_EQ(why_not_divisible(steps[0]), "its starting point is not stated");
 }
 
-const NcOffsetOptions kXZ{.dialect = NcDialect::kLinuxCnc,
-                          .absolute = true,
-                          .work_offset = 540,
-                          .base_m = {0.1, 0, -0.02},
-                          .axes = {true, false, true}};
-const NcOffsetOptions kAdded{.dialect = NcDialect::kLinuxCnc,
-                             .absolute = false,
-                             .work_offset = 540,
-                             .base_m = {0, 0, 0},
-                             .axes = {true, false, true}};
+const NcLanguage* const kLinuxCnc = nc_control("linuxcnc").languages.front();
+const NcOffsetOptions kXZ{
+    .language = kLinuxCnc, .absolute = true, .work_offset = 540, .base_m = {0.1, 0, -0.02}, .axes = {true, false, true}};
+const NcOffsetOptions kAdded{
+    .language = kLinuxCnc, .absolute = false, .work_offset = 540, .base_m = {0, 0, 0}, .axes = {true, false, true}};
 
 /// The program without our remark and without the lines that look for offsets in force before it begins.
 std::string lines_of(const CorrectedNcProgram& program) {
@@ -175,12 +170,12 @@ TEST(CorrectedProgram, KeepsInchesAndIncrementalMode) {
   const std::string text = "G20 G59.1\nG0 X1 Y1 Z1\nG91\nX2\nG1 Y1 F10\nM2\n";
   const std::vector<NcStep> steps = steps_of(text);
   NcOffsetOptions options{
-      .dialect = NcDialect::kLinuxCnc, .absolute = true, .work_offset = 591, .base_m = {}, .axes = {true, false, false}};
+      .language = kLinuxCnc, .absolute = true, .work_offset = 591, .base_m = {}, .axes = {true, false, false}};
   const std::vector<NcOffsetChange> changes = {{4, 0.0, {{12.7e-6, std::nullopt, std::nullopt}}}};
   EXPECT_EQ(
       lines_of(corrected_nc_program(text, steps, {0, 0, 0}, changes, options)),
       "G20 G59.1\nG10 L2 P7 X0\nG0 X1 Y1 Z1\nG91\nX2\nG10 L2 P7 X0.0005\nG90 G0 X3\nG91\nG1 Y1 F10\nG10 L2 P7 X0\nM2\n");
-  options.dialect = NcDialect::kSiemens;
+  options.language = nc_control("siemens").languages.back();
   EXPECT_THAT(
       [&] {
         (void)corrected_nc_program(text, steps, {0, 0, 0}, changes, options);
@@ -200,12 +195,9 @@ TEST(CorrectedProgram, CommandsAllAxesOfAChangeTogether) {
 // Units may come after the tool change: the first offset waits for the first motion, and so for them.
 TEST(CorrectedProgram, SetsTheOffsetBeforeTheFirstMotion) {
   const std::string text = "T1 M6\nG20\nG0 X1\nM2\n";
-  EXPECT_EQ(lines_of(corrected_nc_program(text, steps_of(text), {25.4e-6, 0, 0}, {},
-                                          {.dialect = NcDialect::kLinuxCnc,
-                                           .absolute = true,
-                                           .work_offset = 540,
-                                           .base_m = {},
-                                           .axes = {true, false, false}})),
+  EXPECT_EQ(lines_of(corrected_nc_program(
+                text, steps_of(text), {25.4e-6, 0, 0}, {},
+                {.language = kLinuxCnc, .absolute = true, .work_offset = 540, .base_m = {}, .axes = {true, false, false}})),
             "T1 M6\nG20\nG10 L2 P1 X0.001\nG0 X1\nG10 L2 P1 X0\nM2\n");
 }
 

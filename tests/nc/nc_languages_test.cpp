@@ -23,7 +23,7 @@ using ::testing::ThrowsMessage;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // relative: sums of a few dozen terms of one sign in double precision
 
-NcProgram read(const std::string& text, NcControl control) {
+NcProgram read(const std::string& text, const std::string& control) {
   const NcSettings settings{.rapid_m_s = 0.25,  // 15 m/min
                             .tool_change_s = 8.0,
                             .dwell_P_s = 1.0,
@@ -49,7 +49,7 @@ double revolutions(const NcProgram& program) {
 
 struct Timed {
   const char* name;
-  NcControl control;
+  const char* control;
   std::string text;
   double seconds;
   std::array<double, 3> travel;  ///< mm
@@ -74,7 +74,7 @@ std::string din(const std::string& blocks) {
   return "%T G71 *\n" + blocks + "N99999 %T G71 *\n";
 }
 
-constexpr NcControl kS = NcControl::kSiemens, kH = NcControl::kHeidenhain;
+constexpr const char *kS = "siemens", *kH = "heidenhain";
 
 INSTANTIATE_TEST_SUITE_P(
     Siemens, NcLanguages,
@@ -290,8 +290,8 @@ TEST(NcLanguages, MakeTheSameMovesOfOnePart) {
   const NcProgram linuxcnc = read(
       "G21 G90 G17 G54\nT1 M6\nS2000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG1 X80 F400\nG3 X90 Y10 I0 J10\nG1 Y40\nG2 X80 Y50 I0 "
       "J10\nG1 X0\nG4 P2\nG0 Z5\nM5\nM30\n",
-      NcControl::kLinuxCnc);
-  const std::vector<std::pair<NcControl, std::string>> others = {
+      "linuxcnc");
+  const std::vector<std::pair<const char*, std::string>> others = {
       {kS,
        "G71 G90 G17 G54\nT1 M6\nS2000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG1 X80 F400\nG3 X90 Y10 I0 J10\nG1 Y40\nG2 X80 Y50 "
        "CR=10\nG1 X0\nG4 F2\nG0 Z5\nM5\nM30\n"},
@@ -321,23 +321,24 @@ TEST(NcLanguages, MakeTheSameMovesOfOnePart) {
 // Numbers that are rounded to 0.01 mm or 0.001 in: radii at start and end differ by 0.028 mm and 0.0028 in, which is just what rounding may come to.
 TEST(NcLanguages, AllowTheRoundingOfArcsAlike) {
   const auto inch = [](const std::string& blocks) { return "BEGIN PGM T INCH\n" + blocks + "END PGM T INCH\n"; };
-  const std::vector<std::pair<NcControl, std::string>> programs = {{kS, "G71 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
-                                                                   {kS, "G71 G90\nG2 X4.0# I=AC(2) J=AC(0) F600\nM30\n"},
-                                                                   {kS, "G700 G90\nG2 X0.40# I0.2 J0 F60\nM30\n"},
-                                                                   {kS, "G291\nG21 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
-                                                                   {kH, din("N1 G90 I+2 J+0 *\nN2 G02 X+4.0# Y+0 F600 *\n")},
-                                                                   {kH, klartext("CC X+2 Y+0\nC X+4.0# Y+0 DR- F600\n")},
-                                                                   {kH, klartext("CC X+2 Y+0\nCP PR+2.0# PA+0 DR- F600\n")},
-                                                                   {kH, inch("CC X+0,2 Y+0\nC X+0,40# Y+0 DR- F600\n")}};
+  const std::vector<std::pair<const char*, std::string>> programs = {
+      {kS, "G71 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+      {kS, "G71 G90\nG2 X4.0# I=AC(2) J=AC(0) F600\nM30\n"},
+      {kS, "G700 G90\nG2 X0.40# I0.2 J0 F60\nM30\n"},
+      {kS, "G291\nG21 G90\nG2 X4.0# I2 J0 F600\nM30\n"},
+      {kH, din("N1 G90 I+2 J+0 *\nN2 G02 X+4.0# Y+0 F600 *\n")},
+      {kH, klartext("CC X+2 Y+0\nC X+4.0# Y+0 DR- F600\n")},
+      {kH, klartext("CC X+2 Y+0\nCP PR+2.0# PA+0 DR- F600\n")},
+      {kH, inch("CC X+0,2 Y+0\nC X+0,40# Y+0 DR- F600\n")}};
   for (const auto& [control, text] : programs) {
     const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
     EXPECT_GT(read(with("28"), control).duration_s(), 0.0) << text;
     EXPECT_THAT([&] { (void)read(with("29"), control); }, ThrowsMessage<InputError>(HasSubstr("is allowed"))) << text;
   }
   // Half of the chord is longer than the radius by 0.012 mm.
-  const std::vector<std::pair<NcControl, std::string>> radii = {{kS, "G71 G90\nG2 X4.02# CR=2 F600\nM30\n"},
-                                                                {kH, din("N1 G90 G02 X+4.02# Y+0 R+2 F600 *\n")},
-                                                                {kH, klartext("CR X+4.02# Y+0 R+2 DR- F600\n")}};
+  const std::vector<std::pair<const char*, std::string>> radii = {{kS, "G71 G90\nG2 X4.02# CR=2 F600\nM30\n"},
+                                                                  {kH, din("N1 G90 G02 X+4.02# Y+0 R+2 F600 *\n")},
+                                                                  {kH, klartext("CR X+4.02# Y+0 R+2 DR- F600\n")}};
   for (const auto& [control, text] : radii) {
     const auto with = [&](const std::string& digits) { return std::string(text).replace(text.find('#'), 1, digits); };
     EXPECT_NEAR(read(with("4"), control).duration_s(), kPi * 2.012 / 10, 1e-9) << text;
@@ -368,7 +369,7 @@ TEST(NcLanguages, ReadTheUsualFirstBlocks) {
 
 struct Mistaken {
   const char* name;
-  NcControl control;
+  const char* control;
   std::string text;
   std::vector<const char*> message;
 };
@@ -419,10 +420,10 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return each.param.name; });
 
 TEST(NcLanguages, KeepUnknownMWordsAndSaySoOnce) {
-  for (const auto& [control, text] :
-       std::vector<std::pair<NcControl, std::string>>{{kS, "G71\nM77\nM77\nG4 F1\nM30\n"},
-                                                      {kH, klartext("M77\nM77\nCYCL DEF 9.0 DWELL\nCYCL DEF 9.1 DWELL 1\n")},
-                                                      {NcControl::kLinuxCnc, "M77 P3\nM77\nG4 P1\nM2\n"}}) {
+  for (const auto& [control, text] : std::vector<std::pair<const char*, std::string>>{
+           {kS, "G71\nM77\nM77\nG4 F1\nM30\n"},
+           {kH, klartext("M77\nM77\nCYCL DEF 9.0 DWELL\nCYCL DEF 9.1 DWELL 1\n")},
+           {"linuxcnc", "M77 P3\nM77\nG4 P1\nM2\n"}}) {
     const NcProgram program = read(text, control);
     EXPECT_DOUBLE_EQ(program.duration_s(), 1.0);
     EXPECT_THAT(program.notes, ElementsAre(AllOf(HasSubstr("M77"), HasSubstr("timed as zero")))) << text;
@@ -440,10 +441,10 @@ std::size_t on_line(const NcProgram& program, int line) {
   return 0;
 }
 
-std::string corrected(const std::string& text, NcControl control, const std::vector<NcOffsetChange>& changes,
+std::string corrected(const std::string& text, const std::string& control, const std::vector<NcOffsetChange>& changes,
                       const std::array<double, 3>& initial_m, bool absolute = false) {
   const NcProgram program = read(text, control);
-  const NcOffsetOptions options{.dialect = program.dialect,
+  const NcOffsetOptions options{.language = program.language,
                                 .absolute = absolute,
                                 .work_offset = 540,
                                 .base_m = {0.1, 0, -0.02},

@@ -226,7 +226,7 @@ void expect_shifted_by_the_corrections(const std::string& name, const std::strin
   }
   ASSERT_EQ(offsets.size(), changes.size());
   const CorrectedNcProgram corrected = corrected_nc_program(text, program.steps, {0, 0, 1e-6 * initial_um}, offsets,
-                                                            {.dialect = NcDialect::kLinuxCnc, .axes = {false, false, true}});
+                                                            {.language = program.language, .axes = {false, false, true}});
   if (!has_rs274()) GTEST_SKIP() << kNoRs274;
   const Rs274Run without = run_rs274(path, kOperator),
                  with = run_rs274(write_file(name + "_corrected.ngc", corrected.text), kOperator);
@@ -309,7 +309,7 @@ TEST(CorrectionsOnLinuxCnc, RefuseToRunAboveAnotherShift) {
   const std::string text = "G21 G90 G54\nG0 X0 Y0 Z5\nG1 Z-1 F100\nM2\n";
   const NcProgram program = read(write_file("guarded.ngc", text));
   const CorrectedNcProgram corrected = corrected_nc_program(text, program.steps, {0, 0, 1e-5}, {},
-                                                            {.dialect = NcDialect::kLinuxCnc, .axes = {true, false, true}});
+                                                            {.language = program.language, .axes = {true, false, true}});
   const std::string path = write_file("guarded_corrected.ngc", corrected.text);
   EXPECT_TRUE(run_rs274(path, kOperator).accepted);
   for (const auto& [parameters, word] : std::vector<std::pair<std::map<int, double>, const char*>>{
@@ -327,7 +327,7 @@ TEST(CorrectionsOnLinuxCnc, RefuseAG92OfAnAxisThatHasNotTakenThem) {
   EXPECT_THAT(
       [&] {
         (void)corrected_nc_program(text, program.steps, {0, 0, 1e-5}, {},
-                                   {.dialect = NcDialect::kLinuxCnc, .axes = {false, false, true}});
+                                   {.language = program.language, .axes = {false, false, true}});
       },
       ThrowsMessage<InputError>(AllOf(HasSubstr(":3:"), HasSubstr("G92 of Z"))));
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Checks the dependencies between rooms: a file includes only headers of its own room and of rooms that its CMakeLists.txt links, no room depends on itself,
-and the library does not depend on the command line.
+and the library does not depend on the command line. A folder without a
+CMakeLists.txt belongs to the room around it, and no file outside of it includes its headers: the room does not know what is special there (the controls of nc/).
 
     arrows_test.py FOLDER_OF_THE_PROJECT
 """
@@ -29,6 +30,13 @@ def rooms_of(top):
     return target, links
 
 
+def room_around(folder, target):
+    """The room that a folder belongs to, or ""."""
+    while folder and folder not in target:
+        folder = folder.rpartition("/")[0]
+    return folder
+
+
 def below(name, links, seen):
     """All targets that a target depends on. It exits if a target depends on itself."""
     for n in links.get(name, ()):
@@ -45,10 +53,16 @@ def main():
     wrong = ["library/ links app/: what a verb does is a function below both"] if "app" in below("library", links, ["library"]) else []
     for folder, name in target.items():
         allowed = below(name, links, [name]) | {name}
-        for file in [*(top / folder).glob("*.cpp"), *(top / folder).glob("*.hpp"), *(top / folder).glob("*.h")]:
-            for other in INCLUDE.findall(file.read_text()):
-                if other in target and target[other] not in allowed:
-                    wrong.append(f"{file.relative_to(top)} includes a header of {other}, which driftwright_{name} does not link")
+        for file in (f for end in ("cpp", "hpp", "h") for f in (top / folder).rglob(f"*.{end}")):
+            if room_around(file.parent.relative_to(top).as_posix(), target) != folder:
+                continue
+            for included in INCLUDE.findall(file.read_text()):
+                its = top / included
+                if its.is_dir() and not (its / "CMakeLists.txt").exists() and its != file.parent:
+                    wrong.append(f"{file.relative_to(top)} includes a header of {included}, which is for that folder alone")
+                other = room_around(included, target)
+                if other and target[other] not in allowed:
+                    wrong.append(f"{file.relative_to(top)} includes a header of {included}, which driftwright_{name} does not link")
     print("\n".join(wrong) or f"{len(target)} rooms, every arrow one way")
     sys.exit(bool(wrong))
 

@@ -1,4 +1,4 @@
-#include "nc/siemens_lines.hpp"
+#include "nc/siemens/lines.hpp"
 
 #include <fmt/format.h>
 
@@ -21,14 +21,8 @@ char upper(char c) {
   return static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
 }
 
-[[noreturn]] void fail(const SiemensLine& line, std::size_t column, const std::string& message) {
-  Where where = line.where;
-  where.column = static_cast<int>(column) + 1;
-  throw InputError(where, message);
-}
-
 /// Upper case except for strings, tabs as blanks, without the comment.
-std::string plain(const std::string& text) {
+std::string without_comment(const std::string& text) {
   std::string kept;
   bool quoted = false;
   for (const char c : text) {
@@ -86,19 +80,19 @@ void match_loops(std::vector<SiemensLine>& lines) {
     if ((word == "IF" && !jumps) || word == "WHILE" || word == "FOR" || word == "LOOP" || (word == "REPEAT" && bare)) {
       open.emplace_back(word, n);
     } else if (word == "ELSE") {
-      if (open.empty() || open.back().first != "IF") fail(line, line.begin, "ELSE has no IF before it");
+      if (open.empty() || open.back().first != "IF") fail_at(line, line.begin, "ELSE has no IF before it");
       lines[open.back().second].partner = n;
       open.back() = {"IF", n};
     } else if (const auto closer = kClosers.find(word); closer != kClosers.end()) {
       if (open.empty() || open.back().first != closer->second)
-        fail(line, line.begin, fmt::format("{} without {}", word, closer->second));
+        fail_at(line, line.begin, fmt::format("{} without {}", word, closer->second));
       lines[open.back().second].partner = n;
       line.partner = open.back().second;
       open.pop_back();
     }
   }
   if (!open.empty())
-    fail(lines[open.back().second], lines[open.back().second].begin, fmt::format("{} is not closed", open.back().first));
+    fail_at(lines[open.back().second], lines[open.back().second].begin, fmt::format("{} is not closed", open.back().first));
 }
 
 /// Index after the brackets that open at text[i].
@@ -112,7 +106,7 @@ std::size_t behind_bracket(const SiemensLine& line, std::size_t i) {
     if (line.text[i] == '(') ++depth;
     if (line.text[i] == ')' && --depth == 0) return i + 1;
   }
-  fail(line, begin, "'(' without ')'");
+  fail_at(line, begin, "'(' without ')'");
 }
 
 /// Index after an assigned value: blanks end it, except within brackets, around operators and within strings.
@@ -125,7 +119,7 @@ std::size_t behind_value(const SiemensLine& line, std::size_t i) {
       ++i;
     } else if (text[i] == '"') {
       const std::size_t end = text.find('"', i + 1);
-      if (end == std::string::npos) fail(line, i, "the text has no closing '\"'");
+      if (end == std::string::npos) fail_at(line, i, "the text has no closing '\"'");
       i = end + 1;
       wants = false;
     } else if (text[i] == '(') {
@@ -156,6 +150,12 @@ std::size_t behind_value(const SiemensLine& line, std::size_t i) {
 
 }  // namespace
 
+void fail_at(const SiemensLine& line, std::size_t column, const std::string& message) {
+  Where where = line.where;
+  where.column = static_cast<int>(column) + 1;
+  throw InputError(where, message);
+}
+
 double SiemensWord::number() const {
   return std::strtod(value.c_str(), nullptr);
 }
@@ -179,7 +179,7 @@ std::vector<SiemensLine> siemens_lines(const std::string& path, const std::vecto
     ++number;
     SiemensLine line;
     line.where = Where{path, number, 1, "", line_text};
-    line.text = plain(line_text);
+    line.text = without_comment(line_text);
     const auto first = line.text.find_first_not_of(' ');
     if (first == std::string::npos || line.text[first] == '%') continue;  // %_N_NAME_MPF
     read_front(line);
@@ -199,9 +199,9 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
     while (i < text.size() && text[i] == ' ') ++i;
     if (i >= text.size()) return words;
     const std::size_t begin = i;
-    if (text[i] == '(') fail(line, i, "'(': comments follow ';' in this language; programs in ISO code begin with G291");
+    if (text[i] == '(') fail_at(line, i, "'(': comments follow ';' in this language; programs in ISO code begin with G291");
     if (!begins_name(text[i]))
-      fail(line, i, fmt::format("'{}' is not allowed here; words such as G1, X10, CR=5 are expected", text[i]));
+      fail_at(line, i, fmt::format("'{}' is not allowed here; words such as G1, X10, CR=5 are expected", text[i]));
     SiemensWord word;
     std::size_t k = i + 1;
     while (k < text.size() && is_digit(text[k])) ++k;
@@ -240,7 +240,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
         word.column = i;
         i = behind_value(line, i);
         word.value = text.substr(word.column, i - word.column);
-        if (word.value.empty()) fail(line, word.column, fmt::format("{}= without a value", word.name));
+        if (word.value.empty()) fail_at(line, word.column, fmt::format("{}= without a value", word.name));
       } else if (i < text.size() && text[i] == '(') {
         word.kind = SiemensWord::kCall;
         word.column = i + 1;
@@ -256,7 +256,7 @@ std::vector<SiemensWord> siemens_words(const SiemensLine& line) {
         word.kind = SiemensWord::kKeyword;
         word.column = begin;
         if (word.name.size() == 1)
-          fail(line, begin, fmt::format("'{}' is no word; a number is expected after the letter", word.name));
+          fail_at(line, begin, fmt::format("'{}' is no word; a number is expected after the letter", word.name));
       }
     }
     word.text = text.substr(begin, i - begin);

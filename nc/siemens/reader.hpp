@@ -23,9 +23,6 @@
 
 namespace driftwright {
 
-/// True if the program switches to ISO mode (G291) before its first motion.
-[[nodiscard]] bool asks_for_iso_mode(const std::vector<std::string>& lines);
-
 /// Runs the program. @throws InputError  as read_nc_program()
 void run_siemens_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run);
 

@@ -21,9 +21,6 @@
 
 namespace driftwright {
 
-/// True if the lines are a program in this language.
-[[nodiscard]] bool is_klartext(const std::vector<std::string>& lines);
-
 /// Runs the program. @throws InputError  as read_nc_program()
 void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run);
 

@@ -35,6 +35,9 @@ struct SiemensWord {
   [[nodiscard]] double number() const;
 };
 
+/// @throws InputError  at that column of the line, from 0
+[[noreturn]] void fail_at(const SiemensLine& line, std::size_t column, const std::string& message);
+
 /// The lines that are not empty. @throws InputError  for a loop or branch that is not closed
 [[nodiscard]] std::vector<SiemensLine> siemens_lines(const std::string& path, const std::vector<std::string>& text);
 

@@ -1,19 +1,43 @@
-#include "nc/heidenhain_run.hpp"
+#include "nc/heidenhain/run.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
+#include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/expression.hpp"
+#include "nc/operators.hpp"
 #include "nc/tapping.hpp"
 
 namespace driftwright {
 namespace {
 
 constexpr std::size_t kDeepestSubprogram = 8;  // nested subprograms, the limit of the control
+
+/// ( ) optional after functions, Q1 QL1 QR1, + - * / ^, SQ SQRT SIN COS TAN ASIN ACOS ATAN LN LOG EXP NEG INT ABS FRAC PI.
+/// Source: Heidenhain, TNC 640 User's Manual, Q parameters, formulas.
+const NcSyntax& heidenhain_syntax() {
+  static const NcSyntax syntax = {
+      .operators =
+          {{"^", 3, op::power}, {"*", 2, op::product}, {"/", 2, op::quotient}, {"+", 1, op::plus}, {"-", 1, op::minus}},
+      .functions = {{"SQ", [](double x) { return x * x; }},
+                    {"NEG", [](double x) { return -x; }},
+                    {"INT", [](double x) { return std::trunc(x); }},
+                    {"FRAC", [](double x) { return x - std::trunc(x); }},
+                    {"SGN", [](double x) { return x > 0.0   ? 1.0
+                                                  : x < 0.0 ? -1.0
+                                                            : 0.0; }},
+                    {"ATAN", [](double x) { return std::atan(x) / kDegree; }}},
+      .constants = {{"PI", std::numbers::pi}},
+      .is_variable = [](const std::string& name) { return name[0] == 'Q' && name.size() > 1 && is_digit(name.back()); },
+      .has_decimal_comma = true,
+      .has_bare_arguments = true};
+  return syntax;
+}
 
 }  // namespace
 
@@ -26,7 +50,7 @@ double HeidenhainRun::value(const HeidenhainLine& line, const std::string& text,
     return {found->second};
   };
   try {
-    return evaluate(text, i, NcSyntax::kHeidenhain, lookup, whole).value;
+    return evaluate(text, i, heidenhain_syntax(), lookup, whole).value;
   } catch (const RangeError& e) {
     fail(line, e.what());
   }
@@ -158,6 +182,8 @@ void HeidenhainRun::change_tool() {
 }
 
 bool HeidenhainRun::m_word(int m) {
+  static const std::set<int> kWithoutEffect = {7, 8, 9, 90, 97, 98, 101, 102, 107, 108, 120, 126, 127, 129, 148, 149};
+  if (kWithoutEffect.contains(m)) return false;
   switch (m) {
     case 0:
     case 1:
@@ -179,23 +205,6 @@ bool HeidenhainRun::m_word(int m) {
     case 6:  // the tool call has already counted its time
       run_.motion.turning = false;
       run_.halt("M6");
-      return false;
-    case 7:
-    case 8:
-    case 9:
-    case 90:
-    case 97:
-    case 98:
-    case 101:
-    case 102:
-    case 107:
-    case 108:
-    case 120:
-    case 126:
-    case 127:
-    case 129:
-    case 148:
-    case 149:
       return false;
     case 89:
       run_.modal_cycle = true;

@@ -1,4 +1,4 @@
-#include "nc/heidenhain_reader.hpp"
+#include "nc/heidenhain/din_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,9 @@
 
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
-#include "nc/heidenhain_run.hpp"
+#include "nc/heidenhain/run.hpp"
 #include "nc/units.hpp"
+#include "nc/words.hpp"
 
 namespace driftwright {
 namespace {
@@ -90,17 +91,13 @@ class HeidenhainReader {
   }
 
  private:
-  [[noreturn]] void fail(const HeidenhainLine& line, const std::string& message) const {
-    throw InputError(line.where, message);
-  }
-
   /// %NAME G71: the first begins the program, the second ends it.
   bool percent(const HeidenhainLine& line) {
     if (begun_) return true;
     begun_ = true;
     const bool inch = line.text.find("G70") != std::string::npos;
     if (!inch && line.text.find("G71") == std::string::npos)
-      fail(line, "the first line has no unit; write %NAME G71 (mm) or G70 (inch)");
+      tnc_.fail(line, "the first line has no unit; write %NAME G71 (mm) or G70 (inch)");
     run_.unit_m = inch ? kInch_m : 1e-3;
     run_.feed_unit_m = inch ? 0.1 * kInch_m : 1e-3;  // F counts tenths of an inch per minute there
     run_.step().unit_word = true;
@@ -109,7 +106,7 @@ class HeidenhainReader {
 
   bool formula(const HeidenhainLine& line) {
     const std::size_t equals = line.text.find('=');
-    if (equals == std::string::npos) fail(line, "Q1 = 5 or a formula is expected");
+    if (equals == std::string::npos) tnc_.fail(line, "Q1 = 5 or a formula is expected");
     std::string name = line.text.substr(0, equals);
     std::erase(name, ' ');
     std::size_t i = equals + 1;
@@ -136,10 +133,10 @@ class HeidenhainReader {
       if (number == 3) label = fmt::format("{}", std::lround(p[number]));
     }
     if (n >= 9 && n <= 12) {
-      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) fail(line, "P01, P02 and P03 are required");
+      if (!p.contains(1) || !p.contains(2) || !p.contains(3)) tnc_.fail(line, "P01, P02 and P03 are required");
       if (tnc_.compares(line, n, p[1], p[2])) tnc_.go_to(line, label);
     } else if (!p.contains(1) || q.empty() || q[0] != 'Q' || !tnc_.function(line, n, q, p[1], p.contains(2) ? p[2] : 0.0)) {
-      fail(line, fmt::format("D{:02} is not known here, or what it reads is known only at the machine", n));
+      tnc_.fail(line, fmt::format("D{:02} is not known here, or what it reads is known only at the machine", n));
     }
     return false;
   }
@@ -156,7 +153,7 @@ class HeidenhainReader {
       const std::size_t begin = i;
       IsoWord word{.letter = t[i]};
       if (word.letter < 'A' || word.letter > 'Z')
-        fail(line, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", t[i]));
+        tnc_.fail(line, fmt::format("'{}' is not allowed here; words of a letter and a number are expected", t[i]));
       ++i;
       if (word.letter == 'T' && i < t.size() && t[i] == '"') {
         i = std::min(t.find('"', i + 1), t.size() - 1) + 1;
@@ -172,7 +169,7 @@ class HeidenhainReader {
         while (i < t.size() && t[i] == ' ') ++i;
         const bool bare = i >= t.size() || (std::isalpha(static_cast<unsigned char>(t[i])) != 0 && t[i] != 'Q');
         if (bare && std::string("XYZ").find(word.letter) == std::string::npos)
-          fail(line, fmt::format("'{}' is no word; a number is expected after the letter", word.letter));
+          tnc_.fail(line, fmt::format("'{}' is no word; a number is expected after the letter", word.letter));
         word.computed = !bare && t.find('Q', i) <= i + 1;
         if (!bare) word.value = tnc_.value(line, t, i);  // G28 X names an axis alone
       }
@@ -211,9 +208,9 @@ class HeidenhainReader {
       } else if (word.letter == 'L' && word.number > 0) {
         b.call = {fmt::format("{}", word.number), static_cast<int>(std::lround(word.value))};
       } else if (std::string("ABCUVW").find(word.letter) != std::string::npos) {
-        fail(line, fmt::format("{}: rotary and further linear axes are not followed here; X, Y, Z are", word.text));
+        tnc_.fail(line, fmt::format("{}: rotary and further linear axes are not followed here; X, Y, Z are", word.text));
       } else if (!b.words.emplace(word.letter, word).second) {
-        fail(line, fmt::format("{}: a second {} in one block is not allowed", word.text, word.letter));
+        tnc_.fail(line, fmt::format("{}: a second {} in one block is not allowed", word.text, word.letter));
       }
       if (word.letter == 'F') step.feed_word = word.text;
     }
@@ -221,9 +218,6 @@ class HeidenhainReader {
   }
 
   static bool has(const Block& b, char letter) { return b.words.contains(letter); }
-  static bool contains(const std::vector<int>& codes, int code) {
-    return std::find(codes.begin(), codes.end(), code) != codes.end();
-  }
   double length_m(const Block& b, char letter) const { return b.words.at(letter).value * run_.unit_m; }
 
   bool run_block(const HeidenhainLine& line, const Block& b) {
@@ -244,33 +238,19 @@ class HeidenhainReader {
         moves = false;
         continue;
       }
+      if (std::set<int>{0, 1, 2, 3, 5, 6, 10, 11, 12, 13, 15, 16}.contains(g)) {
+        run_.motion_word = 10 * g;
+        step.motion_word = true;
+        continue;
+      }
       switch (g) {
-        case 0:
-        case 1:
-        case 2:
-        case 3:
-        case 5:
-        case 6:
-        case 10:
-        case 11:
-        case 12:
-        case 13:
-        case 15:
-        case 16:
-          run_.motion_word = 10 * g;
-          step.motion_word = true;
-          break;
         case 4:
           dwells = true;
           break;
         case 17:
-          run_.normal = 2;
-          break;
         case 18:
-          run_.normal = 1;
-          break;
         case 19:
-          run_.normal = 0;
+          run_.normal = 19 - g;
           break;
         case 29:
           tnc_.pole_m = run_.motion.position_m;
@@ -308,7 +288,7 @@ class HeidenhainReader {
           break;
         case 72:
           if (!has(b, 'F') || b.words.at('F').value != 1.0)
-            fail(line, "scaling is not computed here; let the post-processor write lengths as they are");
+            tnc_.fail(line, "scaling is not computed here; let the post-processor write lengths as they are");
           moves = false;
           break;
         case 73:
@@ -322,39 +302,40 @@ class HeidenhainReader {
         case 62:
           moves = false;
           break;
-        case 79:
-          break;
         case 38:
           run_.halt("G38");
           break;
         case 70:
         case 71:
+        case 79:
         case 90:
         case 91:
           break;
         case 20:
         case 21:
-          fail(line, fmt::format("G{}: this control's inch and mm are G70 and G71, in the first line; a tool axis but Z is "
-                                 "not followed here",
-                                 g));
+          tnc_.fail(line,
+                    fmt::format("G{}: this control's inch and mm are G70 and G71, in the first line; a tool axis but Z is "
+                                "not followed here",
+                                g));
         default:
-          fail(line, fmt::format(
-                         "G{}: {}", g,
-                         (g >= 80 && g <= 89)
-                             ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
-                             : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
+          tnc_.fail(
+              line,
+              fmt::format("G{}: {}", g,
+                          (g >= 80 && g <= 89)
+                              ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
+                              : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
       }
     }
     if (contains(b.m, 136)) run_.set_feed_mode(NcFeedMode::PerRevolution);
     if (contains(b.m, 137)) run_.set_feed_mode(NcFeedMode::PerMinute);
     if (dwells) {
-      if (!has(b, 'F') || b.words.at('F').value < 0.0) fail(line, "G04 has no time; write F in seconds");
+      if (!has(b, 'F') || b.words.at('F').value < 0.0) tnc_.fail(line, "G04 has no time; write F in seconds");
       run_.motion.wait(b.words.at('F').value);
     } else if (has(b, 'F') && moves && !has(b, 'T')) {
       run_.set_feed(b.words.at('F').value);
     }
     if (has(b, 'S')) {
-      if (b.words.at('S').value < 0.0) fail(line, "the speed must be zero or above");
+      if (b.words.at('S').value < 0.0) tnc_.fail(line, "the speed must be zero or above");
       run_.motion.programmed_rpm = b.words.at('S').value;
     }
     if (has(b, 'T')) tnc_.change_tool();
@@ -367,9 +348,10 @@ class HeidenhainReader {
       HeidenhainCycle c = b.cycle;
       c.number = *cycle;
       if (!std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(*cycle))
-        fail(line, fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
-                               "write the others out",
-                               *cycle));
+        tnc_.fail(line,
+                  fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
+                              "write the others out",
+                              *cycle));
       tnc_.define(c);
     } else if (moves && !dwells) {
       move(line, b);
@@ -392,7 +374,7 @@ class HeidenhainReader {
       any = true;
       tnc_.shift_datum(axis, found->second.value * run_.unit_m, found->second.incremental);
     }
-    if (!any) fail(line, "the datum shift G54 has no X, Y or Z");
+    if (!any) tnc_.fail(line, "the datum shift G54 has no X, Y or Z");
   }
 
   std::array<double, 3> target(const Block& b) {
@@ -446,7 +428,7 @@ class HeidenhainReader {
     if (!has(b, 'X') && !has(b, 'Y') && !has(b, 'Z') &&
         !(polar && (has(b, 'H') || (has(b, 'R') && run_.step().motion_word))))
       return;
-    if (!run_.motion_word) fail(line, "axis words come before any motion word; write G00 or G01 first");
+    if (!run_.motion_word) tnc_.fail(line, "axis words come before any motion word; write G00 or G01 first");
     const int word = *run_.motion_word;
     if (contains(b.m, 91)) {
       std::array<double, 3> target_m = run_.motion.position_m;
@@ -478,14 +460,14 @@ class HeidenhainReader {
       last_clockwise_ = code == 12;
       tnc_.circle_to(target_m, tnc_.pole_m, code == 12, turns);
     } else if (code == 5 || code == 15) {
-      if (!last_clockwise_) fail(line, "the arc has no sense; write G02 or G03");
+      if (!last_clockwise_) tnc_.fail(line, "the arc has no sense; write G02 or G03");
       int turns = 1;
       const std::array<double, 3> target_m = code == 15 ? polar_target(b, turns) : target(b);
       const std::array<double, 3> centre_m =
           code == 5 && has(b, 'R') ? run_.centre_of(target_m, length_m(b, 'R'), *last_clockwise_) : tnc_.pole_m;
       tnc_.circle_to(target_m, centre_m, *last_clockwise_, turns);
     } else {
-      fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
+      tnc_.fail(line, fmt::format("G{}: of arcs only G02, G03, G05, G06, G12, G13 and G15 are computed here", code));
     }
     run_.motion_word = word;  // it stays in force
     if (code >= 10) run_.step().plain = false;
