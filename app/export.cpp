@@ -146,7 +146,6 @@ void export_model(const ExportOptions& options) {
     add_machine_reference(order, prediction.record, cyclogram);
   }
   order.model.duration_s = cyclogram.duration_s();
-  progress.listener().begin("compiling");
   const std::vector<output::FmuEntry> entries = output::fmu_entries(order, made_by);
   const fs::path partial = target.string() + fmt::format(".partial-{}", getpid());
   try {

@@ -4,6 +4,7 @@
 #include <iconv.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -15,8 +16,12 @@
 namespace driftwright {
 namespace {
 
-/// Converts text in another encoding to UTF-8. @throws InputError  for bytes that the encoding lacks
-std::string as_utf8(const std::string& path, std::string bytes, const char* encoding) {
+[[noreturn]] void refuse_byte(const std::string& path, std::size_t at, const char* encoding) {
+  throw InputError(fmt::format("{}: byte {} is no text in {}; save the file as UTF-8", path, at + 1, encoding));
+}
+
+/// Converts UTF-16 to UTF-8; glibc can do so without its loadable tables. @throws InputError  for half a pair
+std::string of_utf16(const std::string& path, std::string bytes, const char* encoding) {
   const iconv_t converter = iconv_open("UTF-8", encoding);
   if (converter == reinterpret_cast<iconv_t>(-1))
     throw InputError(
@@ -26,10 +31,32 @@ std::string as_utf8(const std::string& path, std::string bytes, const char* enco
   std::size_t n_in = bytes.size(), n_out = text.size();
   const std::size_t failed = iconv(converter, &in, &n_in, &out, &n_out);
   iconv_close(converter);
-  if (failed == static_cast<std::size_t>(-1))
-    throw InputError(
-        fmt::format("{}: byte {} is no text in {}; save the file as UTF-8", path, bytes.size() - n_in + 1, encoding));
+  if (failed == static_cast<std::size_t>(-1)) refuse_byte(path, bytes.size() - n_in, encoding);
   text.resize(text.size() - n_out);
+  return text;
+}
+
+/// Converts Windows-1252 to UTF-8: as Latin-1, but for 0x80 to 0x9F. @throws InputError  for the five bytes that it lacks
+/// Source: Unicode consortium, MAPPINGS/VENDORS/MICSFT/WINDOWS/CP1252.TXT
+std::string of_windows_1252(const std::string& path, const std::string& bytes) {
+  static constexpr std::array<std::uint16_t, 32> kFrom0x80 = {
+      0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+      0x2039, 0x0152, 0,      0x017D, 0,      0,      0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0,      0x017E, 0x0178};
+  std::string text;
+  text.reserve(bytes.size() + bytes.size() / 8);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const auto byte = static_cast<std::uint8_t>(bytes[i]);
+    const unsigned code = byte >= 0x80U && byte < 0xA0U ? kFrom0x80[byte - 0x80U] : byte;
+    if (code == 0 && byte != 0) refuse_byte(path, i, "WINDOWS-1252");
+    if (code < 0x80U) {
+      text += static_cast<char>(code);
+    } else {
+      if (code >= 0x800U) text += static_cast<char>(0xE0U | code >> 12U);
+      text += static_cast<char>(code >= 0x800U ? 0x80U | (code >> 6U & 0x3FU) : 0xC0U | code >> 6U);
+      text += static_cast<char>(0x80U | (code & 0x3FU));
+    }
+  }
   return text;
 }
 
@@ -78,11 +105,11 @@ std::string read_text_file(const std::string& path) {
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.erase(0, 3);
   } else if (text.starts_with("\xFF\xFE")) {
-    text = as_utf8(path, text.substr(2), "UTF-16LE");
+    text = of_utf16(path, text.substr(2), "UTF-16LE");
   } else if (text.starts_with("\xFE\xFF")) {
-    text = as_utf8(path, text.substr(2), "UTF-16BE");
+    text = of_utf16(path, text.substr(2), "UTF-16BE");
   } else if (!is_utf8(text)) {
-    text = as_utf8(path, std::move(text), "WINDOWS-1252");
+    text = of_windows_1252(path, text);
   }
   return text;
 }

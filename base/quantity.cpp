@@ -1,11 +1,14 @@
 #include "base/quantity.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 #include <udunits2.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -28,10 +31,24 @@ struct FreeConverter {
 using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
 using ConverterPtr = std::unique_ptr<cv_converter, FreeConverter>;
 
+/// The unit table that is unpacked with this program or library (cmake/bundle.py). Empty if there is none.
+std::filesystem::path bundled_unit_table() {
+  Dl_info info;
+  void* found = nullptr;  // the link_map of the file that this code is in; the program's own has no name
+  if (dladdr1(reinterpret_cast<const void*>(&bundled_unit_table), &info, &found, RTLD_DL_LINKMAP) == 0) return {};
+  const std::string loaded = static_cast<const link_map*>(found)->l_name;
+  std::error_code failed;
+  const std::filesystem::path file = std::filesystem::canonical(loaded.empty() ? "/proc/self/exe" : loaded, failed);
+  const std::filesystem::path table = file.parent_path().parent_path() / "share/driftwright/units/udunits2.xml";
+  return std::filesystem::exists(table, failed) ? table : std::filesystem::path();
+}
+
 ut_system* unit_system() {  // the only table of units, read from UDUNITS' own files at first use
   static const std::unique_ptr<ut_system, FreeSystem> system = [] {
     ut_set_error_message_handler(ut_ignore);
-    return std::unique_ptr<ut_system, FreeSystem>(ut_read_xml(nullptr));
+    const char* chosen = std::getenv("UDUNITS2_XML_PATH");
+    const std::filesystem::path bundled = chosen && *chosen ? std::filesystem::path() : bundled_unit_table();
+    return std::unique_ptr<ut_system, FreeSystem>(ut_read_xml(bundled.empty() ? nullptr : bundled.c_str()));
   }();
   if (!system) throw std::runtime_error("the unit table of UDUNITS-2 cannot be read (package libudunits2-data)");
   return system.get();

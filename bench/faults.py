@@ -7,7 +7,7 @@
 The machine is lumped; with --meshed `init` makes it from a drawing, a box of 100 mm, with the mesh size of `init` or with --cell.
 
 Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
-that is missing or takes no file, an empty PATH (no C compiler), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
+that is missing or takes no file, an empty PATH, a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
 random parts of the usual time, and a second run after each.
 
 A verb passes if three things hold. It ends in time with 0, 2 or 3 (130 after Ctrl-C) and a message. Its results are then complete or absent. Runs that end

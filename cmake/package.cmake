@@ -23,7 +23,6 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own first line
 set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME driftwright)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "gcc, libc6-dev")  # `export --fmu`
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "digital twin of a machine tool's thermal behaviour\n${about}")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libdriftwright${soversion})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)

@@ -25,8 +25,7 @@ struct FmuOrder {
   double step_s = 60.0;                               ///< of the default experiment
 };
 
-/// All files of the unit. Compiles the binary with `cc`, or the compiler in CC, as C99 with all warnings as errors.
-/// @throws InputError  without a compiler, or with its messages if it fails
+/// All files of the unit.
 [[nodiscard]] std::vector<FmuEntry> fmu_entries(const FmuOrder& order, const Provenance& made_by);
 
 /// Writes entries as a zip whose bytes do not depend on the time. @throws std::runtime_error  naming the file

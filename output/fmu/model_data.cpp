@@ -7,6 +7,7 @@ namespace driftwright::output {
 namespace {
 
 constexpr std::size_t kPerLine = 6;
+constexpr const char* kNumbersMark = "DwNumber";  // the last eight bytes, as in binary/model_numbers.c
 
 /// `static const double NAME[] = {...};`, with one zero for an empty list: C has no empty arrays.
 std::string array(const std::string& name, const std::vector<double>& values) {
@@ -65,14 +66,50 @@ std::vector<double> nominal_of(const FmuModel& model) {
   return nominal;
 }
 
-std::string observer_text(const FmuModel& model) {
+/// The lists of a model, in the order of thermal_data and observer_data (sources/model_data.h).
+struct ModelLists {
+  std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
+      offset, start, ones, most, known, factor_mean, factor_covariance;
+  std::vector<const DriveLaw*> powers, coefficients;
+};
+
+ModelLists lists_of(const FmuModel& model) {
+  ModelLists lists;
+  append(lists.conduction, model.conduction);
+  append(lists.constant, model.constant_load);
+  append(lists.ambient, model.ambient_load);
+  for (const FmuSource& s : model.sources) {
+    append(lists.loads, s.load);
+    lists.powers.push_back(&s.power_W);
+  }
+  for (const FmuExchange& e : model.exchanges) {
+    append(lists.exchanges, e.matrix);
+    append(lists.to_ambient, e.to_ambient);
+    append(lists.offsets, e.offset);
+    lists.coefficients.push_back(&e.coefficient);
+  }
+  for (const FmuOutput& o : model.outputs) {
+    append(lists.outputs, o.state);
+    lists.outputs_ambient.push_back(o.ambient);
+    lists.factor.push_back(o.factor);
+    lists.offset.push_back(o.offset);
+  }
+  append(lists.start, model.start);
+  append(lists.ones, model.ones);
+  for (const DriveRange& r : model.drive) lists.most.push_back(r.most);
+  for (const std::vector<double>& x : model.known_drives) lists.known.insert(lists.known.end(), x.begin(), x.end());
+  if (model.observer) {
+    append(lists.factor_mean, model.observer->factors.mean);
+    append(lists.factor_covariance, model.observer->factors.covariance);
+  }
+  return lists;
+}
+
+std::string observer_text(const FmuModel& model, const ModelLists& lists) {
   if (!model.observer) return "const observer_data observer = {0};\n";
   const FmuObserver& o = *model.observer;
-  std::vector<double> mean, covariance;
-  append(mean, o.factors.mean);
-  append(covariance, o.factors.covariance);
   const compensation::ObserverSettings& s = o.settings;
-  return array("factor_mean", mean) + array("factor_covariance", covariance) +
+  return array("factor_mean", lists.factor_mean) + array("factor_covariance", lists.factor_covariance) +
          fmt::format("static const int sensor_output[] = {{{}}};\n",
                      o.sensor_output.empty() ? "0" : fmt::format("{}", fmt::join(o.sensor_output, ", "))) +
          fmt::format(
@@ -83,47 +120,49 @@ std::string observer_text(const FmuModel& model) {
              s.longest_step_s, s.drift_um);
 }
 
+/// A block of numbers of eight bytes each, as binary/model_numbers.c reads it.
+struct NumberBlock {
+  std::string bytes;
+
+  void add(double value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); }
+  template <class... Count>
+  void add_counts(Count... counts) {
+    (add(static_cast<double>(counts)), ...);
+  }
+  void add(const std::vector<double>& list) {
+    for (double value : list) add(value);
+  }
+  void add(const std::string& text) {  // its length, then its characters and zeros up to a whole number
+    add_counts(text.size());
+    bytes += text + std::string(sizeof(double) - text.size() % sizeof(double), '\0');
+  }
+  void add(const std::vector<const DriveLaw*>& laws) {
+    for (const DriveLaw* law : laws) {
+      add(law->at_rest);
+      add_counts(law->terms.size());
+      for (const LawTerm& term : law->terms) {
+        add_counts(term.variable, term.log_x.size() - 1, kLawDegree);
+        add(term.log_x);
+        add(term.coefficients);
+      }
+    }
+  }
+};
+
 }  // namespace
 
-std::string model_data_c(const FmuModel& model, const std::string& identifier, const std::string& guid,
-                         const std::string& made_by) {
-  std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
-      offset, start, ones, most, known;
-  append(conduction, model.conduction);
-  append(constant, model.constant_load);
-  append(ambient, model.ambient_load);
-  std::vector<const DriveLaw*> powers, coefficients;
-  for (const FmuSource& s : model.sources) {
-    append(loads, s.load);
-    powers.push_back(&s.power_W);
-  }
-  for (const FmuExchange& e : model.exchanges) {
-    append(exchanges, e.matrix);
-    append(to_ambient, e.to_ambient);
-    append(offsets, e.offset);
-    coefficients.push_back(&e.coefficient);
-  }
-  for (const FmuOutput& o : model.outputs) {
-    append(outputs, o.state);
-    outputs_ambient.push_back(o.ambient);
-    factor.push_back(o.factor);
-    offset.push_back(o.offset);
-  }
-  append(start, model.start);
-  append(ones, model.ones);
-  for (const DriveRange& r : model.drive) most.push_back(r.most);
-  for (const std::vector<double>& x : model.known_drives) known.insert(known.end(), x.begin(), x.end());
-
+std::string model_data_c(const FmuModel& model, const std::string& guid, const std::string& made_by) {
+  const ModelLists lists = lists_of(model);
   std::string text = fmt::format("/* {} {} */\n#include \"model_data.h\"\n\n", comment(model.description), comment(made_by));
-  text += fmt::format("const char *const model_guid = \"{}\";\nconst char *const model_identifier = \"{}\";\n\n", guid,
-                      identifier);
-  text += array("conduction", conduction) + array("constant_load", constant) + array("ambient_load", ambient) +
-          array("loads", loads) + laws("powers", powers) + array("exchanges", exchanges) + array("to_ambient", to_ambient) +
-          array("offsets", offsets) + laws("coefficients", coefficients) + array("outputs", outputs) +
-          array("outputs_ambient", outputs_ambient) + array("output_factor", factor) + array("output_offset", offset) +
-          array("start", start) + array("ones", ones) + array("ambient_time_s", model.ambient.time_s) +
-          array("ambient_K", model.ambient.value) + array("most_drive", most) + array("nominal", nominal_of(model)) +
-          array("known_drive", known);
+  text += fmt::format("const char *const model_guid = \"{}\";\n\n", guid);
+  text += array("conduction", lists.conduction) + array("constant_load", lists.constant) +
+          array("ambient_load", lists.ambient) + array("loads", lists.loads) + laws("powers", lists.powers) +
+          array("exchanges", lists.exchanges) + array("to_ambient", lists.to_ambient) + array("offsets", lists.offsets) +
+          laws("coefficients", lists.coefficients) + array("outputs", lists.outputs) +
+          array("outputs_ambient", lists.outputs_ambient) + array("output_factor", lists.factor) +
+          array("output_offset", lists.offset) + array("start", lists.start) + array("ones", lists.ones) +
+          array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
+          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known);
   text += fmt::format(
       "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "
@@ -133,7 +172,46 @@ std::string model_data_c(const FmuModel& model, const std::string& identifier, c
       model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(), model.outputs.size(),
       model.start_ambient_K, model.start_follows_ambient ? 1 : 0, model.reference_K - 273.15, model.ambient.time_s.size(),
       model.known_drives.size());
-  return text + observer_text(model);
+  return text + observer_text(model, lists);
+}
+
+std::string model_numbers(const FmuModel& model, const std::string& guid) {
+  const ModelLists lists = lists_of(model);
+  NumberBlock block;
+  block.add(guid);
+  block.add_counts(model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(),
+                   model.outputs.size());
+  for (const auto* list : {&lists.conduction, &lists.constant, &lists.ambient, &lists.loads}) block.add(*list);
+  block.add(lists.powers);
+  for (const auto* list : {&lists.exchanges, &lists.to_ambient, &lists.offsets}) block.add(*list);
+  block.add(lists.coefficients);
+  for (const auto* list : {&lists.outputs, &lists.outputs_ambient, &lists.factor, &lists.offset, &lists.start, &lists.ones})
+    block.add(*list);
+  block.add(model.start_ambient_K);
+  block.add_counts(model.start_follows_ambient ? 1 : 0);
+  block.add(model.reference_K - 273.15);
+  block.add_counts(model.ambient.time_s.size());
+  block.add(model.ambient.time_s);
+  block.add(model.ambient.value);
+  block.add(lists.most);
+  block.add(nominal_of(model));
+  block.add_counts(model.known_drives.size());
+  block.add(lists.known);
+  block.add_counts(model.observer ? 1 : 0);
+  if (model.observer) {
+    const FmuObserver& o = *model.observer;
+    const compensation::ObserverSettings& s = o.settings;
+    block.add_counts(o.sensors.size());
+    for (int output : o.sensor_output) block.add_counts(output);
+    block.add_counts(o.drift_output);
+    for (double value :
+         {s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk, s.longest_step_s, s.drift_um})
+      block.add(value);
+    block.add(lists.factor_mean);
+    block.add(lists.factor_covariance);
+  }
+  block.add_counts(block.bytes.size() / sizeof(double));
+  return block.bytes + kNumbersMark;
 }
 
 }  // namespace driftwright::output

@@ -172,3 +172,12 @@ def judge(scenario, train, test):
 def command(*arguments):
     """Does what `driftwright ARGUMENTS` does, and returns its exit code: command("diagnose", "m.yaml", "--measured", "monday.csv")."""
     return core.command([str(a) for a in arguments])
+
+
+def main():
+    """The command `driftwright` of the wheel. Ctrl-C is the command's own, as in the program."""
+    import signal
+    import sys
+
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    sys.exit(command(*sys.argv[1:]))

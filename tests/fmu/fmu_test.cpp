@@ -78,6 +78,17 @@ struct Unit {
   }
 };
 
+/// The unit with what a compiler makes of its own sources, as on another system, in place of its binary.
+Unit of_sources(Unit unit) {
+  unit.library = unit.folder / "of_sources.so";
+  const std::string command = fmt::format(
+      "cd {}/sources && cc -std=c99 -O3 -ffp-contract=off -fPIC -shared -fvisibility=hidden -Wall -Wextra -Werror -pedantic "
+      "-o ../of_sources.so *.c -lm 2>&1",
+      unit.folder.string());
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  return unit;
+}
+
 /// What an importer must do.
 struct Asked {
   bool co_simulation = true;
@@ -253,6 +264,25 @@ TEST_P(Fmu, GoesOnFromAStateThatWasWrittenAndRead) {
   fp3.expect_as(predicted, import_unit(unit, Fp3::speed_of(predicted), fp3.outputs, {.rewind_at_row = 57}), kSame_um);
 }
 
+TEST_P(Fmu, ItsSourcesGiveTheNumbersOfItsBinary) {
+  const Fp3& fp3 = Fp3::get();
+  const Unit unit(fp3.order(GetParam()), name("sources"));
+  const Record inputs = Fp3::speed_of(fp3.predicted("chaotic"));
+  EXPECT_EQ(import_unit(unit, inputs, fp3.outputs, {}).of, import_unit(of_sources(unit), inputs, fp3.outputs, {}).of);
+}
+
+TEST_P(Fmu, MakesNoInstanceOfABinaryThatWasCutShort) {
+  const Unit unit(Fp3::get().order(GetParam()), name("cut"));
+  std::filesystem::resize_file(unit.library, std::filesystem::file_size(unit.library) - 8);
+  const std::string library = unit.library.string();
+  importer_run run = {};
+  run.library = library.c_str();
+  run.guid = unit.guid.c_str();
+  run.is_co_simulation = 1;
+  EXPECT_NE(GetParam() == FmiVersion::k2 ? import_fmi2(&run) : import_fmi3(&run), 0);
+  EXPECT_THAT(run.wrong, HasSubstr("cannot be read; the file is not complete"));
+}
+
 TEST_P(Fmu, RunsTwiceAtOnce) {
   const Fp3& fp3 = Fp3::get();
   const Unit unit(fp3.order(GetParam()), name("threads"));
@@ -338,7 +368,10 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
     EXPECT_EQ(told.of[3][n - 1], 1.0) << "t05 fell out";
     EXPECT_EQ(told.of[4][n - 1], 0.0);
   };
-  expect_it(import_unit(unit, inputs, outputs, {.tells_behind_step = true}));
+  const Told told = import_unit(unit, inputs, outputs, {.tells_behind_step = true});
+  expect_it(told);
+  const Told other = import_unit(of_sources(unit), inputs, outputs, {.tells_behind_step = true});
+  for (std::size_t o = 0; o < outputs.size(); ++o) EXPECT_EQ(largest_gap(told.of[o], other.of[o], n), 0.0) << outputs[o];
   expect_it(import_unit(unit, inputs, outputs, {.step_s = 20.0, .rewind_at_row = 130, .tells_behind_step = true}));
   const Told exchanged = import_unit(unit, inputs, outputs, {.co_simulation = false});
   EXPECT_LT(largest_gap(exchanged.of[0], seen.drift_um, n + 1), kSame_um);

@@ -69,6 +69,11 @@ instance* instance_new(const char* name, const char* guid, int is_co_simulation,
   in->output_seeds = in->outputs + n_out;
   in->derivatives = in->output_seeds + n_out;
   in->derivative_seeds = in->derivatives + n_states;
+  if (!*model_guid) {
+    instance_tell(in, kError, "the numbers at the end of the unit's binary cannot be read; the file is not complete");
+    release(in);
+    return 0;
+  }
   if (!guid || strcmp(guid, model_guid) != 0) {
     instance_tell(in, kError, "the GUID or instantiation token is not the one of this unit's modelDescription.xml");
     release(in);

@@ -1,5 +1,6 @@
 /* What one exported model is made of: the tables of model_data.c, which the export writes. Everything else here is the same in
- * every unit. SI and kelvin inside; what the importer sees is in the units of modelDescription.xml. */
+ * every unit. SI and kelvin inside; what the importer sees is in the units of modelDescription.xml. Driftwright's own build defines
+ * DRIFTWRIGHT_NUMBERS_ARE_READ: a binary for all units, whose tables are read when it is loaded. */
 #ifndef DRIFTWRIGHT_MODEL_DATA_H
 #define DRIFTWRIGHT_MODEL_DATA_H
 
@@ -61,9 +62,13 @@ typedef struct {
   const double* factor_covariance; /* by rows */
 } observer_data;
 
-extern const char* const model_guid;
-extern const char* const model_identifier;
-extern const thermal_data thermal;
-extern const observer_data observer;
+#ifdef DRIFTWRIGHT_NUMBERS_ARE_READ
+#define CONSTANT
+#else
+#define CONSTANT const
+#endif
+extern const char* CONSTANT model_guid;
+extern CONSTANT thermal_data thermal;
+extern CONSTANT observer_data observer;
 
 #endif
