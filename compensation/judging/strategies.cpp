@@ -80,11 +80,13 @@ Strategy baseline(const std::string& name, const StrategySettings& s,
 }
 
 /// A formula of channels.
-DeployedPredictor of_formula(DriftModel model, std::string reason, const StrategySettings& s) {
+/// @param members  of a mean: the formulas that it averages
+DeployedPredictor of_formula(DriftModel model, std::string reason, const StrategySettings& s,
+                             std::vector<DriftModel> members = {}) {
   model.from_start = s.count_from_start;
   std::vector<std::string> sensors = model.inputs();
   std::erase(sensors, s.speed);
-  DeployedPredictor d = deployed(std::make_shared<FormulaPredictor>(std::move(model)), s);
+  DeployedPredictor d = deployed(std::make_shared<FormulaPredictor>(std::move(model), std::move(members)), s);
   d.sensors = std::move(sensors);
   d.reason = std::move(reason);
   return d;
@@ -291,13 +293,6 @@ struct Member {
   FoldPredictors in_folds;
 };
 
-/// The mean of formulas.
-std::shared_ptr<const Predictor> mean_predictor(std::span<const std::shared_ptr<const Predictor>> members) {
-  std::vector<DriftModel> models;
-  for (const std::shared_ptr<const Predictor>& p : members) models.push_back(*p->formula());
-  return std::make_shared<FormulaPredictor>(mean_of(models, kBlend));
-}
-
 /// The mean of the members whose error on left-out rows is about equal to the smallest; none if only one qualifies.
 std::optional<DeployedPredictor> blend(std::vector<Member> members, const FoldedRuns& folds, const StrategySettings& s,
                                        std::span<const ObservedRun> training) {
@@ -313,11 +308,12 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   }
   FoldPredictors in_folds;
   for (std::size_t k = 0; k < folds.folds.size(); ++k) {
-    std::vector<std::shared_ptr<const Predictor>> of_fold;
-    for (const Member& m : members) of_fold.push_back(m.in_folds[k]);
-    in_folds.push_back(mean_predictor(of_fold));
+    std::vector<DriftModel> of_fold;
+    for (const Member& m : members) of_fold.push_back(*m.in_folds[k]->formula());
+    in_folds.push_back(std::make_shared<FormulaPredictor>(mean_of(of_fold, kBlend)));
   }
-  DeployedPredictor d = of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s);
+  DeployedPredictor d =
+      of_formula(mean_of(models, kBlend), fmt::format("the mean of {}", fmt::join(names, "; ")), s, models);
   d.name = kBlend;
   d.ambient = s.ambient;
   if (s.probing) d.probe.noise_um = s.probing->noise_um;

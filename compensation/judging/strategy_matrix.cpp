@@ -338,11 +338,9 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
     const double off = drift_um[i] - predicted[i];
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
-    // without trust there is no interval, so the row does not count
-    if (const std::optional<double> interval_um = interval_in_force_um(strategy, correction.trust[i])) {
-      ++n;
-      if (std::abs(off) <= *interval_um) ++n_inside;
-    }
+    if (std::isnan(correction.interval_um[i])) continue;  // without trust there is no interval, so the row does not count
+    ++n;
+    if (std::abs(left.back()) <= correction.interval_um[i]) ++n_inside;
   }
   c.before = score(drift_um);
   c.after = score(left);

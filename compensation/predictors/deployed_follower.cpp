@@ -10,7 +10,6 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kNormal95 = 1.96;  // deviations that 95 % of a normal number are within
 constexpr std::size_t kNumbersOfState = 7, kNumbersOfInput = 13;
 
 std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
@@ -88,9 +87,7 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
   const double now = std::min(deserved, follower_->deserved_trust());
   const double correction_um = drift_guarded_um(&table_->safe, &guard_, now, drift_um, dt_s);
   least_trust_ = std::min({now, guard_.trust, 1.0 + (least_trust_ - 1.0) * std::exp(-dt_s / kRemembersDoubt_s)});
-  std::optional<double> interval_um = interval_in_force_um(deployed_, least_trust_);
-  if (const auto own_um = follower_->deviation_um(); interval_um && own_um)
-    *interval_um = std::max(*interval_um, kNormal95 * *own_um);
+  std::optional<double> interval_um = interval_in_force_um(deployed_, least_trust_, follower_->deviation_um());
   const std::optional<double> half_width_um = interval_um;
   if (interval_um) *interval_um += std::abs(guard_.prediction_um - correction_um);
   return {.prediction_um = drift_um,

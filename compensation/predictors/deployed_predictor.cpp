@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace driftwright::compensation {
 
@@ -15,32 +16,41 @@ std::optional<Input> unguarded_input(const DeployedPredictor& deployed) {
   return std::nullopt;
 }
 
-std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust) {
-  if (!deployed.interval_um) return std::nullopt;
-  return trust > 0.0 ? std::optional(*deployed.interval_um / trust) : std::nullopt;
+std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust, std::optional<double> own_um) {
+  if (!deployed.interval_um || !(trust > 0.0)) return std::nullopt;
+  return std::max(*deployed.interval_um / trust, kNormal95 * own_um.value_or(0.0));
 }
 
 PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run) {
-  PredictedRun p{.readings = repaired(safe, run.readings), .drift_um = {}};
+  PredictedRun p{.readings = repaired(safe, run.readings), .drift_um = {}, .deviation_um = {}};
   ObservedRun mended = run;
   mended.readings = p.readings.readings;
   const std::unique_ptr<Follower> follower = predictor.follow();
   for (double& deserved : p.readings.deserved) {
     p.drift_um.push_back(follower->next(mended));
+    p.deviation_um.push_back(follower->deviation_um());
     deserved = std::min(deserved, follower->deserved_trust());
   }
   return p;
 }
 
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
+  PredictedRun p;
+  GuardedCorrection c;
   if (deployed.fail_safe) {
-    const PredictedRun p = predict(*deployed.predictor, *deployed.fail_safe, run);
-    return guarded(*deployed.fail_safe, p.readings, p.drift_um);
+    p = predict(*deployed.predictor, *deployed.fail_safe, run);
+    c = guarded(*deployed.fail_safe, p.readings, p.drift_um);
+  } else {
+    p.drift_um = live(*deployed.predictor, run);
+    p.deviation_um.resize(p.drift_um.size());
+    c = {.correction_um = p.drift_um, .trust = std::vector<double>(p.drift_um.size(), 1.0), .events = {}};
+    for (double& v : c.correction_um) v = std::isfinite(v) ? v : 0.0;
   }
-  GuardedCorrection c{.correction_um = live(*deployed.predictor, run),
-                      .trust = std::vector<double>(run.readings.n_samples(), 1.0),
-                      .events = {}};
-  for (double& v : c.correction_um) v = std::isfinite(v) ? v : 0.0;
+  for (std::size_t i = 0; i < p.drift_um.size(); ++i) {
+    const std::optional<double> half_um = interval_in_force_um(deployed, c.trust[i], p.deviation_um[i]);
+    c.interval_um.push_back(half_um ? *half_um + std::abs(p.drift_um[i] - c.correction_um[i])
+                                    : std::numeric_limits<double>::quiet_NaN());
+  }
   return c;
 }
 

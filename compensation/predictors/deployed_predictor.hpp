@@ -10,6 +10,8 @@
 
 namespace driftwright::compensation {
 
+inline constexpr double kNormal95 = 1.96;  ///< deviations that 95 % of a normal number are within
+
 /// The error of a predictor of the same kind on one part of the training runs after a fit to the rest.
 struct FoldError {
   std::string kind, name;  ///< "run", "run 2.csv" (judging/folds.hpp)
@@ -45,19 +47,22 @@ struct DeployedPredictor {
 /// guarded is neither written to a file nor read from one.
 [[nodiscard]] std::optional<Input> unguarded_input(const DeployedPredictor& deployed);
 
-/// @return the half width of the prediction interval in force [um]: interval_um / trust; none without trust, and if there is
-///         no interval
-[[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust);
+/// @param own_um  the predictor's own standard deviation (Follower::deviation_um())
+/// @return the half width of the prediction interval in force [um]: interval_um / trust, at least kNormal95 of its own
+///         deviations; none without trust, and if there is no interval
+[[nodiscard]] std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, double trust,
+                                                         std::optional<double> own_um = {});
 
 /// The drift of a run as predicted from repaired readings, before clamp and slew limit.
 struct PredictedRun {
-  Repaired readings;             ///< with the trust that readings and predictor deserve
-  std::vector<double> drift_um;  ///< per row; NaN without a prediction
+  Repaired readings;                                ///< with the trust that readings and predictor deserve
+  std::vector<double> drift_um;                     ///< per row; NaN without a prediction
+  std::vector<std::optional<double>> deviation_um;  ///< per row: Follower::deviation_um()
 };
 [[nodiscard]] PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run);
 
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
-/// prediction, or 0 without one.
+/// prediction, or 0 without one. Its interval is that in force, plus the distance from the prediction to the correction.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);
 
 }  // namespace driftwright::compensation

@@ -88,6 +88,8 @@ struct Repaired {
 struct GuardedCorrection {
   std::vector<double> correction_um;  ///< in force, per row; never missing
   std::vector<double> trust;          ///< factor on the prediction, 0 to 1
+  /// Of correct(): half width of the 95 % interval of the drift about the correction [um], per row; NaN without one.
+  std::vector<double> interval_um = {};
   std::vector<std::string> events;    ///< those of the repair
 };
 

@@ -8,11 +8,16 @@ namespace driftwright::compensation {
 
 class FormulaPredictor final : public Predictor {
  public:
-  /// @param model  drift in um
-  explicit FormulaPredictor(DriftModel model) : model_(std::move(model)) {}
+  /// @param model    drift in um
+  /// @param members  of a mean: the formulas that it averages. The truth may be as far from the mean as they are from each
+  ///                 other, so the root mean square of their distances is the deviation of its followers. Where a run goes
+  ///                 beyond the training runs, the members depart. Source: Leutbecher & Palmer, J. Comput. Phys. 227 (2008)
+  ///                 3515: spread and error of an ensemble
+  explicit FormulaPredictor(DriftModel model, std::vector<DriftModel> members = {})
+      : model_(std::move(model)), members_(std::move(members)) {}
   [[nodiscard]] std::vector<Input> inputs() const override;
   [[nodiscard]] bool is_driven() const override { return false; }
-  /// Kind `formula`: kind of fit, intercept and terms.
+  /// Kind `formula`: kind of fit, intercept and terms; members.
   [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] const DriftModel* formula() const override { return &model_; }
   /// Gives row by row the same as DriftModel::predict() for the whole record.
@@ -20,6 +25,7 @@ class FormulaPredictor final : public Predictor {
 
  private:
   DriftModel model_;
+  std::vector<DriftModel> members_;
 };
 
 }  // namespace driftwright::compensation

@@ -214,6 +214,8 @@ TEST(Interval, GrowsAsTrustFalls) {
   d.interval_um = 3.0;
   EXPECT_EQ(interval_in_force_um(d, 1.0), 3.0);
   EXPECT_EQ(interval_in_force_um(d, 0.5), 6.0);
+  EXPECT_EQ(interval_in_force_um(d, 1.0, 1.0), 3.0);           // 1.96 of its own deviations are less
+  EXPECT_DOUBLE_EQ(*interval_in_force_um(d, 0.5, 4.0), 7.84);  // and more
   EXPECT_FALSE(interval_in_force_um(d, 0.0));
 }
 

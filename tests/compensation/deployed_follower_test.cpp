@@ -87,7 +87,7 @@ DeployedPredictor observer(std::vector<std::string> sensors) {
 
 /// Follows a run row by row, with a restart after a row; no restart for a number beyond its rows.
 std::vector<double> followed(const DeployedPredictor& d, const ObservedRun& run, std::size_t restart_behind,
-                             std::vector<double>* trust = nullptr) {
+                             std::vector<double>* trust = nullptr, std::vector<double>* interval_um = nullptr) {
   Stream stream(run);
   auto follower = std::make_unique<DeployedFollower>(d);
   std::vector<double> corrections;
@@ -95,6 +95,7 @@ std::vector<double> followed(const DeployedPredictor& d, const ObservedRun& run,
     const FollowedCorrection c = follower->next(stream.next());
     corrections.push_back(c.correction_um);
     if (trust) trust->push_back(c.trust);
+    if (interval_um) interval_um->push_back(c.interval_um.value_or(NAN));
     if (i != restart_behind) continue;
     const std::vector<double> memory = follower->memory();
     follower = std::make_unique<DeployedFollower>(d);
@@ -128,6 +129,37 @@ TEST(DeployedFollower, AFormulaIsToTheLastBitWhatItIsOfTheWholeRun) {
     for (const std::size_t restart : {0u, 1u, 125u, 231u})
       EXPECT_EQ(followed(d, run, restart), whole.correction_um) << restart;
   }
+}
+
+// The formula and two members at equal distances on both sides of it: their root mean square is that distance.
+TEST(DeployedFollower, TheIntervalOfAMeanGrowsAsItsMembersDepart) {
+  const ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
+                        .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
+                        .readings = fixtures::machine(7, 60.0)};
+  DeployedPredictor d = formula(true);
+  const DriftModel mean = *d.predictor->formula();
+  std::vector<DriftModel> members = {mean, mean};
+  members[0].terms[2].coefficient *= 1.3;
+  members[1].terms[2].coefficient *= 0.7;
+  const std::vector<double> of_mean = live(*d.predictor, run), of_member = live(FormulaPredictor(members[0]), run);
+  d.predictor = std::make_shared<FormulaPredictor>(mean, members);
+  d.interval_um = 0.5;
+  EXPECT_EQ(live(*d.predictor, run), of_mean);
+  const GuardedCorrection whole = correct(d, run);
+  int n_grown = 0, n_narrow = 0;
+  for (const std::size_t restart : {kNever, std::size_t{40}}) {
+    std::vector<double> interval_um;
+    (void)followed(d, run, restart, nullptr, &interval_um);
+    for (std::size_t i = 0; i < of_mean.size(); ++i) {
+      ASSERT_EQ(whole.trust[i], 1.0);
+      const double apart_um = std::abs(of_member[i] - of_mean[i]), half_um = std::max(0.5, 1.96 * apart_um);
+      (half_um > 0.5 ? n_grown : n_narrow) += 1;
+      EXPECT_NEAR(whole.interval_um[i], half_um + std::abs(of_mean[i] - whole.correction_um[i]), 1e-9) << i;
+      EXPECT_NEAR(interval_um[i], whole.interval_um[i], 1e-9) << i;
+    }
+  }
+  EXPECT_GT(n_grown, 50);
+  EXPECT_GT(n_narrow, 5);
 }
 
 TEST(DeployedFollower, AnObserverIsWhatItIsOfTheWholeRun) {

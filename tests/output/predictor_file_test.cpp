@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -69,6 +70,23 @@ TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
     file.predictor.interval_um.reset();
     EXPECT_FALSE(back(file).predictor.interval_um);
   }
+}
+
+TEST(PredictorFile, AMeanComesBackWithItsMembers) {
+  PredictorFile file = formula(true);
+  const DriftModel mean = *file.predictor.predictor->formula();
+  DriftModel member = mean;
+  member.terms[2].coefficient *= 3.0;
+  file.predictor.predictor = std::make_shared<FormulaPredictor>(mean, std::vector<DriftModel>{mean, member});
+  const PredictorFile read = back(file);
+  expect_same(file, read);
+  const ObservedRun run = machine(7);
+  const std::vector<double> interval_um = correct(read.predictor, run).interval_um;
+  EXPECT_EQ(correct(file.predictor, run).interval_um, interval_um);
+  EXPECT_GT(*std::max_element(interval_um.begin(), interval_um.end()), 2.0 * *file.predictor.interval_um);
+  member.terms[2].input = "X5";
+  file.predictor.predictor = std::make_shared<FormulaPredictor>(mean, std::vector<DriftModel>{mean, member});
+  EXPECT_THAT([&] { (void)back(file); }, ThrowsMessage<InputError>(AllOf(HasSubstr("predictor.json"), HasSubstr("'X5'"))));
 }
 
 TEST(PredictorFile, WhatProbingsNeedComesBack) {
