@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/normal.hpp"
 #include "diagnosis/calibration.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
@@ -41,7 +42,7 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
     const Knob& knob = of.knobs[k];
     const auto at = first + static_cast<Eigen::Index>(k);
     const double sd = std::sqrt(std::max(0.0, fit.covariance(at, at)));
-    const Interval x = listener.wants_end() ? Interval{fit.x[at] - 1.96 * sd, fit.x[at] + 1.96 * sd}
+    const Interval x = listener.wants_end() ? Interval{fit.x[at] - kNormal95 * sd, fit.x[at] + kNormal95 * sd}
                                             : profile_interval(fitter, hypothesis, fit, claim, k);
     const double scale = knob.is_time ? 60.0 : 1.0;
     c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[at]) / scale,

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <set>
 
+#include "base/median.hpp"
+#include "base/normal.hpp"
 #include "base/quantity.hpp"
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
@@ -77,10 +79,7 @@ double usual_noise(const Readings& r) {
   std::vector<double> bends;
   for (std::size_t i = 2; i < r.value.size(); ++i)
     bends.push_back(std::abs(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2]));
-  if (bends.empty()) return 0.0;
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  return *middle / (0.6745 * std::sqrt(6.0));
+  return upper_median(std::move(bends)) / (kNormalMedian * std::sqrt(6.0));
 }
 
 /// As recorded, except the first reading: a machine at rest has the mean temperature of the air, not that of its last

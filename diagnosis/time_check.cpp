@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/median.hpp"
 #include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
@@ -45,10 +46,7 @@ double left_of_course(const MeasuredRun& run, const Twin& twin, Twin::Workspace&
     const double course = deviation(c.value.array());
     if (course > 0.0) shares.push_back(deviation(c.value.array() - prediction.row(c.output).transpose().array()) / course);
   }
-  if (shares.empty()) return 0.0;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return upper_median(std::move(shares));
 }
 
 }  // namespace

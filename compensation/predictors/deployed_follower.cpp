@@ -7,10 +7,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/normal.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kNormal95 = 1.96;  // deviations that 95 % of a normal number are within
 constexpr std::size_t kNumbersOfState = 7, kNumbersOfInput = 13;
 
 std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
