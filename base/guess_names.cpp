@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
@@ -18,23 +19,13 @@
 namespace driftwright {
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
 bool has_word(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower(name);
+  const std::string low = lower_case(name);
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
 }
 
 bool is_word(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower(trimmed(name));
+  const std::string low = lower_case(trimmed(name));
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low == word; });
 }
 
@@ -58,7 +49,7 @@ std::string unit_of_words(const std::string& text) {
       {"a", "A"},         {"ma", "mA"},        {"nm/a", "N m/A"},  {"bar", "bar"},    {"w/m2", "W/m2"},
       {"w/m^2", "W/m2"},  {"w/m²", "W/m2"},    {"l/min", "l/min"}, {"µrad", "urad"},  {"urad", "urad"},
       {"mm/m", "mm/m"},   {"µm/m", "um/m"},    {"hz", "Hz"}};
-  const auto hit = known.find(lower(unit));
+  const auto hit = known.find(lower_case(unit));
   return hit == known.end() ? "" : hit->second;
 }
 
@@ -93,7 +84,7 @@ std::string likely_unit(const std::string& name) {
 
 bool is_time_name(const std::string& name) {
   return is_word(name, {"t", "x_value", "elapsed", "laufzeit"}) || has_word(name, {"time", "sekunden"}) ||
-         lower(trimmed(name)).starts_with("zeit");
+         lower_case(trimmed(name)).starts_with("zeit");
 }
 bool is_tag_name(const std::string& name) {
   return has_word(name, {"tag", "var", "name", "signal", "point", "kanal", "channel", "messstelle"});
@@ -114,7 +105,7 @@ bool is_ambient_name(const std::string& name) {
   return has_word(name, {"ambient", "hall", "room", "raum", "umgebung", "luft", "air"});
 }
 bool is_counter_name(const std::string& name) {
-  const std::string low = lower(trimmed(name));
+  const std::string low = lower_case(trimmed(name));
   return low.empty() ||
          is_word(name, {"#", "no", "no.", "nr", "nr.", "index", "record", "row", "quality", "validity", "status"}) ||
          low.starts_with("sweep") || low.starts_with("scan") || low.starts_with("alarm") || low.starts_with("sample");
@@ -135,7 +126,7 @@ std::string channel_name(const std::string& name, std::size_t number) {
       text.replace(at, std::string(from).size(), to);
   }
   std::string plain;
-  for (char c : lower(text)) {
+  for (char c : lower_case(text)) {
     const bool is_kept = c >= 'a' && c <= 'z';
     const bool is_digit = c >= '0' && c <= '9';
     if (is_kept || is_digit)

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/normal.hpp"
+#include "base/shown_units.hpp"
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/judge.hpp"

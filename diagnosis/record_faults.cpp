@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/median.hpp"
+#include "base/usual_step.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 
 namespace driftwright::diagnosis {
@@ -49,9 +50,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
   const Channel* speed = record.find("speed");
   if (!speed || record.n_samples() < 3) return {};
   const double start_s = record.time_s.front();
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < record.n_samples(); ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
-  const double usual_s = usual_of(steps);
+  const double usual_s = usual_of(row_steps_s(record.time_s));
   std::vector<double> times_s, rpm;  // of rows with a speed
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     if (std::isnan(speed->values[i])) continue;

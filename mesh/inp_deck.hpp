@@ -59,7 +59,4 @@ struct InpDeck {
 /// @throws InputError  file:line: message
 [[noreturn]] void fail_in(const InpDeck& deck, int line, const std::string& message);
 
-/// Names of sets are compared in lower case.
-[[nodiscard]] std::string lower_case(std::string text);
-
 }  // namespace driftwright::mesh

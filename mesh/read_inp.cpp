@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "base/characters.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "mesh/inp_deck.hpp"

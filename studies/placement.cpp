@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "base/lists.hpp"
 #include "compensation/sensors/exchange_search.hpp"
 #include "mesh/machine_skin.hpp"
 #include "studies/placement_rivals.hpp"
@@ -53,12 +54,6 @@ struct Criteria {
     return both;
   }
 };
-
-std::vector<std::string> names_of(const std::vector<Cyclogram>& cyclograms) {
-  std::vector<std::string> names;
-  for (const Cyclogram& c : cyclograms) names.push_back(c.name);
-  return names;
-}
 
 /// Whether a node is a corner of a cell.
 std::vector<bool> corners_of(const mesh::Mesh& mesh) {

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -21,8 +22,7 @@ double rounded(double value) {
 }
 
 std::string unit_of(const diagnosis::MeasuredChannel& c) {
-  if (c.unit == "K") return c.recorded_unit == "K" ? "K" : "degC";
-  return c.unit == "rad" ? "urad" : "um";
+  return c.recorded_unit == "K" ? "K" : shown_reading_unit(c.unit);
 }
 
 /// Converts the twin's units into those of a record.

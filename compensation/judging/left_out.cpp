@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "base/lists.hpp"
 #include "base/median.hpp"
 #include "compensation/judging/choice.hpp"
 #include "compensation/predictors/drift_model.hpp"
@@ -58,12 +59,6 @@ double noise_in(std::span<const ResidualSeries> series, double stated_um) {
     }
   }
   return n > 0.0 ? std::min(stated_um, std::sqrt(square / n)) : stated_um;
-}
-
-std::vector<std::string> names_of(const std::vector<Input>& inputs) {
-  std::vector<std::string> names;
-  for (const Input& input : inputs) names.push_back(input.name);
-  return names;
 }
 
 /// What the limits of a fail-safe are learned from.

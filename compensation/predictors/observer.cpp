@@ -11,6 +11,7 @@
 #include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "base/median.hpp"
+#include "base/record_channel.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -297,7 +298,7 @@ class Observer::Run final : public ObserverFollower {
       if (c.unit != unit)
         throw InputError(
             fmt::format("channel '{}' of {} is in {}; the model gives it in {}", name, run.readings.source, c.unit, unit));
-      return static_cast<std::size_t>(&c - run.readings.channels.data());
+      return channel_index(run.readings, name);
     };
     for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name, "degC"));
     if (with_drift_) drift_channel_ = channel(o_.drift_, "um");

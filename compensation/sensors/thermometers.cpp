@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/interpolate.hpp"
 
 namespace driftwright::compensation {
@@ -17,10 +18,6 @@ constexpr double kMostSamples = 2e8;  // 1.6 GB
 
 bool is_temperature(const Channel& channel) {
   return channel.unit == "degC" || channel.unit == "K";
-}
-
-Channel& find(Record& record, const std::string& name) {
-  return record.channels[static_cast<std::size_t>(&record.at(name) - record.channels.data())];
 }
 
 /// The value of the last row at or before each time.
@@ -72,8 +69,8 @@ Record running_mean(Record record, double window_s) {
 Record with_failed_sensor(Record record, const std::string& sensor, SensorFailure failure, double from_s,
                           const std::string& elsewhere) {
   const bool has_other = failure == SensorFailure::kDetached || failure == SensorFailure::kSwapped;
-  Channel* other = has_other ? &find(record, elsewhere) : nullptr;
-  Channel& failed = find(record, sensor);
+  Channel* other = has_other ? &changeable_channel(record, elsewhere) : nullptr;
+  Channel& failed = changeable_channel(record, sensor);
   if (other && other->unit != failed.unit) {
     throw InputError(fmt::format("'{}' in {} cannot read '{}' in {}", sensor, failed.unit, elsewhere, other->unit));
   }

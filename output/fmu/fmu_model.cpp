@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "effects/reading_chain.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -60,12 +61,10 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
     const auto column = static_cast<Eigen::Index>(o);
     const bool is_temperature = outputs.unit[o] == "K";
     list.push_back({.name = outputs.name[o],
-                    .unit = is_temperature           ? "degC"
-                            : outputs.unit[o] == "m" ? "um"
-                                                     : "urad",
+                    .unit = shown_reading_unit(outputs.unit[o]),
                     .state = outputs.state.col(column),
                     .ambient = outputs.ambient[column],
-                    .factor = is_temperature ? 1.0 : 1e6,
+                    .factor = shown_scale(outputs.unit[o]),
                     .offset = is_temperature ? reference_K - kZeroCelsius_K : 0.0});
   }
   return list;
