@@ -1,5 +1,5 @@
 #pragma once
-// Kinds of characters, and texts in lower case and without blanks at their ends.
+// Kinds of characters; texts in lower case, without blanks at their ends, in quotes.
 
 #include <cctype>
 #include <string>
@@ -22,6 +22,19 @@ namespace driftwright {
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
+}
+
+/// In double quotes, as YAML has them.
+[[nodiscard]] inline std::string double_quoted(std::string_view text) {
+  std::string out(1, '"');
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (c == '\t')
+      out += "\\t";
+    else
+      out += c;
+  }
+  return out + '"';
 }
 
 }  // namespace driftwright

@@ -1,5 +1,5 @@
 #pragma once
-// Where a channel is in its record.
+// A channel of a record: its place, and what kind of quantity it is.
 
 #include <cstddef>
 #include <string>
@@ -16,6 +16,16 @@ namespace driftwright {
 /// The channel of that name, to be changed. @throws InputError  as Record::at()
 [[nodiscard]] inline Channel& changeable_channel(Record& record, const std::string& name) {
   return record.channels[channel_index(record, name)];
+}
+
+/// Whether a channel in that unit is a temperature, or a difference of temperatures.
+[[nodiscard]] inline bool is_temperature_unit(const std::string& unit) {
+  return unit == "degC" || unit == "K";
+}
+
+/// Whether it is a displacement or a tilt.
+[[nodiscard]] inline bool is_displacement_unit(const std::string& unit) {
+  return unit == "um" || unit == "mm" || unit == "urad";
 }
 
 }  // namespace driftwright

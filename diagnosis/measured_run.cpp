@@ -12,6 +12,7 @@
 #include "base/median.hpp"
 #include "base/normal.hpp"
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 #include "effects/recorded_column.hpp"
@@ -182,7 +183,7 @@ int most_equal(const std::vector<double>& values, const LookedAt& looked_at) {
 }
 
 bool same_kind(const std::string& record_unit, const std::string& output_unit) {
-  if (output_unit == "K") return record_unit == "degC" || record_unit == "K";
+  if (output_unit == "K") return is_temperature_unit(record_unit);
   if (output_unit == "m") return record_unit == "um" || record_unit == "mm";
   return record_unit == "urad";
 }

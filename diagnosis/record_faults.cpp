@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/median.hpp"
+#include "base/record_channel.hpp"
 #include "base/usual_step.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 
@@ -82,7 +83,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
 Record without_spikes(Record record, std::vector<DataFinding>& findings) {
   for (Channel& c : record.channels) {
     // A switched quantity may be on for a single row.
-    const bool is_reading = c.unit == "degC" || c.unit == "K" || !scenarios::is_of_column(c.unit);
+    const bool is_reading = is_temperature_unit(c.unit) || !scenarios::is_of_column(c.unit);
     if (!is_reading) continue;
     std::vector<std::size_t> known;
     for (std::size_t i = 0; i < c.values.size(); ++i) {

@@ -12,6 +12,7 @@
 #include "base/characters.hpp"
 #include "base/errors.hpp"
 #include "base/median.hpp"
+#include "base/record_channel.hpp"
 #include "base/usual_step.hpp"
 #include "identification/lagged_inputs.hpp"
 
@@ -155,7 +156,7 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
             turns ? fmt::format("'{}' never changes: it is taken as switched on in the first row, after a long rest",
                                 c.header())
                   : fmt::format("'{}' is always 0 and drives nothing", c.header()));
-    } else if ((c.unit == "degC" || c.unit == "K") && c.name != roles.ambient) {
+    } else if (is_temperature_unit(c.unit) && c.name != roles.ambient) {
       roles.thermometers.push_back(c.name);
     } else if (c.unit == "um") {
       roles.displacements.push_back(c.name);

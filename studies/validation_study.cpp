@@ -150,7 +150,7 @@ namespace {
 std::vector<std::string> thermometers_in(const Record& record, const std::string& target) {
   std::vector<std::string> names;
   for (const Channel& c : record.channels) {
-    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
+    const bool is_temperature = is_temperature_unit(c.unit) && c.name != scenarios::kAmbient;
     if (is_temperature && &c != record.find(target)) names.push_back(c.name);
   }
   return names;

@@ -2,7 +2,6 @@
 // State observer: the reduced model, corrected by the available thermometers. It combines physics and sensors: readings
 // reveal the errors of the model, and the model describes what no sensor measures.
 
-#include <map>
 #include <span>
 
 #include "compensation/predictors/predictor.hpp"
@@ -131,8 +130,7 @@ class Observer final : public Predictor {
   [[nodiscard]] static Observer of_state(State state);
 
  private:
-  struct Step;  // the effect of one drive on the state over one step
-  class Run;
+  class Run;  // in observer_run.cpp, with all that follows a run
 
   solver::ReducedSystem system_;
   Eigen::VectorXd start_;

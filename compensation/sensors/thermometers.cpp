@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kMostSamples = 2e8;  // 1.6 GB
 
-bool is_temperature(const Channel& channel) {
-  return channel.unit == "degC" || channel.unit == "K";
-}
-
 /// The value of the last row at or before each time.
 std::vector<double> held(const Record& record, const std::vector<double>& values, const std::vector<double>& at_s) {
   std::vector<double> result;
@@ -37,7 +33,7 @@ Record as_read(Record record, const Thermometers& thermometers, std::uint64_t se
   const double step_K = thermometers.resolution_K;
   for (std::size_t c = 0; c < record.channels.size(); ++c) {
     Channel& channel = record.channels[c];
-    if (!is_temperature(channel)) continue;
+    if (!is_temperature_unit(channel.unit)) continue;
     Random random(seed, c);
     for (double& value : channel.values) {
       if (thermometers.noise_K > 0.0) value += thermometers.noise_K * random.normal();
@@ -49,7 +45,7 @@ Record as_read(Record record, const Thermometers& thermometers, std::uint64_t se
 
 Record running_mean(Record record, double window_s) {
   for (Channel& channel : record.channels) {
-    if (!is_temperature(channel) || !(window_s > 0.0)) continue;
+    if (!is_temperature_unit(channel.unit) || !(window_s > 0.0)) continue;
     const std::vector<double> read = channel.values;
     std::size_t first = 0;
     for (std::size_t i = 0; i < read.size(); ++i) {

@@ -15,19 +15,6 @@ namespace {
 using scenarios::MachineModel;
 using scenarios::Scenario;
 
-std::vector<DriveRange> ranges_of(const Scenario& scenario) {
-  std::vector<DriveRange> ranges;
-  for (int v = 0; v < kDriveVariables; ++v) {
-    const auto variable = static_cast<DriveVariable>(v);
-    double most = 0.0;
-    for (const Cyclogram& c : scenario.cyclograms) {
-      for (const Cyclogram::Section& s : c.sections) most = std::max(most, value_of(variable, s.drive));
-    }
-    if (most > 0.0) ranges.push_back({variable, most});
-  }
-  return ranges;
-}
-
 std::vector<std::vector<double>> drives_of(const Scenario& scenario, const std::vector<DriveRange>& ranges) {
   constexpr std::size_t kMost = 24;  // each needs a decomposition; others are decomposed when they occur
   std::vector<std::vector<double>> drives;
@@ -81,7 +68,7 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system)
   if (!system.change_times_s.empty())
     throw InputError(machine.where,
                      "a law changes with time on its own; no FMU is made of such a machine yet (docs/how-to/fmu.md)");
-  FmuModel model{.name = scenario.name, .drive = ranges_of(scenario), .reference_K = system.reference_K};
+  FmuModel model{.name = scenario.name, .drive = largest_drives(scenario.cyclograms), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;
   model.constant_load = model.ambient_load = Eigen::VectorXd::Zero(n);
