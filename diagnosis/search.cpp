@@ -26,7 +26,8 @@ constexpr double kNearBest = 12.0;         // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kSame = 6.0;              // squares of whitened readings: what noise makes of two numbers more, at 95 %
 
-// What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where something explains what is stated.
+// What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
+// something explains what is stated.
 constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr int kLeastLaws = 2;         // of a candidate that are fitted in a claim's place
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
@@ -34,7 +35,8 @@ constexpr std::size_t kMostKnown = 64;
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 constexpr double kEvenOdds = 0.5;     // that nothing is wrong
 
-/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as Fitter::fit_others()
+/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as
+/// Fitter::fit_others()
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
                          double of_interest = Fitter::kAny, Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew) {
   std::vector<Fit> fits(hypotheses.size());
@@ -125,7 +127,8 @@ std::set<std::string> bodies_in(const std::string& where) {
   return names;
 }
 
-/// Whether two claims about the same bodies mean the same, so that no reading could distinguish them, such as a window that lasts to the end and heat from a time on.
+/// Whether two claims about the same bodies mean the same, so that no reading could distinguish them, such as a window that
+/// lasts to the end and heat from a time on.
 bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
   if (bodies_in(a.where) != bodies_in(b.where) || are_apart(a.effect, b.effect)) return false;
   const Comparison& c = fitter.comparison();
@@ -171,9 +174,11 @@ class KnownFits {
   std::map<Laws, FittedClaim> fits_;
 };
 
-/// Labels on the wrong cables. Linear theory evaluates such a law at numbers that were fitted to the body on the label, so it underestimates its gain. It shows which label is the
-/// likeliest, but not its gain; so the best law of each such kind is always fitted first.
-/// @param list  all scores, best first. @param chosen  laws to fit, without labels  @returns  number of labels at its beginning
+/// Labels on the wrong cables. Linear theory evaluates such a law at numbers that were fitted to the body on the label, so
+/// it underestimates its gain. It shows which label is the likeliest, but not its gain; so the best law of each such kind is
+/// always fitted first.
+/// @param list  all scores, best first. @param chosen  laws to fit, without labels  @returns  number of labels at its
+///              beginning
 std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
                              std::vector<Score>& chosen) {
   std::vector<Score> labels;
@@ -215,7 +220,8 @@ struct Trials {
       if (const FittedClaim* fit = known ? known->find(tried) : nullptr) {
         fitted.push_back({tried.back(), fit->fit, s.gain, fit->is_rough});
       } else {
-        // Numbers that were fitted without the claim have absorbed its effect: they start at their values by linear theory with the claim.
+        // Numbers that were fitted without the claim have absorbed its effect: they start at their values by linear theory
+        // with the claim.
         jobs.emplace_back(std::move(tried), joined(s.beside, joined(base_x, s.start)));
         hoped.push_back(s.gain);
       }
@@ -285,7 +291,8 @@ class NamesOfPlace {
     ++let_down_[family_of(taken.candidate, taken.variant)];  // until it is fitted
     return taken;
   }
-  /// @param hoped  the law's score in linear theory. @param gain  of its full fit. @param must_bring  gain above which the law is the stated one
+  /// @param hoped  the law's score in linear theory. @param gain  of its full fit. @param must_bring  gain above which the
+  ///               law is the stated one
   void learn(const Score& hoped, double gain, double must_bring) {
     best_ = std::max(best_, gain);
     answered_ = answered_ || gain > must_bring;
@@ -322,8 +329,9 @@ class NamesOfPlace {
   bool answered_ = false;
 };
 
-/// Names of statements added to a hypothesis, fitted in full, best first. Fits are distributed over the places of statements in proportion to their probabilities (D'Hondt), until one
-/// gains as much as the statement, and as long as others may gain as much.
+/// Names of statements added to a hypothesis, fitted in full, best first. Fits are distributed over the places of statements
+/// in proportion to their probabilities (D'Hondt), until one gains as much as the statement, and as long as others may gain
+/// as much.
 std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
                                    KnownFits* known, const Listener& listener) {
   Trials trials{.ground = ground, .base = base, .base_fit = base_fit, .known = known};
@@ -364,8 +372,8 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
   return std::move(trials).best_first();
 }
 
-/// Possible replacements of a claim, fitted in full, best first: the best laws by linear theory, and the best law of each effect, even if it is not among the first n, because the kind
-/// must not depend on linear theory.
+/// Possible replacements of a claim, fitted in full, best first: the best laws by linear theory, and the best law of each
+/// effect, even if it is not among the first n, because the kind must not depend on linear theory.
 std::vector<FittedClaim> fit_instead(const Ground& ground, const Hypothesis& base, const Fit& base_fit, int n,
                                      KnownFits* known, const Listener& listener) {
   if (base_fit.prediction.empty()) return {};  // no solution without the removed claim, so nothing can be added
@@ -405,7 +413,8 @@ std::pair<Hypothesis, Eigen::VectorXd> without_claim(const Hypothesis& hypothesi
   return {std::move(left.hypothesis), x.tail(x.size() - n_nuisance)};
 }
 
-/// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be credited to the next claim.
+/// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be
+/// credited to the next claim.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   for (int turn = 0; turn < kMostRounds; ++turn) {
     fitter.settle(hypothesis, fit);
@@ -417,7 +426,8 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   }
 }
 
-/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes computed elsewhere must be no disadvantage.
+/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes
+/// computed elsewhere must be no disadvantage.
 void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   Twin::Workspace workspace(fitter.twin());
   for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
@@ -441,7 +451,8 @@ struct Worth {
     return fit.log_evidence - std::log(static_cast<double>(n_catalogue)) * static_cast<double>(h.size()) - laws;
   }
   [[nodiscard]] double explained(const Fit& fit) const { return without.misfit - fit.misfit; }
-  /// Whether one more claim is worth its price: its evidence counts like that of statements, and it has the odds of one more statement.
+  /// Whether one more claim is worth its price: its evidence counts like that of statements, and it has the odds of one more
+  /// statement.
   [[nodiscard]] bool is_worth_it(double gain, const Fit& with, std::size_t n_beside) const {
     const double odds = n_beside == 0 ? 1.0 : options.prior.one_more / (1.0 - options.prior.one_more);
     return temper(explained(with), options.prior.law_error) * gain + std::log(odds) > 0.0;
@@ -458,8 +469,9 @@ double probability_of(const Posterior& stated, const std::set<StatedPlace>& plac
 using EvidenceOfPlace = std::map<StatedPlace, double>;  ///< over nothing in its place [nats]
 using EvidenceOfName = std::map<std::size_t, double>;   ///< the same, by candidate
 
-/// Statements whose names were fitted in full get the probability of these fits, because linear theory is less exact if a law is not linear in its size. The best one counts with its
-/// gain over linear theory, at its own place or, if that is not listed, over the best listed place. The others count with the difference of their fits from the best one.
+/// Statements whose names were fitted in full get the probability of these fits, because linear theory is less exact if a
+/// law is not linear in its size. The best one counts with its gain over linear theory, at its own place or, if that is not
+/// listed, over the best listed place. The others count with the difference of their fits from the best one.
 /// @param power  exponent of evidence when statements are compared
 void take_fits(const EvidenceOfPlace& full, const std::map<StatedPlace, Stated>& said, double power, Posterior& stated) {
   if (full.empty() || stated.stated.empty()) return;

@@ -61,8 +61,8 @@ std::optional<CellShape> shape_of_type(const std::string& type) {
   }
 }
 
-/// Corners of a plane, shell or membrane element of a type such as "cps6" or "s4r", which marks a face of 3-D elements; 0 for other
-/// types.
+/// Corners of a plane, shell or membrane element of a type such as "cps6" or "s4r", which marks a face of 3-D elements; 0
+/// for other types.
 int facet_corners_of_type(const std::string& type) {
   for (const std::string_view family : {"cps", "cpe", "cax", "sfm3d", "stri", "m3d", "r3d", "ds", "s"}) {
     if (!type.starts_with(family)) continue;

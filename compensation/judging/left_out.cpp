@@ -77,8 +77,8 @@ Seen seen_in(const Predictor& predictor, std::span<const ObservedRun> training, 
   return seen;
 }
 
-/// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before the
-/// first target if that is hidden. Readings often come between targets.
+/// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before
+/// the first target if that is hidden. Readings often come between targets.
 std::vector<bool> hidden_rows(const ObservedRun& run, const std::string& target, const std::vector<bool>& hidden) {
   const std::vector<double>& drift = run.readings.at(target).values;
   const auto is_target = [](double v) { return std::isfinite(v); };

@@ -84,7 +84,8 @@ class Observer final : public Predictor {
   [[nodiscard]] std::vector<effects::Effect> laws() const override { return laws_; }
   [[nodiscard]] double period_s() const override { return settings_.period_s; }  ///< between the rows that it learned from
   [[nodiscard]] bool looks_after_inputs() const override { return true; }
-  /// Kind `observer`: matrices of the reduced model, the effects whose laws drive it, and what it has learned of its factors.
+  /// Kind `observer`: matrices of the reduced model, the effects whose laws drive it, and what it has learned of its
+  /// factors.
   [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] const Observer* observer() const override { return this; }
   /// Gives row by row the same as observe() for the whole run.

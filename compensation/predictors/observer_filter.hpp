@@ -1,5 +1,6 @@
 #pragma once
-// The observer's extended Kalman filter: the equations alone. Which readings it may use is judged elsewhere (observer_run.cpp).
+// The observer's extended Kalman filter: the equations alone. Which readings it may use is judged elsewhere
+// (observer_run.cpp).
 
 #include <map>
 #include <span>
@@ -9,8 +10,8 @@
 
 namespace driftwright::compensation {
 
-/// During one run: a normal distribution over, in this order, the reduced state z, the factors of sources and exchanges (minus
-/// 1), the factor on the drift (minus 1), and the offset of the indicator's zero [m]. Equations: Observer.
+/// During one run: a normal distribution over, in this order, the reduced state z, the factors of sources and exchanges
+/// (minus 1), the factor on the drift (minus 1), and the offset of the indicator's zero [m]. Equations: Observer.
 class ObserverFilter {
  public:
   using Belief = Observer::Belief;
