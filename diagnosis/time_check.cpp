@@ -68,8 +68,8 @@ void require_plausible_times(const std::vector<MeasuredRun>& runs, const Twin& t
       if (is_met_between(0.5) || is_met_between(0.75)) continue;
       throw InputError(fmt::format(
           "{}: the times look {} times too {}: with the times as recorded the scenario leaves {:.0f} % of the course of the "
-          "readings, "
-          "with times {} as long {:.0f} %; does the time's header (time_s, time_min, time_h) say what its numbers are?",
+          "readings, with times {} as long {:.0f} %; does the time's header (time_s, time_min, time_h) say what its numbers "
+          "are?",
           run.path, 60, factor < 1.0 ? "long" : "short", 100.0 * as_recorded, factor < 1.0 ? "a sixtieth" : "60 times",
           100.0 * otherwise));
     }
