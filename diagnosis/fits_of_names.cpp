@@ -17,8 +17,8 @@ constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
 // something explains what is stated.
 constexpr double kHopeless = 0.5, kHope = 8.0;
-constexpr int kLeastLaws = 2;         // of a candidate that are fitted in a claim's place
-constexpr std::size_t kTogether = 4;  // fits between two looks at that
+constexpr int kLeastLaws = 2;             // of a candidate that are fitted in a claim's place
+constexpr std::size_t kFitsTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
 
 /// Whether one of a fit's last claims is a factor so close to one that it changes nothing in practice.
@@ -234,7 +234,7 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
   for (int n_tried = 0; n_tried < n && !listener.wants_end();) {
     listener.share(static_cast<double>(n_tried) / n);
     std::vector<Score> next;
-    while (next.size() < kTogether && n_tried < n) {
+    while (next.size() < kFitsTogether && n_tried < n) {
       const auto quotient = [](const auto& place) { return place.second.is_open() ? place.second.quotient() : 0.0; };
       const auto likeliest = std::max_element(places.begin(), places.end(),
                                               [&](const auto& a, const auto& b) { return quotient(a) < quotient(b); });
@@ -280,7 +280,7 @@ std::vector<FittedClaim> fit_instead(const Ground& ground, const Hypothesis& bas
     for (const FittedClaim& f : trials.fitted) best_gain = std::max(best_gain, trials.gain(f));
     if (!(chosen[from].gain > kHopeless * best_gain - kHope)) break;
     listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
-    const std::size_t n_next = std::min(kTogether, chosen.size() - from);
+    const std::size_t n_next = std::min(kFitsTogether, chosen.size() - from);
     trials.fit({chosen.data() + from, n_next});
     from += n_next;
   }
