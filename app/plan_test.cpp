@@ -4,7 +4,6 @@
 
 #include "app/kept_pieces.hpp"
 #include "app/results.hpp"
-#include "base/errors.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/test_plan_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
@@ -13,13 +12,6 @@
 
 namespace driftwright::app {
 namespace {
-
-/// @param least, most  in `unit`
-double quantity(const std::string& option, const std::string& text, const char* unit, double least, double most) {
-  const double value = option_quantity(option, text, unit);
-  if (value >= least && value <= most) return value;
-  throw InputError(fmt::format("{} '{}': {:g} {} to {:g} {} is allowed", option, text, least, unit, most, unit));
-}
 
 bool is_of_spindle_alone(const Cyclogram& c) {
   return std::all_of(c.sections.begin(), c.sections.end(),
@@ -33,17 +25,19 @@ void plan_test(const PlanTestOptions& options) {
   (void)scenarios::require_machine(scenario, "plan-test");
   studies::TestPlanOptions how{
       .interval_s = scenario.solver.output_interval_s, .n_programmes = options.n_programmes, .seed = options.seed};
-  if (!options.time.empty()) how.duration_s = 3600.0 * quantity("--time", options.time, "h", 0.5, 168.0);
+  if (!options.time.empty()) how.duration_s = 3600.0 * option_quantity("--time", options.time, "h", 0.5, 168.0);
   constexpr double kMostRows = 20000.0;  // each row has a column for each law in doubt
   const double finest_s = std::max(0.1, how.duration_s / kMostRows);
   how.interval_s = std::clamp(how.interval_s, finest_s, how.duration_s / 96.0);
   if (!options.interval.empty())
-    how.interval_s = quantity("--interval", options.interval, "s", finest_s, how.duration_s / 96.0);
-  if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+    how.interval_s = option_quantity("--interval", options.interval, "s", finest_s, how.duration_s / 96.0);
+  if (!options.speed_limit.empty())
+    how.most_speed_rpm = option_quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
   scenarios::require_speed_within_limits(scenario, how.most_speed_rpm, "--speed-limit");
-  if (!options.noise_K.empty()) how.noise.temperature_K = quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
+  if (!options.noise_K.empty())
+    how.noise.temperature_K = option_quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
   if (!options.noise_um.empty())
-    how.noise.displacement_um = quantity("--noise-displacement", options.noise_um, "um", 1e-3, 1e3);
+    how.noise.displacement_um = option_quantity("--noise-displacement", options.noise_um, "um", 1e-3, 1e3);
   KeptPieces kept(checked_results(options, scenario.name), options, options.scenario,
                   {"plan-test", options.time, options.speed_limit, options.interval, options.noise_K, options.noise_um,
                    fmt::format("{} {}", options.n_programmes, options.seed)});

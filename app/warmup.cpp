@@ -13,14 +13,6 @@
 namespace driftwright::app {
 namespace {
 
-/// @param least, most  in `unit`
-double quantity(const std::string& option, const std::string& text, const char* unit, double least, double most) {
-  const double value = option_quantity(option, text, unit);
-  if (value >= least && value <= most) return value;
-  const std::string of = unit == std::string_view("1") ? "" : fmt::format(" {}", unit);
-  throw InputError(fmt::format("{} '{}': {:g}{} to {:g}{} is allowed", option, text, least, of, most, of));
-}
-
 /// A cyclogram of the scenario, a record CSV, or an NC program as the scenario's schedule reads it.
 Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
   const std::filesystem::path path(then);
@@ -49,13 +41,15 @@ void warmup(const WarmUpVerbOptions& options) {
   studies::WarmUpOptions how{.from = {.start = options.start, .after_pause = options.after_pause, .model = options.model},
                              .channels = options.channels,
                              .tolerance_um = scenario.study ? scenario.study->tolerance_um : 10.0};
-  if (!options.tolerance.empty()) how.tolerance_um = quantity("--tolerance", options.tolerance, "um", 1e-3, 1e4);
-  if (!options.margin.empty()) how.kept_free = quantity("--margin", options.margin, "1", 0.0, 0.95);
-  if (!options.model_error.empty()) how.model_error = quantity("--model-error", options.model_error, "1", 0.001, 1.0);
-  if (!options.power_limit.empty()) how.most_power_W = quantity("--power-limit", options.power_limit, "W", 0.1, 1e6);
-  if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+  if (!options.tolerance.empty()) how.tolerance_um = option_quantity("--tolerance", options.tolerance, "um", 1e-3, 1e4);
+  if (!options.margin.empty()) how.kept_free = option_quantity("--margin", options.margin, "1", 0.0, 0.95);
+  if (!options.model_error.empty()) how.model_error = option_quantity("--model-error", options.model_error, "1", 0.001, 1.0);
+  if (!options.power_limit.empty()) how.most_power_W = option_quantity("--power-limit", options.power_limit, "W", 0.1, 1e6);
+  if (!options.speed_limit.empty())
+    how.most_speed_rpm = option_quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
   scenarios::require_speed_within_limits(scenario, how.most_speed_rpm, "--speed-limit");
-  if (!options.time_limit.empty()) how.most_s = quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);
+  if (!options.time_limit.empty())
+    how.most_s = option_quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);
   const Cyclogram job = job_of(scenario, options.then);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

@@ -11,6 +11,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/characters.hpp"
 #include "base/config_text.hpp"
 #include "base/delimited_text.hpp"
 
@@ -156,8 +157,7 @@ Where ConfigNode::where(const std::string& key) const {
 }
 
 ConfigNodePtr read_config_tree(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   for (const char* geometry : {".step", ".stp", ".msh", ".inp", ".vtu"}) {
     if (extension == geometry)
       throw InputError(fmt::format(

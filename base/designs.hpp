@@ -24,9 +24,4 @@ namespace driftwright {
 /// @param n_samples  1 to 1e6
 [[nodiscard]] Eigen::MatrixXd latin_hypercube(int n_samples, int n_variables, std::uint64_t seed);
 
-/// x at which the standard normal distribution reaches p, to about 1e-16 relative.
-/// Source: Wichura, algorithm AS 241 (PPND16), Applied Statistics 37 (1988) 477-484.
-/// @throws RangeError  unless 0 < p < 1
-[[nodiscard]] double normal_quantile(double p);
-
 }  // namespace driftwright

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
@@ -18,32 +19,22 @@
 namespace driftwright {
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-std::string without_margins(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
 bool has_word(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower(name);
+  const std::string low = lower_case(name);
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
 }
 
 bool is_word(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower(without_margins(name));
+  const std::string low = lower_case(trimmed(name));
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low == word; });
 }
 
 }  // namespace
 
 std::string unit_of_words(const std::string& text) {
-  std::string unit = without_margins(plain_name(text));
+  std::string unit = trimmed(plain_name(text));
   if (unit.size() > 2 && ((unit.front() == '[' && unit.back() == ']') || (unit.front() == '(' && unit.back() == ')')))
-    unit = without_margins(unit.substr(1, unit.size() - 2));
+    unit = trimmed(unit.substr(1, unit.size() - 2));
   static const std::map<std::string, std::string> known = {
       {"°c", "degC"},     {"c", "degC"},       {"degc", "degC"},   {"deg c", "degC"}, {"℃", "degC"},
       {"grad c", "degC"}, {"celsius", "degC"}, {"°f", "degF"},     {"f", "degF"},     {"degf", "degF"},
@@ -58,29 +49,29 @@ std::string unit_of_words(const std::string& text) {
       {"a", "A"},         {"ma", "mA"},        {"nm/a", "N m/A"},  {"bar", "bar"},    {"w/m2", "W/m2"},
       {"w/m^2", "W/m2"},  {"w/m²", "W/m2"},    {"l/min", "l/min"}, {"µrad", "urad"},  {"urad", "urad"},
       {"mm/m", "mm/m"},   {"µm/m", "um/m"},    {"hz", "Hz"}};
-  const auto hit = known.find(lower(unit));
+  const auto hit = known.find(lower_case(unit));
   return hit == known.end() ? "" : hit->second;
 }
 
 HeaderWords words_of_header(const std::string& header, const std::string& unit_line) {
-  const std::string text = without_margins(plain_name(header));
+  const std::string text = trimmed(plain_name(header));
   if (const std::string unit = unit_of_words(unit_line); !unit.empty()) return {text, unit};
   static const std::regex in_brackets("^(.*?)[ _]*[\\[(]([^\\])]*)[\\])](.*)$");
   std::smatch parts;
   std::string rest = text;
   constexpr std::size_t kLongest = 1000;  // std::regex recurses once per character
   if (text.size() <= kLongest && std::regex_match(text, parts, in_brackets)) {
-    const std::string unit = unit_of_words(parts[2].str()), name = without_margins(parts[1].str() + parts[3].str());
+    const std::string unit = unit_of_words(parts[2].str()), name = trimmed(parts[1].str() + parts[3].str());
     if (!unit.empty()) return {name, unit};
-    if (!name.empty() && without_margins(parts[3].str()).empty())
-      rest = without_margins(parts[1].str());  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
+    if (!name.empty() && trimmed(parts[3].str()).empty())
+      rest = trimmed(parts[1].str());  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
   }
   for (const std::string end : {"/", ",", " in ", " ", "_"}) {  // "T3/°C", "T3, °C", "T3 in °C", "T3 °C", "T3_degC"
     const std::size_t at = rest.rfind(end);
     if (at == std::string::npos || at == 0) continue;
     const std::string word = rest.substr(at + end.size()), unit = unit_of_words(word);
     const bool is_letter = word.size() == 1 && (end == " " || end == "_");  // "Axis C" is no temperature
-    if (!unit.empty() && !is_letter) return {without_margins(rest.substr(0, at)), unit};
+    if (!unit.empty() && !is_letter) return {trimmed(rest.substr(0, at)), unit};
   }
   return {text, ""};
 }
@@ -93,7 +84,7 @@ std::string likely_unit(const std::string& name) {
 
 bool is_time_name(const std::string& name) {
   return is_word(name, {"t", "x_value", "elapsed", "laufzeit"}) || has_word(name, {"time", "sekunden"}) ||
-         lower(without_margins(name)).starts_with("zeit");
+         lower_case(trimmed(name)).starts_with("zeit");
 }
 bool is_tag_name(const std::string& name) {
   return has_word(name, {"tag", "var", "name", "signal", "point", "kanal", "channel", "messstelle"});
@@ -114,7 +105,7 @@ bool is_ambient_name(const std::string& name) {
   return has_word(name, {"ambient", "hall", "room", "raum", "umgebung", "luft", "air"});
 }
 bool is_counter_name(const std::string& name) {
-  const std::string low = lower(without_margins(name));
+  const std::string low = lower_case(trimmed(name));
   return low.empty() ||
          is_word(name, {"#", "no", "no.", "nr", "nr.", "index", "record", "row", "quality", "validity", "status"}) ||
          low.starts_with("sweep") || low.starts_with("scan") || low.starts_with("alarm") || low.starts_with("sample");
@@ -135,7 +126,7 @@ std::string channel_name(const std::string& name, std::size_t number) {
       text.replace(at, std::string(from).size(), to);
   }
   std::string plain;
-  for (char c : lower(text)) {
+  for (char c : lower_case(text)) {
     const bool is_kept = c >= 'a' && c <= 'z';
     const bool is_digit = c >= '0' && c <= '9';
     if (is_kept || is_digit)

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
 #include "base/usual_ranges.hpp"
 
 namespace driftwright {
@@ -55,8 +56,8 @@ struct Kind {
 };
 
 std::optional<Kind> kind_of_readings(const std::string& unit) {
-  if (unit == "degC" || unit == "K") return Kind{.is_temperature = true, .is_absolute = unit == "degC"};
-  if (unit == "um" || unit == "mm" || unit == "urad") return Kind{};
+  if (is_temperature_unit(unit)) return Kind{.is_temperature = true, .is_absolute = unit == "degC"};
+  if (is_displacement_unit(unit)) return Kind{};
   return std::nullopt;
 }
 

@@ -15,4 +15,12 @@ double option_quantity(const std::string& option, const std::string& text, const
   }
 }
 
+double option_quantity(const std::string& option, const std::string& text, const std::string& unit, double least,
+                       double most) {
+  const double value = option_quantity(option, text, unit);
+  if (value >= least && value <= most) return value;
+  const std::string of = unit == "1" ? "" : " " + unit;
+  throw InputError(fmt::format("{} '{}': {:g}{} to {:g}{} is allowed", option, text, least, of, most, of));
+}
+
 }  // namespace driftwright

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/normal.hpp"
+#include "base/shown_units.hpp"
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/judge.hpp"
@@ -136,7 +138,7 @@ std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
     numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x[at]),
-                       k.value(x[at] - 1.96 * sd), k.value(x[at] + 1.96 * sd), x[at] / known_to[i], known_to[i],
+                       k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i], known_to[i],
                        k.scale == Knob::Scale::kLog});
   }
   return numbers;

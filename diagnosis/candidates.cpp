@@ -11,8 +11,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-// Description length of a law [nats]: one bit for each number after its size, which it has or has not. Numbers that the readings determine pay in the evidence besides; of laws
-// that do the same because their further numbers do nothing, the one with the fewest is the cause: the scenario's own number with another value.
+// Description length of a law [nats]: one bit for each number after its size, which it has or has not. Numbers that the
+// readings determine pay in the evidence besides; of laws that do the same because their further numbers do nothing, the one
+// with the fewest is the cause: the scenario's own number with another value.
 constexpr double kFurtherNumber = std::numbers::ln2;
 
 Candidate& candidate(std::vector<Candidate>& list, const std::string& effect, const std::string& where) {

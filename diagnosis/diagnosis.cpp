@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/normal.hpp"
 #include "diagnosis/calibration.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
@@ -41,7 +42,7 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
     const Knob& knob = of.knobs[k];
     const auto at = first + static_cast<Eigen::Index>(k);
     const double sd = std::sqrt(std::max(0.0, fit.covariance(at, at)));
-    const Interval x = listener.wants_end() ? Interval{fit.x[at] - 1.96 * sd, fit.x[at] + 1.96 * sd}
+    const Interval x = listener.wants_end() ? Interval{fit.x[at] - kNormal95 * sd, fit.x[at] + kNormal95 * sd}
                                             : profile_interval(fitter, hypothesis, fit, claim, k);
     const double scale = knob.is_time ? 60.0 : 1.0;
     c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[at]) / scale,
@@ -210,6 +211,74 @@ double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
          static_cast<double>(fitter.runs().size()) * size;
 }
 
+/// The causes that the search found, with intervals, and what cannot be distinguished from them.
+void add_causes_found(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
+  const std::vector<Candidate>& list = d.search.candidates;
+  listener.begin("intervals");
+  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
+    listener.share(static_cast<double>(c) / static_cast<double>(d.search.findings.size()));
+    const Finding& f = d.search.findings[c];
+    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, listener);
+    for (const Finding::Alternative& a : f.alternatives) {
+      Hypothesis other = d.search.hypothesis;
+      other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
+      other.push_back(a.claim);
+      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
+      leave_out(cause.alternatives.back(), "the cause from which it cannot be distinguished is written instead");
+      cause.alternatives.back().probability = a.probability;
+      cause.alternatives.back().share = a.share;
+    }
+    cause.probability = f.probability;
+    cause.share = f.share;
+    cause.odds = f.odds;
+    d.causes.push_back(std::move(cause));
+  }
+}
+
+/// What kept-out records, and an ambient that is far off, say against the causes that are named.
+void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
+  const bool is_any_named =
+      std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
+  if (is_any_named && held.fails) {
+    if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
+    d.unexplained->fails_held_out = true;
+  }
+  if (const double offset_K = largest_offset_K(d.scatter, d.search.fit.x); is_any_named && offset_K > kWrongAmbient_K) {
+    if (!d.unexplained && held.elsewhere_at) d.unexplained.emplace().channels.push_back(*held.elsewhere_at);
+    if (d.unexplained) d.unexplained->ambient_off_K = offset_K;
+  }
+}
+
+/// Where something is left that nothing explains: writes only what holds nevertheless.
+void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs, const HeldOut& held,
+                Twin::Workspace& workspace, const Listener& listener) {
+  if (runs.size() == 1) {
+    const std::optional<CausesAlone> alone =
+        listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
+    if (alone) {
+      write_alone(d, *alone, fitter, workspace, listener);
+    } else if (d.written.keeps_numbers) {
+      write_nothing(d, "a single record of which something is left that nothing explains says too little of others");
+    }
+  } else if (d.written.keeps_numbers && !listener.wants_end()) {
+    const std::string why = worse_in_another_cycle(fitter, d.search, d.noise, d.written.causes);
+    if (!why.empty()) write_nothing(d, why);
+  }
+}
+
+/// An experiment where causes cannot be distinguished, or one is in doubt.
+void add_experiment(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
+  const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
+  std::vector<char> in_doubt(d.search.findings.size(), 0);  // marks a cause that is suspected against nothing at all
+  for (std::size_t c = 0; c < in_doubt.size() && d.verdict == Verdict::kSuspected; ++c)
+    in_doubt[c] = d.causes[c].standing == Standing::kSuspected;
+  const bool is_in_doubt = std::any_of(in_doubt.begin(), in_doubt.end(), [](char doubt) { return doubt != 0; });
+  if ((is_open || is_in_doubt) && !is_wrong_all_over(d) && !listener.wants_end()) {
+    listener.begin("choosing an experiment");
+    d.experiment = propose_experiment(fitter, d.search, in_doubt);
+  }
+}
+
 }  // namespace
 
 void leave_numbers(Diagnosis& d) {
@@ -263,25 +332,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.unexplained->statement = nameless->statement;
   }
   d.scatter_alone = d.search.without.prediction;
-  listener.begin("intervals");
-  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
-    listener.share(static_cast<double>(c) / static_cast<double>(d.search.findings.size()));
-    const Finding& f = d.search.findings[c];
-    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, listener);
-    for (const Finding::Alternative& a : f.alternatives) {
-      Hypothesis other = d.search.hypothesis;
-      other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
-      other.push_back(a.claim);
-      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
-      leave_out(cause.alternatives.back(), "the cause from which it cannot be distinguished is written instead");
-      cause.alternatives.back().probability = a.probability;
-      cause.alternatives.back().share = a.share;
-    }
-    cause.probability = f.probability;
-    cause.share = f.share;
-    cause.odds = f.odds;
-    d.causes.push_back(std::move(cause));
-  }
+  add_causes_found(d, fitter, listener);
   listener.begin("measuring the gain");
   SearchAgain search_again;
   if (search_work(fitter, list) <= kMostWork) {
@@ -304,16 +355,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.gain = held.channels;
   d.misses = held.misses;
   give_standing(d, held);
-  const bool is_any_named =
-      std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
-  if (is_any_named && held.fails) {
-    if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
-    d.unexplained->fails_held_out = true;
-  }
-  if (const double offset_K = largest_offset_K(d.scatter, d.search.fit.x); is_any_named && offset_K > kWrongAmbient_K) {
-    if (!d.unexplained && held.elsewhere_at) d.unexplained.emplace().channels.push_back(*held.elsewhere_at);
-    if (d.unexplained) d.unexplained->ambient_off_K = offset_K;
-  }
+  doubt_by_kept_out(d, held);
   if (is_wrong_all_over(d)) doubt_all(d, "too many of the scenario's own numbers had to go beyond what is known of them");
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {
@@ -321,29 +363,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
   }
   if (d.verdict == Verdict::kUnexplained) doubt_all(d, "more is left than it explains");
-  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) {
-    if (runs.size() == 1) {
-      const std::optional<CausesAlone> alone =
-          listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
-      if (alone) {
-        write_alone(d, *alone, fitter, workspace, listener);
-      } else if (d.written.keeps_numbers) {
-        write_nothing(d, "a single record of which something is left that nothing explains says too little of others");
-      }
-    } else if (d.written.keeps_numbers && !listener.wants_end()) {
-      const std::string why = worse_in_another_cycle(fitter, d.search, d.noise, d.written.causes);
-      if (!why.empty()) write_nothing(d, why);
-    }
-  }
-  const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
-  std::vector<char> in_doubt(d.search.findings.size(), 0);  // marks a cause that is suspected against nothing at all
-  for (std::size_t c = 0; c < in_doubt.size() && d.verdict == Verdict::kSuspected; ++c)
-    in_doubt[c] = d.causes[c].standing == Standing::kSuspected;
-  const bool is_in_doubt = std::any_of(in_doubt.begin(), in_doubt.end(), [](char doubt) { return doubt != 0; });
-  if ((is_open || is_in_doubt) && !is_wrong_all_over(d) && !listener.wants_end()) {
-    listener.begin("choosing an experiment");
-    d.experiment = propose_experiment(fitter, d.search, in_doubt);
-  }
+  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) write_less(d, fitter, runs, held, workspace, listener);
+  add_experiment(d, fitter, listener);
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)
                  : reason_of(d);

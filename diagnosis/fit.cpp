@@ -48,7 +48,8 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   return smooth;
 }
 
-/// Solves H s = g within bounds of the first numbers of x: a number whose step would pass its bound ends there, and the others are solved again.
+/// Solves H s = g within bounds of the first numbers of x: a number whose step would pass its bound ends there, and the
+/// others are solved again.
 /// @param x, most  values of the first numbers, and their largest distances from zero
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient, const Eigen::VectorXd& x,
                              const Eigen::VectorXd& most) {
@@ -267,8 +268,8 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
     if (std::abs(moved(by)) < kAtBound * std::abs(by)) return p;
     return has_solution([&] { p = predict_beside(here, base, hypothesis, turned, workspace, about); }) ? p : Prediction{};
   };
-  // Differences from both sides: if capacities, conductances and heats change by the same factor, no reading changes. The curvature errors of one-sided slopes do not cancel
-  // there, so this direction would seem far better known than it is.
+  // Differences from both sides: if capacities, conductances and heats change by the same factor, no reading changes. The
+  // curvature errors of one-sided slopes do not cancel there, so this direction would seem far better known than it is.
   for (double share : {1.0, 0.1}) {  // a machine that is about to run away has a solution on one side only
     const double step = share * knob.step;
     Prediction above = beside(step), below = beside(-step);
@@ -474,7 +475,8 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   std::vector<double> passed;  // misfits
   double searched_at = 1e300;  // misfit at which no other time was better
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
-  // Times are fixed during the first step: linear theory chose them together with moves of all other numbers, and before these moves the search for better times would be misled.
+  // Times are fixed during the first step: linear theory chose them together with moves of all other numbers, and before
+  // these moves the search for better times would be misled.
   for (int iteration = search_times ? -1 : 0; iteration < kMostIterations + n_retakes; ++iteration) {
     const bool times_wait = iteration < 0;
     differentiate(false);

@@ -4,10 +4,11 @@
 //     Φ(x) = 1/2 |W (y - f(x))|² + Σ ρ_i(x_i / sd_i),    log Z ≈ -Φ(x̂) - 1/2 log det(S (J'J + B⁻²) S),   S = diag(sd)
 //
 // x: every uncertain number of the scenario (scatter) and those of the hypothesis. W: whitening. J: slopes of W f at x̂.
-// ρ(u): of scatter u²/2, normal; of a claim's numbers 5/2 log(1 + u²/5), Student's t of 4 degrees of freedom, scaled so that near 0 it
-// is u²/2 as well: what size a fault usually has is known roughly, and one far beyond it is not drawn back. B: widths of the normal
-// priors that draw x̂ to zero as much, sd² B⁻² = ρ'(u)/u, which is positive everywhere where ρ'' is not. The second term of log Z is
-// what more freedom costs: Laplace's approximation of the marginal likelihood, with B⁻² in the place of the priors' curvature.
+// ρ(u): of scatter u²/2, normal; of a claim's numbers 5/2 log(1 + u²/5), Student's t of 4 degrees of freedom, scaled so that
+// near 0 it is u²/2 as well: what size a fault usually has is known roughly, and one far beyond it is not drawn back. B:
+// widths of the normal priors that draw x̂ to zero as much, sd² B⁻² = ρ'(u)/u, which is positive everywhere where ρ'' is
+// not. The second term of log Z is what more freedom costs: Laplace's approximation of the marginal likelihood, with B⁻² in
+// the place of the priors' curvature.
 // Source: MacKay, Neural Computation 4 (1992) 415-447; Gauss-Newton with step control.
 
 #include <memory>
@@ -63,14 +64,16 @@ class Fitter {
   Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear,
          const Listener& listener = {});
 
-  /// The same with other readings: some of them left out, the noise as it is, where there is one. @param runs  with the same rows, the missing ones NaN; outlive it
+  /// The same with other readings: some of them left out, the noise as it is, where there is one. @param runs  with the same
+  /// rows, the missing ones NaN; outlive it
   Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs);
 
   /// Further columns with an unknown amplitude of standard deviation 1; the noise is to be set anew.
   void add_linear(const std::vector<Prediction>& columns);
   /// How well one of scatter's numbers is known: 1 sigma of its prior.
   void set_prior_sd(std::size_t number, double prior_sd) { scatter_.at(number).prior_sd = prior_sd; }
-  /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and statements look for it.
+  /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and
+  /// statements look for it.
   void hold_within(double sigmas) { most_sigmas_ = sigmas; }
   /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
   void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
@@ -80,11 +83,13 @@ class Fitter {
   /// Scatter's slopes of the last settle(); or recomputed where a fit has moved far.
   enum class Slopes { kKept, kTakenAnew };
   /// @param start       x of the claims, in order; scatter starts where it was last settled
-  /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one that has no solution
+  /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one
+  ///                    that has no solution
   /// @throws SolveError  when the machine has no solution there
   [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
                         double of_interest = kAny) const;
-  /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its value
+  /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its
+  /// value
   [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
                                Twin::Workspace& workspace, double of_interest = kAny,
                                Slopes slopes = Slopes::kTakenAnew) const;
@@ -122,7 +127,8 @@ class Fitter {
   /// @param for_slopes  as Twin::kept_run()
   [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace, bool for_slopes = true) const;
 
-  /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
+  /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects
+  /// act are taken from it.
   /// @param about      of a state near by, which others are answered from where it can be
   /// @param responses  the machine's outputs at the known state; they become those at x
   [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,

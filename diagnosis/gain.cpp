@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shown_units.hpp"
 #include "diagnosis/judge.hpp"
 
 namespace driftwright::diagnosis {
@@ -54,10 +55,7 @@ Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::strin
   });
   if (worst == channels.end()) return {};
   const auto& [name, sums] = *worst;
-  return {name,
-          sums.unit == "K"   ? "K"
-          : sums.unit == "m" ? "um"
-                             : "urad",
+  return {name, shown_difference_unit(sums.unit),
           shown_scale(sums.unit) * noise.at(name).total() * std::sqrt(sums.with / sums.n),
           (sums.with - sums.n) / std::sqrt(2.0 * sums.n)};
 }

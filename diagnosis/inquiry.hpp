@@ -1,13 +1,14 @@
 #pragma once
-// What some rows of the records say by themselves: noise, process noise, causes, numbers that have gone too far. Of all rows it is what a diagnosis says; without
-// some of them it is what would have been said had they never been read, so that they can judge it.
+// What some rows of the records say by themselves: noise, process noise, causes, numbers that have gone too far. Of all rows
+// it is what a diagnosis says; without some of them it is what would have been said had they never been read, so that they
+// can judge it.
 
 #include "diagnosis/diagnosis.hpp"
 
 namespace driftwright::diagnosis {
 
-/// Sigmas of its prior up to which a number is fitted; one that would go further is a cause. There the density of a fault exceeds that of what is
-/// known: u²/2 = log(60 candidates) + log(0.7 / 0.1) + (0.1 u / 0.7)²/2.
+/// Sigmas of its prior up to which a number is fitted; one that would go further is a cause. There the density of a fault
+/// exceeds that of what is known: u²/2 = log(60 candidates) + log(0.7 / 0.1) + (0.1 u / 0.7)²/2.
 inline constexpr double kTooFar = 3.5;
 
 /// What all inquiries about a machine begin with; none of it is fitted to readings.
@@ -36,7 +37,8 @@ struct Inquiry {
 [[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all,
                               const Listener& listener);
 
-/// What a warm start, the unseen drive of a hole and another mesh (one column a channel) change: the amplitude of each is unknown.
+/// What a warm start, the unseen drive of a hole and another mesh (one column a channel) change: the amplitude of each is
+/// unknown.
 [[nodiscard]] std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,
                                                       const std::vector<MeasuredRun>& runs, const TwinState& state);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/normal.hpp"
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
 
@@ -58,7 +59,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
   };
   const auto end = [&](double sign, Twin::Workspace& workspace) {
     double inside = 0.0, rise_inside = 0.0, outside = 0.0, rise_outside = 0.0;
-    double distance = std::min(room(sign), 1.96 * sd);
+    double distance = std::min(room(sign), kNormal95 * sd);
     if (!(distance > 0.0)) return middle;
     for (int i = 0; i < kMostTries; ++i) {
       const double r = rise(sign * distance, workspace);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "base/shown_units.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/unseen_drive.hpp"
 
@@ -219,10 +220,6 @@ Prediction Judge::filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, 
   return predicted;
 }
 
-double shown_scale(const std::string& unit) {
-  return unit == "K" ? 1.0 : 1e6;
-}
-
 KeptOutMisses misses_of(const Judge& judge, const Models& models) {
   KeptOutMisses misses{.as_written = judge.over_noise(models.written),
                        .calibrated = judge.over_noise(models.calibrated),
@@ -240,9 +237,7 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
     for (const MeasuredChannel& c : run.channels) {
       if (!index.emplace(c.name, gains.size()).second) continue;
       gains.push_back({.name = c.name,
-                       .unit = c.unit == "K"   ? "K"
-                               : c.unit == "m" ? "um"
-                                               : "urad",
+                       .unit = shown_difference_unit(c.unit),
                        .noise_floor = shown_scale(c.unit) * noise.at(c.name).total(),
                        .rmse_all_before = std::numeric_limits<double>::quiet_NaN(),
                        .rmse_written = std::numeric_limits<double>::quiet_NaN()});

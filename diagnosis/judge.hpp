@@ -97,9 +97,6 @@ class Judge {
   Prediction written_;
 };
 
-/// Factor from SI to the unit in which readings are shown: K, um, urad.
-[[nodiscard]] double shown_scale(const std::string& unit);
-
 /// Predictions of all folds by several models; empty: not available.
 struct Models {
   std::vector<Prediction> written, calibrated, extended, named = {}, found = {};

@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <set>
 
+#include "base/median.hpp"
+#include "base/normal.hpp"
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 #include "effects/recorded_column.hpp"
@@ -77,10 +80,7 @@ double usual_noise(const Readings& r) {
   std::vector<double> bends;
   for (std::size_t i = 2; i < r.value.size(); ++i)
     bends.push_back(std::abs(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2]));
-  if (bends.empty()) return 0.0;
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  return *middle / (0.6745 * std::sqrt(6.0));
+  return upper_median(std::move(bends)) / (kNormalMedian * std::sqrt(6.0));
 }
 
 /// As recorded, except the first reading: a machine at rest has the mean temperature of the air, not that of its last
@@ -183,7 +183,7 @@ int most_equal(const std::vector<double>& values, const LookedAt& looked_at) {
 }
 
 bool same_kind(const std::string& record_unit, const std::string& output_unit) {
-  if (output_unit == "K") return record_unit == "degC" || record_unit == "K";
+  if (output_unit == "K") return is_temperature_unit(record_unit);
   if (output_unit == "m") return record_unit == "um" || record_unit == "mm";
   return record_unit == "urad";
 }
@@ -270,6 +270,87 @@ void keep_columns(MeasuredRun& run, const scenarios::MachineModel& model) {
   run.cyclogram.columns = std::move(kept);
 }
 
+/// The ambient, smoothed, and its thermometer's noise and steps, from readings in degC.
+void take_ambient(MeasuredRun& run, const std::vector<double>& read_C, double reference_K) {
+  std::vector<double> ambient_K;
+  for (double v : read_C) ambient_K.push_back(v + kZeroCelsius_K - reference_K);
+  const Readings ambient = present_readings(run.time_s, ambient_K);
+  run.ambient = smoothed(ambient);
+  run.ambient_noise_K = white_noise(ambient);
+  run.ambient_quantum_K = seen_step(present_readings(run.time_s, read_C).value);
+}
+
+/// @throws InputError  for a record's channel that cannot be in the output's unit
+void require_same_kind(const std::string& path, const Channel& recorded, const std::string& output_unit) {
+  if (!same_kind(recorded.unit, output_unit)) {
+    throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, recorded.name,
+                                 recorded.unit, recorded.name,
+                                 output_unit == "K"   ? "temperature (degC)"
+                                 : output_unit == "m" ? "displacement (um)"
+                                                      : "tilt (urad)"));
+  }
+}
+
+/// A channel in K, m or rad; missing at moments at which it is unknown what it shows, and in holes of the drive.
+/// @param recorded  its values before those that cannot be right were left out
+MeasuredChannel in_si(const MeasuredRun& run, const Channel& channel, const std::vector<double>& recorded, int output,
+                      const std::string& unit, double reference_C) {
+  MeasuredChannel measured{channel.name, output, unit, {}, 0.0, channel.unit};
+  const double scale = unit == "K" ? 1.0 : channel.unit == "mm" ? 1e-3 : 1e-6;
+  const double offset = channel.unit == "degC" ? reference_C : 0.0;
+  measured.value.resize(static_cast<Eigen::Index>(run.time_s.size()));
+  for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+    measured.value[static_cast<Eigen::Index>(i)] = scale * (channel.values[i] - offset);
+  }
+  for (std::size_t i = 0; unit != "K" && i < run.time_s.size(); ++i) {
+    // At the exact time of a change, and of the start, it is unknown whether a reading that follows speed has jumped
+    // already.
+    const double before_rpm = i == 0 ? 0.0 : run.cyclogram.speed_rpm(run.time_s[i - 1]);
+    if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
+    measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
+  }
+  for (const Hole& hole : run.holes) {
+    for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+      if (run.time_s[i] > hole.begin_s && run.time_s[i] < hole.end_s)
+        measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
+    }
+  }
+  measured.quantum = scale * quantum_of(recorded);
+  return measured;
+}
+
+/// Says which channels are compared with nothing, and which of these may drive the machine.
+void note_further_channels(MeasuredRun& run, const Record& record, const scenarios::MachineModel& model,
+                           const solver::Outputs& outputs) {
+  std::vector<std::string> unknown, drives;
+  for (const Channel& c : record.channels) {
+    const bool is_input = c.name == "speed" || c.name == "ambient" || effects::is_drive_channel(c.name);
+    if (is_input || std::find(outputs.name.begin(), outputs.name.end(), c.name) != outputs.name.end()) continue;
+    const bool is_drive = run.cyclogram.column(c.name) != nullptr;
+    (is_drive ? drives : unknown).push_back(c.header());
+    if (!is_drive) run.left_out.push_back({c.name, "the scenario has no sensor or displacement of that name"});
+  }
+  if (!unknown.empty()) {
+    run.findings.push_back(
+        {"", fmt::format("the scenario knows no sensor or displacement called {}; not compared", fmt::join(unknown, ", ")),
+         false});
+  }
+  const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
+  std::erase_if(drives, [&](const std::string& header) {
+    return std::any_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
+      return run.cyclogram.column(name) && run.cyclogram.column(name)->header() == header;
+    });
+  });
+  if (!drives.empty()) {
+    run.findings.push_back(
+        {"",
+         fmt::format("the scenario knows no sensor or displacement called {}; not compared, but taken for "
+                     "what may drive the machine",
+                     fmt::join(drives, ", ")),
+         false});
+  }
+}
+
 }  // namespace
 
 const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
@@ -322,15 +403,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   run.name = run.cyclogram.name;
   run.ambient = std::move(recorded_run.ambient);
   run.has_ambient = recorded_run.has_ambient();
-  if (run.has_ambient) {
-    std::vector<double> ambient_K;
-    for (double v : record.at(recorded_run.ambient_channel).values)
-      ambient_K.push_back(v + kZeroCelsius_K - model.reference_K);
-    const Readings ambient = present_readings(run.time_s, ambient_K);
-    run.ambient = smoothed(ambient);
-    run.ambient_noise_K = white_noise(ambient);
-    run.ambient_quantum_K = seen_step(present_readings(run.time_s, record.at(recorded_run.ambient_channel).values).value);
-  }
+  if (run.has_ambient) take_ambient(run, record.at(recorded_run.ambient_channel).values, model.reference_K);
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   scenarios::require_columns(model, run.cyclogram);
   keep_columns(run, model);
@@ -340,13 +413,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
     const Channel* recorded = record.find(outputs.name[o]);
     if (!recorded) continue;
     if (run.has_ambient && outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;
-    if (!same_kind(recorded->unit, outputs.unit[o])) {
-      throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, recorded->name,
-                                   recorded->unit, recorded->name,
-                                   outputs.unit[o] == "K"   ? "temperature (degC)"
-                                   : outputs.unit[o] == "m" ? "displacement (um)"
-                                                            : "tilt (urad)"));
-    }
+    require_same_kind(path, *recorded, outputs.unit[o]);
     const std::size_t n_before = run.findings.size();
     Channel channel = *recorded;
     inspect(record, run.time_s, channel, run.findings);
@@ -356,56 +423,9 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
       run.left_out.push_back({channel.name, run.findings.back().what});
       continue;
     }
-    MeasuredChannel measured{channel.name, static_cast<int>(o), outputs.unit[o], {}, 0.0, channel.unit};
-    const double scale = outputs.unit[o] == "K" ? 1.0 : channel.unit == "mm" ? 1e-3 : 1e-6;
-    const double offset = channel.unit == "degC" ? reference_C : 0.0;
-    measured.value.resize(static_cast<Eigen::Index>(run.time_s.size()));
-    for (std::size_t i = 0; i < run.time_s.size(); ++i) {
-      measured.value[static_cast<Eigen::Index>(i)] = scale * (channel.values[i] - offset);
-    }
-    for (std::size_t i = 0; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
-      // At the exact time of a change, and of the start, it is unknown whether a reading that follows speed has jumped
-      // already.
-      const double before_rpm = i == 0 ? 0.0 : run.cyclogram.speed_rpm(run.time_s[i - 1]);
-      if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
-      measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
-    }
-    for (const Hole& hole : run.holes) {
-      for (std::size_t i = 0; i < run.time_s.size(); ++i) {
-        if (run.time_s[i] > hole.begin_s && run.time_s[i] < hole.end_s)
-          measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
-      }
-    }
-    measured.quantum = scale * quantum_of(recorded->values);
-    run.channels.push_back(std::move(measured));
+    run.channels.push_back(in_si(run, channel, recorded->values, static_cast<int>(o), outputs.unit[o], reference_C));
   }
-  std::vector<std::string> unknown, drives;
-  for (const Channel& c : record.channels) {
-    const bool is_input = c.name == "speed" || c.name == "ambient" || effects::is_drive_channel(c.name);
-    if (is_input || std::find(outputs.name.begin(), outputs.name.end(), c.name) != outputs.name.end()) continue;
-    const bool is_drive = run.cyclogram.column(c.name) != nullptr;
-    (is_drive ? drives : unknown).push_back(c.header());
-    if (!is_drive) run.left_out.push_back({c.name, "the scenario has no sensor or displacement of that name"});
-  }
-  if (!unknown.empty()) {
-    run.findings.push_back(
-        {"", fmt::format("the scenario knows no sensor or displacement called {}; not compared", fmt::join(unknown, ", ")),
-         false});
-  }
-  const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
-  std::erase_if(drives, [&](const std::string& header) {
-    return std::any_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
-      return run.cyclogram.column(name) && run.cyclogram.column(name)->header() == header;
-    });
-  });
-  if (!drives.empty()) {
-    run.findings.push_back(
-        {"",
-         fmt::format("the scenario knows no sensor or displacement called {}; not compared, but taken for "
-                     "what may drive the machine",
-                     fmt::join(drives, ", ")),
-         false});
-  }
+  note_further_channels(run, record, model, outputs);
   if (run.channels.empty()) {
     std::string why;
     for (const DataFinding& f : run.findings) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "base/lists.hpp"
 #include "diagnosis/happening.hpp"
 #include "diagnosis/visit.hpp"
 #include "effects/lasting.hpp"
@@ -56,10 +57,6 @@ const std::map<std::string, std::vector<StatedQuantity>>& quantities() {
                                                                          {"clock_offset", {kClock}},
                                                                          {"run_state", {kHeat, kExchange, kSpeed}}};
   return map;
-}
-
-bool stands_for(const std::vector<StatedQuantity>& list, StatedQuantity q) {
-  return std::find(list.begin(), list.end(), q) != list.end();
 }
 
 Words words_of(const std::string& where) {
@@ -198,8 +195,8 @@ bool says(const Statement& s, const std::string& effect, const std::string& wher
   stated.erase(effects::kAmbientName);
   if (!s.at.empty()) stated.insert(s.at);
   if (of == quantities().end()) return has_common(claimed, stated);
-  if (!stands_for(of->second, s.quantity)) return false;
-  const bool is_of_speed = stands_for(of->second, StatedQuantity::kSpeed);
+  if (!is_in(of->second, s.quantity)) return false;
+  const bool is_of_speed = is_in(of->second, StatedQuantity::kSpeed);
   if (s.place.front() == "all") return effect == "run_state" || is_of_speed;
   switch (s.quantity) {
     case StatedQuantity::kAmbient:

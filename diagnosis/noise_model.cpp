@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/median.hpp"
+#include "base/normal.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -30,7 +31,7 @@ Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
   }
   std::vector<double> sizes;
   for (const auto& m : moves) sizes.push_back(m.first);
-  const double usual = upper_median(sizes) / 0.6745;
+  const double usual = upper_median(sizes) / kNormalMedian;
   std::sort(moves.rbegin(), moves.rend());
   std::vector<Eigen::Index> at;
   for (const auto& [size, i] : moves) {

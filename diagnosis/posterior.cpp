@@ -9,6 +9,8 @@
 #include <numeric>
 #include <set>
 
+#include "base/normal.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -100,7 +102,7 @@ std::vector<Stated> sized(const StatementEvidence& evidence, const Set& set, dou
     Stated stated{.says = set.says[i], .log_evidence = set.log_evidence};
     const double unit = stated.says.unit_size;
     if (n == 1) {
-      const double half = 1.96 * std::sqrt(s.covariance(at, at) / power);
+      const double half = kNormal95 * std::sqrt(s.covariance(at, at) / power);
       stated.size = unit * s.size[at];
       stated.low = stated.size - std::abs(unit) * half;
       stated.high = stated.size + std::abs(unit) * half;

@@ -7,6 +7,8 @@
 #include <iterator>
 
 #include "base/median.hpp"
+#include "base/record_channel.hpp"
+#include "base/usual_step.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 
 namespace driftwright::diagnosis {
@@ -49,9 +51,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
   const Channel* speed = record.find("speed");
   if (!speed || record.n_samples() < 3) return {};
   const double start_s = record.time_s.front();
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < record.n_samples(); ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
-  const double usual_s = usual_of(steps);
+  const double usual_s = usual_of(row_steps_s(record.time_s));
   std::vector<double> times_s, rpm;  // of rows with a speed
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     if (std::isnan(speed->values[i])) continue;
@@ -83,7 +83,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
 Record without_spikes(Record record, std::vector<DataFinding>& findings) {
   for (Channel& c : record.channels) {
     // A switched quantity may be on for a single row.
-    const bool is_reading = c.unit == "degC" || c.unit == "K" || !scenarios::is_of_column(c.unit);
+    const bool is_reading = is_temperature_unit(c.unit) || !scenarios::is_of_column(c.unit);
     if (!is_reading) continue;
     std::vector<std::size_t> known;
     for (std::size_t i = 0; i < c.values.size(); ++i) {

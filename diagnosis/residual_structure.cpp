@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/normal.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -106,7 +108,7 @@ ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::Vector
     squares += r * r;
   }
   s.rms = std::sqrt(squares / std::max(1.0, n));
-  s.white_up_to = 1.96 / std::sqrt(std::max(1.0, n));
+  s.white_up_to = kNormal95 / std::sqrt(std::max(1.0, n));
   const Eigen::Index rows = residual.size();
   s.lag_1 = correlation(residual.head(rows - 1), residual.tail(rows - 1));
 

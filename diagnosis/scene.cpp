@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "base/usual_step.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -96,15 +98,6 @@ std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRu
   return columns;
 }
 
-double usual_row_s(const std::vector<double>& time_s) {
-  std::vector<double> rows_s;
-  for (std::size_t i = 1; i < time_s.size(); ++i) rows_s.push_back(time_s[i] - time_s[i - 1]);
-  if (rows_s.empty()) return 0.0;
-  const auto middle = rows_s.begin() + static_cast<std::ptrdiff_t>(rows_s.size() / 2);
-  std::nth_element(rows_s.begin(), middle, rows_s.end());
-  return *middle;
-}
-
 /// Speeds between two speeds of the records, with enough time on either side; of many, those between the speeds furthest
 /// apart.
 std::vector<double> speed_steps_rpm(const std::vector<MeasuredRun>& runs) {
@@ -148,7 +141,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   s.balance = twin.balance(s.own);
   double turning_s = 0.0, turned = 0.0;
   for (const MeasuredRun& run : runs) {
-    s.runs.push_back({run.name, run.time_s.back(), run.has_ambient, usual_row_s(run.time_s), run.start_K.size() > 0});
+    s.runs.push_back({run.name, run.time_s.back(), run.has_ambient, usual_step_s(run.time_s), run.start_K.size() > 0});
     const auto turns = [](const auto& section) { return section.drive.speed_rpm > 0.0; };
     const auto n_turning = std::count_if(run.cyclogram.sections.begin(), run.cyclogram.sections.end(), turns);
     if (n_turning > 0 && n_turning < static_cast<std::ptrdiff_t>(run.cyclogram.sections.size())) s.starts_and_stops = true;

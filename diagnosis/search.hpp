@@ -49,7 +49,8 @@ struct SearchResult {
   std::vector<Finding> findings;
 };
 
-/// Statements say what is missing; their names are fitted in full; beside the best of these, statements say what is missing still.
+/// Statements say what is missing; their names are fitted in full; beside the best of these, statements say what is missing
+/// still.
 /// @param fitter     with its noise; it ends settled at the result
 /// @param catalogue  every effect at every place that may be a name
 /// @param former     result of a search with other noise or other priors, or null; it is compared with the first name
@@ -57,8 +58,8 @@ struct SearchResult {
 [[nodiscard]] SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, const SearchOptions& options,
                                   const SearchResult* former, const Listener& listener);
 
-/// How sure each claim is: others in its place, fitted in full; its statement against all others, the other claims as fitted; and whether it is named. And the statements of
-/// all places, and of one more.
+/// How sure each claim is: others in its place, fitted in full; its statement against all others, the other claims as
+/// fitted; and whether it is named. And the statements of all places, and of one more.
 /// @param fitter  that the search was made with, settled at its end; it ends settled there
 void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& result, const Listener& listener);
 

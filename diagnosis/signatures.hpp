@@ -19,8 +19,8 @@ struct Law {
   std::size_t candidate = 0, variant = 0;
 };
 [[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
-/// Which shapes of a law get a signature: those of its grid; or with them, where there are readings, those on the way from the best of them
-/// to the shape that gains most by linear theory.
+/// Which shapes of a law get a signature: those of its grid; or with them, where there are readings, those on the way from
+/// the best of them to the shape that gains most by linear theory.
 enum class Shapes { kOfGrid, kUpToTheBest };
 /// The signatures of some laws, in addition to a fit. They depend little on the other claims.
 /// @param fit  for kOfGrid its x and prediction are enough

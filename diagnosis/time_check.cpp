@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "base/median.hpp"
 #include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
@@ -29,10 +30,12 @@ MeasuredRun with_times(MeasuredRun run, double factor) {
   return run;
 }
 
-/// What the twin leaves of the readings' course, constant offsets aside: the median over the channels. 1 where it has no solution.
+/// What the twin leaves of the readings' course, constant offsets aside: the median over the channels. 1 where it has no
+/// solution.
 double left_of_course(const MeasuredRun& run, const Twin& twin, Twin::Workspace& workspace) {
   Eigen::MatrixXd prediction;
-  if (!has_solution([&] { prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)); }))
+  if (!has_solution(
+          [&] { prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)); }))
     return 1.0;
   std::vector<double> shares;
   for (const MeasuredChannel& c : run.channels) {
@@ -45,10 +48,7 @@ double left_of_course(const MeasuredRun& run, const Twin& twin, Twin::Workspace&
     const double course = deviation(c.value.array());
     if (course > 0.0) shares.push_back(deviation(c.value.array() - prediction.row(c.output).transpose().array()) / course);
   }
-  if (shares.empty()) return 0.0;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return upper_median(std::move(shares));
 }
 
 }  // namespace
@@ -67,8 +67,9 @@ void require_plausible_times(const std::vector<MeasuredRun>& runs, const Twin& t
       };
       if (is_met_between(0.5) || is_met_between(0.75)) continue;
       throw InputError(fmt::format(
-          "{}: the times look {} times too {}: with the times as recorded the scenario leaves {:.0f} % of the course of the readings, "
-          "with times {} as long {:.0f} %; does the time's header (time_s, time_min, time_h) say what its numbers are?",
+          "{}: the times look {} times too {}: with the times as recorded the scenario leaves {:.0f} % of the course of the "
+          "readings, with times {} as long {:.0f} %; does the time's header (time_s, time_min, time_h) say what its numbers "
+          "are?",
           run.path, 60, factor < 1.0 ? "long" : "short", 100.0 * as_recorded, factor < 1.0 ? "a sixtieth" : "60 times",
           100.0 * otherwise));
     }

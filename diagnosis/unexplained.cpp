@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shown_units.hpp"
 #include "diagnosis/leftover.hpp"
 #include "diagnosis/naming.hpp"
 
@@ -23,8 +24,10 @@ constexpr double kWorthNaming = 0.35;         // share of the noise; less is not
 constexpr double kLikelyStated = 0.5;         // probability
 
 Unexplained::Channel channel_of(const Leftover& l) {
-  const char* unit = l.unit == "K" ? "K" : l.unit == "m" ? "um" : "urad";
-  return {.name = l.channel, .unit = unit, .rms = (l.unit == "K" ? 1.0 : 1e6) * l.rms, .times_noise = l.sigmas()};
+  return {.name = l.channel,
+          .unit = shown_difference_unit(l.unit),
+          .rms = shown_scale(l.unit) * l.rms,
+          .times_noise = l.sigmas()};
 }
 
 /// Noise estimated without smooth curves: anything that an AR(1) of some minutes could explain does not count as

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
+#include "base/usual_step.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -88,17 +90,15 @@ output::Document document_of(const studies::LoggerImport& import, const output::
   const double length_s = record.time_s.back() - record.time_s.front();
   add(body, output::Value{
                 .key = "duration_min", .words = "from the first row to the last", .datum = length_s / 60.0, .unit = "min"});
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < record.time_s.size(); ++i) steps_s.push_back(record.time_s[i] - record.time_s[i - 1]);
-  std::sort(steps_s.begin(), steps_s.end());
+  const std::vector<double> steps_s = row_steps_s(record.time_s);
   add(body, output::Value{.key = "usual_step_s",
                           .words = "from row to row, usually",
-                          .datum = steps_s[steps_s.size() / 2],
+                          .datum = upper_median(steps_s),
                           .unit = "s",
                           .digits = output::significant(4)});
   add(body, output::Value{.key = "longest_step_s",
                           .words = "at most",
-                          .datum = steps_s.back(),
+                          .datum = *std::max_element(steps_s.begin(), steps_s.end()),
                           .unit = "s",
                           .digits = output::significant(4)});
   add(body, output::Notes{.key = "how", .lines = words(import.map)});

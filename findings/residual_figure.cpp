@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -35,8 +36,8 @@ ShownScale shown_scale(const studies::MeasuredTwin& m, const MeasuredChannel& ch
     const double reference_K = m.twin ? m.twin->reference_K() : kZeroCelsius_K;
     return {.unit = "degC", .difference_unit = "K", .scale = 1.0, .zero = reference_K - kZeroCelsius_K};
   }
-  const char* unit = channel.unit == "m" ? "um" : "urad";
-  return {.unit = unit, .difference_unit = unit, .scale = 1e6, .zero = 0.0};
+  const char* unit = shown_difference_unit(channel.unit);
+  return {.unit = unit, .difference_unit = unit, .scale = driftwright::shown_scale(channel.unit), .zero = 0.0};
 }
 
 std::optional<ShownChannel> clearest_channel(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,

@@ -9,10 +9,11 @@
 #include <limits>
 
 #include "findings/cause_words.hpp"
-#include "findings/columns.hpp"
 #include "findings/iso230_3_section.hpp"
+#include "findings/strategy_cases.hpp"
+#include "findings/strategy_pictures.hpp"
+#include "findings/strategy_tables.hpp"
 #include "output/drift_model_files.hpp"
-#include "output/heat_map.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -22,216 +23,6 @@ using output::Datum;
 using output::Section;
 using output::Table;
 using output::Value;
-
-bool is_intact(const Case& c) {
-  return c.failed.empty();
-}
-
-bool has_failures(const StrategyMatrix& m) {
-  return m.settings.fails_at.has_value();
-}
-
-/// What the model of the strategies with physics lost when it was made linear; null if nothing.
-const LinearisedModel* linearised_of(const StrategyMatrix& m) {
-  const std::optional<Physics>& physics = m.settings.strategies.physics;
-  return physics && physics->linearised ? &*physics->linearised : nullptr;
-}
-
-/// One column of the matrix, with the cases whose worst it shows.
-struct StrategyColumn {
-  std::string title;
-  std::function<bool(const Case&)> counts;
-};
-std::vector<StrategyColumn> columns(const StrategyMatrix& m) {
-  std::vector<StrategyColumn> list;
-  for (const std::string& family : families_of(m))
-    list.push_back({family, [&m, family](const Case& c) { return is_intact(c) && m.runs[c.run].family == family; }});
-  for (const std::string& season : seasons_of(m)) {
-    if (!season.empty())
-      list.push_back({season, [&m, season](const Case& c) { return is_intact(c) && m.runs[c.run].season == season; }});
-  }
-  if (has_failures(m)) list.push_back({"sensor failed", [](const Case& c) { return !is_intact(c); }});
-  return list;
-}
-
-/// A column of a picture of the matrix.
-struct MapColumn {
-  output::HeatMap::Column heading;
-  std::function<bool(const Case&)> counts;
-};
-
-/// The run on which a regression on few sensors leaves the largest error, compared with the chosen strategy.
-struct Contrast {
-  const JudgedStrategy *simple = nullptr, *chosen = nullptr;
-  std::size_t run = 0;
-};
-Contrast contrast(const StrategyMatrix& m) {
-  Contrast c;
-  for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.name == "regression, grey grade") c.simple = &s;
-  }
-  c.chosen = chosen_strategy(m);
-  if (!c.simple || !c.chosen) return c;
-  double most = -1.0;
-  for (const Case& k : c.simple->cases) {
-    if (is_intact(k) && k.after.peak_abs > most) {
-      most = k.after.peak_abs;
-      c.run = k.run;
-    }
-  }
-  return c;
-}
-
-output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<const JudgedStrategy*>& shown) {
-  const JudgedRunOfMachine& r = m.runs[run];
-  std::vector<double> t_min;
-  for (double t_s : r.run.readings.time_s) t_min.push_back(t_s / 60.0);
-  const std::string& target = m.settings.strategies.target;
-  const Record counted = scored_readings(r.run, target, m.settings.strategies.count_from_start);
-  output::Plot plot{
-      .title = fmt::format("{}{}: {}, {} and predicted", r.name, r.season.empty() ? "" : ", " + r.season, target,
-                           r.season.empty() ? "measured" : "true"),
-      .x_label = "time [min]",
-      .y_label = target + " [µm]",
-      .series = {
-          {.label = r.season.empty() ? "measured" : "true", .x = t_min, .y = counted.at(target).values, .width = 3.0}}};
-  for (const JudgedStrategy* s : shown)
-    plot.series.push_back({.label = s->fitted.name, .x = t_min, .y = live(*s->fitted.predictor, r.run)});
-  return plot;
-}
-
-bool has_failed(const Case& c) {
-  return !is_intact(c);
-}
-
-std::string name_of(const JudgedRunOfMachine& r) {
-  return r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season);
-}
-
-/// Replaces a value that is not finite, from a prediction that is missing.
-Datum finite(double value) {
-  return std::isfinite(value) ? Datum(value) : Datum("no value");
-}
-
-/// The worst case per family and season.
-Table matrix_table(const StrategyMatrix& m) {
-  Table table{
-      .key = "largest_residuals",
-      .title = fmt::format("Largest |residual| in each family and season; tolerance {:g} µm", m.settings.tolerance_um),
-      .columns = {{.key = "strategy", .title = "strategy"}},
-      .detail = true};
-  const std::vector<StrategyColumn> list = columns(m);
-  for (const StrategyColumn& c : list) table.columns.push_back(um_column(c.title, c.title));
-  for (const JudgedStrategy& s : m.strategies) {
-    std::vector<Datum> row = {s.fitted.name};
-    for (const StrategyColumn& c : list) {
-      const Worst w = worst_of(s, c.counts);
-      row.push_back(w.peak ? Datum(w.peak->after.peak_abs) : Datum());
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-Table worst_table(const StrategyMatrix& m) {
-  Table table{.key = "worst_cases",
-              .title = "Worst case of each strategy with all sensors intact",
-              .caption =
-                  "Ranges are those ISO 230-3 asks of drift, here of what is left: within 60 min, and in all. Without "
-                  "fail-safe: of the bare prediction.",
-              .columns = {{.key = "strategy", .title = "strategy"},
-                          {.key = "run", .title = "run"},
-                          um_column("peak_before_um", "peak before"),
-                          um_column("peak_left_um", "peak left"),
-                          percent_column("removed_percent", "removed"),
-                          um_column("rms_left_um", "RMS left"),
-                          um_column("peak_without_fail_safe_um", "without fail-safe"),
-                          um_column("range_60_min_um", "range in 60 min"),
-                          um_column("range_um", "range in all"),
-                          um_column("failed_peak_left_um", "peak with failed sensor"),
-                          um_column("failed_peak_without_fail_safe_um", "without fail-safe then")},
-              .detail = true};
-  for (const JudgedStrategy& s : m.strategies) {
-    const Worst w = worst_of(s, is_intact), failed = worst_of(s, has_failed);
-    if (!w.peak) continue;
-    double bare = 0.0, bare_intact = 0.0;
-    for (const Case& c : s.cases) {
-      double& worst = is_intact(c) ? bare_intact : bare;
-      worst = std::max(worst, c.peak_unguarded_um);
-    }
-    const Case& c = *w.peak;
-    table.rows.push_back({s.fitted.name, name_of(m.runs[c.run]), c.before.peak_abs, c.after.peak_abs,
-                          100.0 * (1.0 - c.left()), c.after.rmse, finite(bare_intact), c.first_hour_um, c.whole_um,
-                          failed.peak ? Datum(failed.peak->after.peak_abs) : Datum(), failed.peak ? finite(bare) : Datum()});
-  }
-  return table;
-}
-
-Table verdicts_table(const StrategyMatrix& m) {
-  Table table{.title = "Whether a strategy may go on the machine, and why",
-              .columns = {{.title = "strategy"},
-                          {.title = "verdict"},
-                          {.title = "why"},
-                          {.title = "keeps the tolerance in"},
-                          {.title = "beaten by"}},
-              .detail = true};
-  for (const JudgedStrategy& s : m.strategies) {
-    if (!s.fitted.is_baseline) table.rows.push_back({s.fitted.name, word(s.safety), s.why, s.limits, s.beaten_by});
-  }
-  return table;
-}
-
-Table false_alarms_table(const StrategyMatrix& m) {
-  Table table{.key = "false_alarms",
-              .title = "What fail-safes doubted though every sensor was intact",
-              .caption = "False alarms, which cost some of the correction.",
-              .columns = {{.key = "strategy", .title = "strategy"},
-                          {.key = "runs", .title = "runs"},
-                          {.key = "first", .title = "first of them"}},
-              .detail = true};
-  for (const JudgedStrategy& s : m.strategies) {
-    int n = 0;
-    std::string first;
-    for (const Case& c : s.cases) {
-      if (!is_intact(c) || c.events.empty()) continue;
-      if (n++ == 0) first = fmt::format("{}: {}", m.runs[c.run].name, c.events.front());
-    }
-    if (n > 0) table.rows.push_back({s.fitted.name, n, first});
-  }
-  return table;
-}
-
-Table fits_table(const StrategyMatrix& m) {
-  Table table{.title = "What each fit decided, on the training runs alone",
-              .columns = {{.title = "strategy"}, {.title = "decided"}},
-              .detail = true};
-  for (const JudgedStrategy& s : m.strategies) {
-    if (!s.fitted.reason.empty()) table.rows.push_back({s.fitted.name, s.fitted.reason});
-  }
-  return table;
-}
-
-/// The errors of strategies on each left-out part.
-Table folds_table(const StrategyMatrix& m) {
-  Table table{
-      .key = "folds",
-      .title = "RMS on parts of the training runs that were left out of the fit",
-      .caption = "The choice is made by these alone: of each kind the root mean square, of the kinds the geometric mean.",
-      .columns = {{.key = "strategy", .title = "strategy"}},
-      .detail = true};
-  const auto fullest = std::max_element(m.strategies.begin(), m.strategies.end(), [](const auto& a, const auto& b) {
-    return a.fitted.fold_errors.size() < b.fitted.fold_errors.size();
-  });
-  if (fullest == m.strategies.end()) return table;
-  for (const FoldError& e : fullest->fitted.fold_errors) table.columns.push_back(um_column(e.name, e.name));
-  for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.fold_errors.empty()) continue;
-    std::vector<Datum> row = {s.fitted.name};
-    for (const FoldError& e : s.fitted.fold_errors) row.emplace_back(e.rms_um);
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
 
 /// ISO 230-3 figures of all recorded displacements and tilts of the judged runs. The test begins in balance: a run that
 /// continues others has none.
@@ -261,62 +52,6 @@ std::string enough_text(const StrategyMatrix& m, const std::string& family) {
   return s->fitted.name;
 }
 
-/// The remaining error in µm, coloured by the tolerance. @param columns  each with the cases whose worst it shows
-output::Picture map_of(const StrategyMatrix& m, const std::string& title, const std::vector<MapColumn>& columns) {
-  output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = m.settings.tolerance_um, .unit = "µm"};
-  for (const MapColumn& c : columns) map.columns.push_back(c.heading);
-  for (const JudgedStrategy& s : m.strategies) {
-    std::vector<double> row;
-    for (const MapColumn& c : columns) {
-      const Worst w = worst_of(s, c.counts);
-      row.push_back(w.peak ? w.peak->after.peak_abs : std::nan(""));
-    }
-    if (std::all_of(row.begin(), row.end(), [](double um) { return std::isnan(um); })) continue;  // no sensor can fail
-    map.rows.push_back(s.fitted.name);
-    map.values.push_back(std::move(row));
-  }
-  return {.title = title, .svg = output::draw_heat_map(map)};
-}
-
-/// Families x seasons; the runs themselves if there is one family without seasons, as with records.
-output::Picture intact_map(const StrategyMatrix& m) {
-  std::vector<MapColumn> columns;
-  const std::vector<std::string> families = families_of(m), seasons = seasons_of(m);
-  const bool of_runs = families.size() == 1 && seasons.size() == 1 && seasons.front().empty();
-  for (std::size_t i = 0; of_runs && i < m.runs.size(); ++i)
-    columns.push_back({{families.front(), m.runs[i].name}, [i](const Case& c) { return is_intact(c) && c.run == i; }});
-  for (const std::string& family : families) {
-    for (const std::string& season : seasons) {
-      const auto is_here = [family, season](const JudgedRunOfMachine& r) {
-        return r.family == family && r.season == season;
-      };
-      if (of_runs || std::none_of(m.runs.begin(), m.runs.end(), is_here)) continue;
-      columns.push_back({{family, season}, [&m, is_here](const Case& c) { return is_intact(c) && is_here(m.runs[c.run]); }});
-    }
-  }
-  return map_of(m, fmt::format("Largest |residual| of {} in µm, all sensors intact", m.settings.strategies.target), columns);
-}
-
-/// Families x ways of sensor failure, the worst of all sensors.
-std::optional<output::Picture> failed_map(const StrategyMatrix& m) {
-  const auto way_of = [](const Case& c) -> std::string {  // "t05 stuck", "t05 and t11 exchanged"
-    return c.failed.ends_with(" exchanged") ? "exchanged" : c.failed.substr(c.failed.find(' ') + 1);
-  };
-  std::vector<std::string> ways;
-  for (const JudgedStrategy& s : m.strategies) {
-    for (const Case& c : s.cases) {
-      if (!is_intact(c) && std::find(ways.begin(), ways.end(), way_of(c)) == ways.end()) ways.push_back(way_of(c));
-    }
-  }
-  if (ways.empty()) return std::nullopt;
-  std::vector<MapColumn> columns;
-  for (const std::string& way : ways)
-    columns.push_back({{"one sensor failed half-way, the worst of all", way},
-                       [way, way_of](const Case& c) { return !is_intact(c) && way_of(c) == way; }});
-  return map_of(m, fmt::format("Largest |residual| of {} in µm with one failed sensor", m.settings.strategies.target),
-                columns);
-}
-
 /// The answer: whether the chosen strategy may go on the machine, and what it leaves.
 output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen) {
   const Worst intact = worst_of(chosen, is_intact), failed = worst_of(chosen, has_failed);
@@ -326,7 +61,7 @@ output::Verdict verdict_of(const StrategyMatrix& m, const JudgedStrategy& chosen
     text = fmt::format(
         "{} it leaves at most {:.1f} µm of {}; without correction that run has {:.1f} µm ({}). The tolerance is {:g} µm.",
         failed.peak ? "With all sensors intact" : "In the judged runs", intact.peak->after.peak_abs,
-        m.settings.strategies.target, intact.peak->before.peak_abs, name_of(m.runs[intact.peak->run]),
+        m.settings.strategies.target, intact.peak->before.peak_abs, run_name(m.runs[intact.peak->run]),
         m.settings.tolerance_um);
   if (failed.peak) text += fmt::format(" With one failed sensor it leaves at most {:.1f} µm.", failed.peak->after.peak_abs);
   if (chosen.safety == Safety::kUnsafe)
@@ -421,45 +156,6 @@ std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrateg
                       chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
 }
 
-/// The matrix in few columns, for people.
-Table short_table(const StrategyMatrix& m) {
-  Table table{.title = fmt::format("Error of {} that each strategy leaves (fitted to {}, judged on {})",
-                                   m.settings.strategies.target, counted(m.training.size(), "run", "runs"),
-                                   counted(m.runs.size(), "other", "others")),
-              .columns = {{.title = "strategy"}, um_column("", "largest residual")}};
-  for (output::Column column : {um_column("", "with a failed sensor"), um_column("", "RMS", 2)})
-    table.columns.push_back(column);
-  if (!has_failures(m)) table.columns[2].title.clear();
-  table.columns.push_back({.title = "verdict"});
-  for (const JudgedStrategy& s : m.strategies) {
-    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, has_failed);
-    table.rows.push_back({s.fitted.name, intact.peak ? Datum(intact.peak->after.peak_abs) : Datum(),
-                          failed.peak ? Datum(failed.peak->after.peak_abs) : Datum(), overall_rms(s),
-                          s.fitted.is_baseline ? "baseline" : word(s.safety)});
-  }
-  return table;
-}
-
-output::Bars left_bars(const StrategyMatrix& m) {
-  output::Bars bars{.caption = "Largest share of the peak that is left in any run, sensors intact [%].", .bars = {}};
-  for (const JudgedStrategy& s : m.strategies) {
-    const double left = 100.0 * worst_of(s, is_intact).left;
-    bars.bars.push_back({s.fitted.name, std::min(left, 200.0), fmt::format("{:.0f} %", left)});
-  }
-  return bars;
-}
-
-/// The drift of the run that is hardest for few sensors, and what strategies predict of it.
-void add_course(Section& section, const StrategyMatrix& m) {
-  const Contrast c = contrast(m);
-  if (!c.simple || !c.chosen) return;
-  std::vector<const JudgedStrategy*> shown = {c.simple, c.chosen};
-  for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.name == "observer" && &s != c.chosen) shown.push_back(&s);
-  }
-  add(section, course(m, c.run, shown));
-}
-
 /// The formula in readable form, if there is one.
 void add_formula(Section& section, const StrategyMatrix& m) {
   for (const JudgedStrategy& s : m.strategies) {
@@ -503,117 +199,6 @@ Section conditions_of(const StrategyMatrix& m) {
   else
     add(section, std::move(records));
   return section;
-}
-
-/// All figures of each strategy, one row each; compensation/judging/judgement_json has the same keys and values.
-Table strategies_table(const StrategyMatrix& m) {
-  const auto for_failures = [&](const char* title) { return has_failures(m) ? title : ""; };
-  Table table{.key = "strategies",
-              .title = "All figures of each strategy",
-              .columns = {{.key = "name", .title = "strategy"},
-                          um_column("worst_peak_um", "largest residual"),
-                          percent_column("worst_left_percent", "left of the peak"),
-                          um_column("failed_sensor_worst_peak_um", for_failures("with a failed sensor")),
-                          percent_column("failed_sensor_worst_left_percent", for_failures("left then")),
-                          um_column("overall_rms_um", "RMS", 2),
-                          um_column("left_out_um", "left out", 2),
-                          um_column("interval_95_um", "95 %"),
-                          percent_column("covered_percent", "covered"),
-                          {.key = "verdict", .title = "verdict"},
-                          {.key = "cells_kept", .title = "cells kept"},
-                          {.key = "cells", .title = "of cells"},
-                          {.key = "model", .title = linearised_of(m) ? "model" : ""},
-                          {.key = "beaten_by", .title = "beaten by"},
-                          um_column("largest_rms_um", ""),
-                          {.key = "baseline"},
-                          {.key = "worse_than_nothing"},
-                          {.key = "why"},
-                          {.key = "keeps_tolerance_in"},
-                          {.key = "cells_kept_intact"},
-                          {.key = "cells_intact"},
-                          {.key = "not_kept"},
-                          {.key = "n_not_kept"},
-                          {.key = "sensors"},
-                          {.key = "decided"}}};
-  for (const JudgedStrategy& s : m.strategies) {
-    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, has_failed);
-    const bool base = s.fitted.is_baseline, covers = s.fitted.interval_um.has_value();
-    std::vector<Datum> row = {s.fitted.name,
-                              intact.peak ? Datum(intact.peak->after.peak_abs) : Datum(),
-                              100.0 * intact.left,
-                              failed.peak ? Datum(failed.peak->after.peak_abs) : Datum(),
-                              failed.peak ? Datum(100.0 * failed.left) : Datum(),
-                              overall_rms(s),
-                              s.fitted.fold_errors.empty() ? Datum() : Datum(left_out_um(s.fitted)),
-                              s.fitted.interval_um,
-                              covers ? Datum(100.0 * intact.mean_covered) : Datum(),
-                              base ? Datum("baseline") : Datum(word(s.safety)),
-                              s.cells.n_kept(),
-                              s.cells.n(),
-                              s.fitted.model,
-                              base ? Datum("") : Datum(s.beaten_by),
-                              intact.rms_um,
-                              base,
-                              base ? Datum() : Datum(s.is_worse_than_nothing),
-                              base ? Datum() : Datum(s.why),
-                              base ? Datum() : Datum(s.limits),
-                              s.cells.n_kept_intact,
-                              s.cells.n_intact,
-                              s.cells.not_kept,
-                              s.cells.n_not_kept,
-                              s.fitted.sensors,
-                              s.fitted.reason};
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-}  // namespace
-
-std::string model_file_name(const std::string& strategy) {
-  std::string name;
-  for (char ch : strategy) {
-    if (std::isalnum(static_cast<unsigned char>(ch))) {
-      name += ch;
-    } else if (!name.empty() && name.back() != '_') {
-      name += '_';
-    }
-  }
-  return name;
-}
-
-namespace {
-
-/// What is left with probings beside each correction; without rows where nothing was probed.
-Table probing_table(const StrategyMatrix& m) {
-  Table table{.key = "probing"};
-  const std::optional<Probing>& probing = m.settings.strategies.probing;
-  if (!probing) return table;
-  table.title = fmt::format("With a probing every {:.4g} min, noise {:.3g} µm", probing->every_s / 60.0, probing->noise_um);
-  table.caption =
-      "Sensors intact, rows of all judged runs. The residual is taken for a random process that fades; its deviation and "
-      "time constant are those of the parts of the training runs that were left out. 'no correction' is the last probing "
-      "alone.";
-  table.columns = {
-      {.key = "name", .title = "strategy"},
-      um_column("overall_rms_um", "RMS without", 2),
-      um_column("probed_rms_um", "RMS with", 2),
-      um_column("probed_worst_peak_um", "largest residual with"),
-      um_column("residual_deviation_um", "deviation", 2),
-      {.key = "residual_time_constant_min", .title = "time constant", .unit = "min", .digits = output::significant(3)}};
-  for (const JudgedStrategy& s : m.strategies) {
-    double squares = 0.0, n = 0.0, peak_um = 0.0;
-    for (const Case& c : s.cases) {
-      if (!c.failed.empty() || !c.probed) continue;
-      squares += c.probed->n * c.probed->rmse * c.probed->rmse;
-      n += c.probed->n;
-      peak_um = std::max(peak_um, c.probed->peak_abs);
-    }
-    if (n == 0.0) continue;
-    table.rows.push_back({s.fitted.name, overall_rms(s), std::sqrt(squares / n), peak_um, s.fitted.residual->deviation_um,
-                          s.fitted.residual->time_constant_s / 60.0});
-  }
-  return table;
 }
 
 Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) {
@@ -678,6 +263,18 @@ Section strategy_details(const StrategyMatrix& m) {
 
 }  // namespace
 
+std::string model_file_name(const std::string& strategy) {
+  std::string name;
+  for (char ch : strategy) {
+    if (std::isalnum(static_cast<unsigned char>(ch))) {
+      name += ch;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  return name;
+}
+
 Section strategy_section(const StrategyMatrix& m, const scenarios::Scenario& scenario, const output::Provenance& made_by) {
   Section section = conditions_of(m);
   section.key = "validation";
@@ -693,7 +290,7 @@ Section strategy_section(const StrategyMatrix& m, const scenarios::Scenario& sce
                                          "what each strategy leaves on the judged runs."});
   }
   add(section, intact_map(m));
-  add_course(section, m);
+  if (std::optional<output::Plot> course = hardest_course(m)) add(section, std::move(*course));
   section.sections.push_back(output::next_section(steps_with(m, chosen, scenario, made_by)));
   section.sections.push_back(strategy_numbers(m, chosen));
   section.sections.push_back(strategy_details(m));

@@ -7,8 +7,8 @@
 
 namespace driftwright::findings {
 
-/// Section `validation`: whether the chosen strategy may go on the machine, the remaining error of each strategy by family and
-/// season as a picture, what to do next, the numbers; folded what only an expert needs.
+/// Section `validation`: whether the chosen strategy may go on the machine, the remaining error of each strategy by family
+/// and season as a picture, what to do next, the numbers; folded what only an expert needs.
 /// @param made_by  names the scenario and the folder of results in the commands of "What to do next"
 [[nodiscard]] output::Section strategy_section(const compensation::StrategyMatrix& matrix,
                                                const scenarios::Scenario& scenario, const output::Provenance& made_by);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/median.hpp"
 #include "findings/run_section.hpp"
 #include "output/heat_map.hpp"
 
@@ -116,8 +117,7 @@ Table kinds_table(const TestPlan& plan) {
   const auto median = [](const Eigen::VectorXd& of, const std::vector<Eigen::Index>& laws) {
     std::vector<double> list;
     for (Eigen::Index a : laws) list.push_back(of[a]);
-    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
-    return list[list.size() / 2];
+    return upper_median(std::move(list));
   };
   for (const auto& [effect, laws] : laws_by_kind(plan.question)) {
     const auto& before = plan.usual.prospect;

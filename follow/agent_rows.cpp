@@ -48,7 +48,8 @@ std::string words_of(const ChannelOrigin& c, const Observation& o) {
   return fmt::format("{} ({})", c.from, o.type);
 }
 
-/// In which unit the numbers of each channel come: as the probe says, else as the standard does for the type. What is not the agent's own word is said.
+/// In which unit the numbers of each channel come: as the probe says, else as the standard does for the type. What is not
+/// the agent's own word is said.
 /// @throws InputError  where an item's unit is not one of its channel's quantity
 void set_units(HeardValues& values, const MtconnectProbe& probe, const MtconnectStreams& told, const Say& say) {
   std::vector<std::string> standard, unknown;

@@ -14,7 +14,8 @@ namespace driftwright::follow {
 
 using Say = std::function<void(const std::string&)>;  ///< prints a sentence for the user
 
-/// In which units an agent's numbers come: by its probe, which is read once, and again where the agent has been started anew.
+/// In which units an agent's numbers come: by its probe, which is read once, and again where the agent has been started
+/// anew.
 class ItemUnits {
  public:
   /// Where it gives none after three questions, the standard's units are taken, which is said.

@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/normal.hpp"
 
 namespace driftwright::follow {
 namespace {
-
-constexpr double kDeviations95 = 1.96;  // that 95 % of a normal number are within
 
 struct Ahead {
   const char* words;
@@ -61,7 +60,7 @@ void AxisProbing::hear(const std::vector<double>& values) {
 double AxisProbing::interval_um(double without_um, double ahead_s) const {
   if (feedback_.state().n_taken == 0) return without_um;
   const double deviation_um = feedback_.deviation_um(ahead_s);
-  return std::max(without_um * deviation_um / feedback_.process().deviation_um, kDeviations95 * deviation_um);
+  return std::max(without_um * deviation_um / feedback_.process().deviation_um, kNormal95 * deviation_um);
 }
 
 std::string AxisProbing::words() const {

@@ -26,8 +26,8 @@ class AxisProbing {
   void hear(const std::vector<double>& values);
 
   [[nodiscard]] double residual_um() const { return feedback_.estimate_um(); }
-  /// Half width of the 95 % interval after some time: that without probings, times the deviation of the residual over that of
-  /// its process. Unchanged until a probing was taken.
+  /// Half width of the 95 % interval after some time: that without probings, times the deviation of the residual over that
+  /// of its process. Unchanged until a probing was taken.
   [[nodiscard]] double interval_um(double without_um, double ahead_s = 0.0) const;
   /// What a line says. @param without_um  half width of the interval without probings; none: unknown
   [[nodiscard]] ProbingState state(std::optional<double> without_um) const;

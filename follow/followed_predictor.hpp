@@ -21,9 +21,9 @@ struct FollowOptions {
 };
 
 /// @param path  of its file
-/// @throws InputError  for a file that holds no predictor, and for one that no stream can tell enough of: laws of recorded columns, laws that hold for
-///                     a part of a run, an ambient that no thermometer reads; for a watch over what is no observer, or with another model's limits; for one
-///                     that `validate` calls unsafe
+/// @throws InputError  for a file that holds no predictor, and for one that no stream can tell enough of: laws of recorded
+///                     columns, laws that hold for a part of a run, an ambient that no thermometer reads; for a watch over
+///                     what is no observer, or with another model's limits; for one that `validate` calls unsafe
 [[nodiscard]] std::unique_ptr<Followed> followed_predictor(const std::string& path, const FollowOptions& options);
 
 }  // namespace driftwright::follow

@@ -19,8 +19,8 @@ struct ChannelOrigin {
 /// @throws InputError  for text that is not CHANNEL=TOPIC
 [[nodiscard]] std::vector<ChannelOrigin> read_origins(const std::vector<std::string>& topics);
 
-/// Keeps the last value of each channel, until it is stale, and writes them as rows. A probing (is_probing() of its channel) is in
-/// one row alone.
+/// Keeps the last value of each channel, until it is stale, and writes them as rows. A probing (is_probing() of its channel)
+/// is in one row alone.
 class HeardValues {
  public:
   using Clock = std::chrono::steady_clock;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/characters.hpp"
+
 namespace driftwright::follow {
 namespace {
 
@@ -45,11 +47,6 @@ std::string small(std::string_view text) {
   std::string s(text);
   for (char& c : s) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return s;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t from = text.find_first_not_of(" \t");
-  return from == std::string_view::npos ? std::string_view() : text.substr(from, text.find_last_not_of(" \t") - from + 1);
 }
 
 }  // namespace

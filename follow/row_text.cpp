@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bounded_json.hpp"
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
@@ -53,8 +54,7 @@ std::string shown(const std::string& line) {
 
 double stream_number(const std::string& text, char decimal) {
   if (text.empty()) return kMissing;
-  std::string lower = text;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = lower_case(text);
   if (lower == "nan" || lower == "null" || lower == "none") return kMissing;
   return parse_number(text, decimal);
 }

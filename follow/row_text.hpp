@@ -40,7 +40,8 @@ class RowText {
 [[nodiscard]] std::vector<ColumnUnit> column_units(const std::vector<std::string>& headers,
                                                    const std::optional<ColumnMap>& columns);
 
-/// The text of a number: as record CSVs have it, "" and any writing of NaN for a missing one. @throws RangeError  for other words
+/// The text of a number: as record CSVs have it, "" and any writing of NaN for a missing one. @throws RangeError  for other
+/// words
 [[nodiscard]] double stream_number(const std::string& text, char decimal);
 
 }  // namespace driftwright::follow

@@ -53,7 +53,8 @@ class Session {
   void recall(const nlohmann::ordered_json& state);
 
  private:
-  /// @param passed_over  why a row was not taken, in place of its faults; "": its faults @param lost_probing  with a probing in it
+  /// @param passed_over  why a row was not taken, in place of its faults; "": its faults @param lost_probing  with a probing
+  ///                     in it
   [[nodiscard]] FollowLine line(bool is_taken, std::vector<Fault> faults, const std::string& passed_over,
                                 bool lost_probing = false) const;
   [[nodiscard]] bool has_probing(const StreamRow& row) const;

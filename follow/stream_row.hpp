@@ -19,8 +19,8 @@ struct StreamRow {
 /// rows before its age counts.
 inline constexpr double kMissingSteps = 2.5;
 
-/// A column whose numbers are probings: each belongs to the one row that has it. "probe_drift_y" in um: the drift of the axis;
-/// "probe_left_drift_y" in um: what was left of it on the corrected axis.
+/// A column whose numbers are probings: each belongs to the one row that has it. "probe_drift_y" in um: the drift of the
+/// axis; "probe_left_drift_y" in um: what was left of it on the corrected axis.
 inline constexpr const char* kProbePrefix = "probe_";
 inline constexpr const char* kProbeLeftPrefix = "probe_left_";
 [[nodiscard]] inline bool is_probing(const Channel& channel) {

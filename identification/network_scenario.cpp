@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <set>
 
+#include "base/characters.hpp"
+
 namespace driftwright::identification {
 namespace {
 
@@ -27,10 +29,8 @@ std::string digits(double value) {
 /// A name that YAML reads as text.
 std::string word(const std::string& name) {
   static const std::set<std::string> kOther = {"yes", "no", "true", "false", "on", "off", "null", "y", "n"};
-  std::string small = name;
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return kOther.contains(small) || !std::isalpha(static_cast<unsigned char>(name.front())) ? "\"" + name + "\"" : name;
+  return kOther.contains(lower_case(name)) || !std::isalpha(static_cast<unsigned char>(name.front())) ? "\"" + name + "\""
+                                                                                                      : name;
 }
 
 std::string heat(const Identified& network, const IdentifiedBody& b) {

@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <set>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
+#include "base/median.hpp"
+#include "base/record_channel.hpp"
+#include "base/usual_step.hpp"
 #include "identification/lagged_inputs.hpp"
 
 namespace driftwright::identification {
@@ -21,15 +26,10 @@ constexpr double kHole = 10.0;           // in usual time steps
 constexpr std::array kDriveUnits = {"W", "V", "percent", "W_m2", "1", "mm_min", "count"};
 constexpr std::array kAmbientNames = {"ambient", "room", "hall", "outdoor", "environment", "surroundings"};
 
-std::string lower(std::string s) {
-  std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return s;
-}
-
 /// True if one of the parts of a name, split at '_', is a word for an ambient.
 bool is_ambient_name(const std::string& name) {
   return std::any_of(kAmbientNames.begin(), kAmbientNames.end(), [&](const std::string& word) {
-    return ("_" + lower(name) + "_").find("_" + word + "_") != std::string::npos;
+    return ("_" + lower_case(name) + "_").find("_" + word + "_") != std::string::npos;
   });
 }
 
@@ -157,7 +157,7 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
             turns ? fmt::format("'{}' never changes: it is taken as switched on in the first row, after a long rest",
                                 c.header())
                   : fmt::format("'{}' is always 0 and drives nothing", c.header()));
-    } else if ((c.unit == "degC" || c.unit == "K") && c.name != roles.ambient) {
+    } else if (is_temperature_unit(c.unit) && c.name != roles.ambient) {
       roles.thermometers.push_back(c.name);
     } else if (c.unit == "um") {
       roles.displacements.push_back(c.name);
@@ -221,10 +221,8 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
     }
   }
   for (const Record& r : records) {
-    std::vector<double> steps_s;
-    for (std::size_t i = 1; i < r.n_samples(); ++i) steps_s.push_back(r.time_s[i] - r.time_s[i - 1]);
-    std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
-    const double usual_s = steps_s[steps_s.size() / 2], longest_s = *std::max_element(steps_s.begin(), steps_s.end());
+    const std::vector<double> steps_s = row_steps_s(r.time_s);
+    const double usual_s = upper_median(steps_s), longest_s = *std::max_element(steps_s.begin(), steps_s.end());
     if (longest_s > kHole * usual_s)
       roles.guesses.push_back(
           fmt::format("{} has a hole of {:.0f} min: what drove the machine before it is held. Where something else happened "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "library/parts.hpp"
 #include "machine/machine.hpp"
@@ -30,17 +31,6 @@ const std::string& Machine::name() const {
 const std::string& Machine::scenario_file() const {
   return parts_->scenario.path;
 }
-
-namespace {
-
-template <class Entries>
-std::vector<std::string> names_of(const Entries& entries) {
-  std::vector<std::string> names;
-  for (const auto& entry : entries) names.push_back(entry.name);
-  return names;
-}
-
-}  // namespace
 
 std::vector<std::string> Machine::cyclograms() const {
   return names_of(parts_->scenario.cyclograms);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "machine/runnable.hpp"
 #include "machine/ways_out.hpp"
 #include "mesh/locate.hpp"
@@ -541,15 +542,9 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
     if (effects::is_mean_output(outputs.name[i])) continue;  // not an instrument
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
-    Channel channel{outputs.name[i], "", {}};
-    double factor = 1e6, offset = 0.0;
-    if (outputs.unit[i] == "K") {
-      channel.unit = "degC";
-      factor = 1.0;
-      offset = reference_K - kZeroCelsius_K;
-    } else {
-      channel.unit = outputs.unit[i] == "m" ? "um" : "urad";
-    }
+    Channel channel{outputs.name[i], shown_reading_unit(outputs.unit[i]), {}};
+    const double factor = shown_scale(outputs.unit[i]);
+    const double offset = outputs.unit[i] == "K" ? reference_K - kZeroCelsius_K : 0.0;
     for (Eigen::Index k = 0; k < row.size(); ++k) channel.values.push_back(factor * row[k] + offset);
     record.channels.push_back(std::move(channel));
   }

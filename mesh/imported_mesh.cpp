@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/characters.hpp"
 #include "mesh/mesh_step.hpp"
 #include "mesh/pick_surfaces.hpp"
 #include "mesh/read_apart.hpp"
@@ -18,8 +19,7 @@ namespace {
 enum class Format { kMsh, kInp, kVtu, kStep };
 
 Format format_of(const std::string& path, const Where& where) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".msh") return Format::kMsh;
   if (extension == ".inp") return Format::kInp;
   if (extension == ".vtu") return Format::kVtu;

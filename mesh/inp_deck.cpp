@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 
@@ -16,9 +17,9 @@ namespace {
 
 constexpr double kDegree_rad = EIGEN_PI / 180.0;
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\""), last = text.find_last_not_of(" \t\r\"");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+/// Without blanks and quotes at either end.
+std::string bare(const std::string& text) {
+  return trimmed(text, " \t\r\"");
 }
 
 std::vector<std::string> split(const std::string& line) {
@@ -26,7 +27,7 @@ std::vector<std::string> split(const std::string& line) {
   std::size_t start = 0;
   while (start <= line.size()) {
     const auto comma = std::min(line.find(',', start), line.size());
-    words.push_back(trimmed(line.substr(start, comma - start)));
+    words.push_back(bare(line.substr(start, comma - start)));
     start = comma + 1;
   }
   while (!words.empty() && words.back().empty()) words.pop_back();
@@ -60,8 +61,8 @@ std::optional<CellShape> shape_of_type(const std::string& type) {
   }
 }
 
-/// Corners of a plane, shell or membrane element of a type such as "cps6" or "s4r", which marks a face of 3-D elements; 0 for other
-/// types.
+/// Corners of a plane, shell or membrane element of a type such as "cps6" or "s4r", which marks a face of 3-D elements; 0
+/// for other types.
 int facet_corners_of_type(const std::string& type) {
   for (const std::string_view family : {"cps", "cpe", "cax", "sfm3d", "stri", "m3d", "r3d", "ds", "s"}) {
     if (!type.starts_with(family)) continue;
@@ -89,12 +90,12 @@ class InpParser {
     std::string line;
     while (std::getline(file, line)) {
       ++line_;
-      line = trimmed(line);
+      line = bare(line);
       if (line.empty() || line.starts_with("**")) continue;
       if (line[0] == '*') {
         while (line.ends_with(',') && std::getline(file, more_)) {  // options go on in the next line
           ++line_;
-          line += trimmed(more_);
+          line += bare(more_);
         }
         begin(line);
       } else if (!keyword_.name.empty()) {
@@ -135,8 +136,8 @@ class InpParser {
     }
     for (std::size_t i = 1; i < words.size(); ++i) {
       const auto equals = words[i].find('=');
-      std::string key = lower_case(trimmed(words[i].substr(0, equals)));
-      keyword_.option[key] = equals == std::string::npos ? "" : lower_case(trimmed(words[i].substr(equals + 1)));
+      std::string key = lower_case(bare(words[i].substr(0, equals)));
+      keyword_.option[key] = equals == std::string::npos ? "" : lower_case(bare(words[i].substr(equals + 1)));
     }
     if (keyword_.name == "*include") fail("*INCLUDE is not followed; put the mesh into one file");
     for (const char* of_mesh : {"*node", "*element", "*nset", "*elset", "*surface"}) {
@@ -277,11 +278,6 @@ class InpParser {
 };
 
 }  // namespace
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 void fail_in(const InpDeck& deck, int line, const std::string& message) {
   throw InputError(fmt::format("{}:{}: {}", deck.path, line, message));

@@ -1,5 +1,6 @@
 #pragma once
-// What an input file of Abaqus or CalculiX lists of its mesh, with the file's numbers, before anything is looked up: blocks may come in any order.
+// What an input file of Abaqus or CalculiX lists of its mesh, with the file's numbers, before anything is looked up: blocks
+// may come in any order.
 
 #include <Eigen/Core>
 #include <map>
@@ -21,8 +22,8 @@ struct InpDeck {
     int n_nodes, line;
     int set;  ///< of its *ELEMENT line, index into set_names
   };
-  /// Numbers of a set as a line lists them: first, first + step ... up to last. A number that is listed alone must exist; a range skips those that do not,
-  /// as solvers do.
+  /// Numbers of a set as a line lists them: first, first + step ... up to last. A number that is listed alone must exist; a
+  /// range skips those that do not, as solvers do.
   struct Listed {
     long first, last, step;
     int line;
@@ -52,14 +53,12 @@ struct InpDeck {
   std::vector<SurfaceLine> surface_lines;
 };
 
-/// @throws InputError  with file and line: a number that is none, a set or node that is defined wrongly, a 3-D element that is not computed with, a keyword
-///                     that makes nodes or elements (*NGEN, *INCLUDE, *INSTANCE with a shift ...)
+/// @throws InputError  with file and line: a number that is none, a set or node that is defined wrongly, a 3-D element that
+///                     is not computed with, a keyword that makes nodes or elements (*NGEN, *INCLUDE, *INSTANCE with a shift
+///                     ...)
 [[nodiscard]] InpDeck read_inp_deck(const std::string& path);
 
 /// @throws InputError  file:line: message
 [[noreturn]] void fail_in(const InpDeck& deck, int line, const std::string& message);
-
-/// Names of sets are compared in lower case.
-[[nodiscard]] std::string lower_case(std::string text);
 
 }  // namespace driftwright::mesh

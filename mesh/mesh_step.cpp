@@ -28,8 +28,8 @@ struct Solid {
 
 /// The name of a product in Gmsh's label of a solid, "Shapes/mill/BED" for one; "" where the drawing names none.
 ///
-/// A product of several shapes has a label such as "Shapes/mill/1/BED/=>[0:1:1:3]/SOLID": the last words say which of its shapes it is. OpenCASCADE calls
-/// what has no name by its kind.
+/// A product of several shapes has a label such as "Shapes/mill/1/BED/=>[0:1:1:3]/SOLID": the last words say which of its
+/// shapes it is. OpenCASCADE calls what has no name by its kind.
 std::string name_in_label(std::string label) {
   constexpr std::array kKinds = {"SOLID", "COMPOUND", "COMPSOLID", "SHELL", "Shapes"};
   for (;;) {
@@ -117,7 +117,8 @@ std::string describe(int solid) {
                      1e3 * z);
 }
 
-/// For what nobody has given a name: OpenCASCADE calls such products "Open CASCADE STEP translator 7.6 1.3" when it writes them.
+/// For what nobody has given a name: OpenCASCADE calls such products "Open CASCADE STEP translator 7.6 1.3" when it writes
+/// them.
 void make_up_names(std::vector<Solid>& solids) {
   for (std::size_t i = 0; i < solids.size(); ++i) {
     if (solids[i].region.empty() || solids[i].region.starts_with("Open CASCADE STEP translator"))

@@ -39,7 +39,8 @@ class Parts {
 
  private:
   void join(int a, int b) { parent_[of(a)] = of(b); }
-  /// Joins every part that has facets on one side of a joint to the part that it touches on the other: equal bolts are one side together.
+  /// Joins every part that has facets on one side of a joint to the part that it touches on the other: equal bolts are one
+  /// side together.
   void join_to_nearest(const Mesh& mesh, const std::vector<int>& side, const std::vector<int>& other) {
     if (other.empty()) return;
     std::set<int> joined;

@@ -15,8 +15,8 @@ struct CellOverlap {
 
 /// The first overlap, by the number of the cell that reaches in; none where bodies only touch.
 ///
-/// A cell reaches in where its centre, or a point halfway from there to a corner, lies in a cell of another body. Facets of curved faces that touch may so
-/// lie in each other by a quarter of a cell's thickness; more is an overlap.
+/// A cell reaches in where its centre, or a point halfway from there to a corner, lies in a cell of another body. Facets of
+/// curved faces that touch may so lie in each other by a quarter of a cell's thickness; more is an overlap.
 [[nodiscard]] std::optional<CellOverlap> find_overlap(const Mesh& mesh);
 
 }  // namespace driftwright::mesh

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "base/characters.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "mesh/inp_deck.hpp"
@@ -127,8 +128,8 @@ class MeshOfDeck {
     return set_of_cell;
   }
 
-  /// For each cell the ELSET of its *ELEMENT line. Where these are Gmsh's Volume1, Volume2 ... alone: the sets of 3-D elements that somebody has named, if
-  /// each cell lies in one of them.
+  /// For each cell the ELSET of its *ELEMENT line. Where these are Gmsh's Volume1, Volume2 ... alone: the sets of 3-D
+  /// elements that somebody has named, if each cell lies in one of them.
   [[nodiscard]] std::vector<std::string> sets_of_lines() const {
     const auto by_gmsh = [](const std::string& set) {
       return set.starts_with("volume") && set.size() > 6 && set.find_first_not_of("0123456789", 6) == std::string::npos;
@@ -262,8 +263,8 @@ class MeshOfDeck {
     return static_cast<int>(raw_.regions.size()) - 1;
   }
 
-  /// Regions where the scenario names none: cells that an ELSET of an *ELEMENT line and one of a *SOLID SECTION have in common, by the name of the smaller
-  /// of the two. Sections that do not divide the mesh are passed over.
+  /// Regions where the scenario names none: cells that an ELSET of an *ELEMENT line and one of a *SOLID SECTION have in
+  /// common, by the name of the smaller of the two. Sections that do not divide the mesh are passed over.
   void assign_regions_of_lines() {
     const std::vector<std::string> lines = sets_of_lines();
     const std::vector<std::string> sections = divided_by(deck_.section_sets).value_or(lines);

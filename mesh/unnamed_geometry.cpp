@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
 #include "mesh/imported_mesh.hpp"
 #include "mesh/mesh_step.hpp"
@@ -21,9 +22,7 @@ constexpr double kSmallestMachine_m = 0.020;  // a smaller drawing is in another
 const std::map<std::string, double> kUnits_m = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}};
 
 std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return lower_case(std::filesystem::path(path).extension().string());
 }
 
 Mesh import_in(const std::string& path, double unit_m) {

@@ -25,12 +25,13 @@ struct PredictorFile {
   std::optional<Covered> covered = {};  ///< of a predictor that is driven by speed and ambient
 };
 
-/// @throws std::logic_error  for a predictor with an input that nothing guards (unguarded_input()), for one that is not stored,
-///                           and for one of a kind that is not in predictor_kinds()
+/// @throws std::logic_error  for a predictor with an input that nothing guards (unguarded_input()), for one that is not
+///                           stored, and for one of a kind that is not in predictor_kinds()
 [[nodiscard]] nlohmann::ordered_json predictor_json(const PredictorFile& file, const Provenance& made_by);
 
 /// @param path  a JSON file as predictor_json() makes it
-/// @throws InputError  for a file that is no predictor, naming the key, and for a predictor with an input that nothing guards
+/// @throws InputError  for a file that is no predictor, naming the key, and for a predictor with an input that nothing
+///                     guards
 [[nodiscard]] PredictorFile read_predictor(const std::string& path);
 
 }  // namespace driftwright::output

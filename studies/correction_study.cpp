@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/record_channel.hpp"
 #include "compensation/injector/axis_loop.hpp"
 #include "compensation/judging/correction.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
@@ -202,8 +203,7 @@ CorrectionStudy correct_run(const Scenario& scenario, std::optional<DeployedPred
   }
   const DeployedPredictor& d = *predictor;
   listener.begin("correcting");
-  run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())] =
-      scored_readings(run, d.target, d.from_start).at(d.target);
+  changeable_channel(run.readings, d.target) = scored_readings(run, d.target, d.from_start).at(d.target);
   CorrectionStudy o = request.through == "none"       ? through_none(d, run)
                       : request.through == "injector" ? through_injector(scenario, d, run)
                                                       : through_schedule(scenario, d, run, ahead_um);

@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
 #include "mesh/mesh_step.hpp"
 #include "mesh/outer_planes.hpp"
@@ -25,13 +26,8 @@ using mesh::OuterPlane;
 constexpr double kFilm_W_m2K = 10.0, kWarms_K = 2.0;
 constexpr double kLarge = 0.02;  ///< share of a region's surface: smaller planes are treated as pieces of curved faces
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool names_one_of(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower(name);
+  const std::string low = lower_case(name);
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/characters.hpp"
 #include "base/config_map.hpp"
 #include "mesh/unnamed_geometry.hpp"
 
@@ -16,14 +17,7 @@ namespace {
 /// Any text as a YAML string.
 std::string quoted(const std::string& text) {
   const bool is_plain = is_name(text) && !std::isdigit(static_cast<unsigned char>(text.front())) && text.front() != '-';
-  if (is_plain) return text;
-  std::string out(1, '"');
-  for (char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  out += '"';
-  return out;
+  return is_plain ? text : double_quoted(text);
 }
 
 std::string at_mm(const Eigen::Vector3d& x_m) {

@@ -9,6 +9,7 @@
 
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
+#include "base/shown_units.hpp"
 #include "diagnosis/calibration.hpp"
 #include "diagnosis/diagnosis_words.hpp"
 #include "diagnosis/happening.hpp"
@@ -117,7 +118,7 @@ void predict_as_written(const MeasuredTwin& m, const WrittenScenario& written, D
   const auto before = diagnosis::output_errors(m.runs, d.as_written), after = diagnosis::output_errors(m.runs, d.extended);
   for (diagnosis::ChannelGain& g : d.gain) {
     if (!before.contains(g.name)) continue;
-    const double scale = diagnosis::shown_scale(g.unit == "K" ? "K" : "m");
+    const double scale = shown_scale(g.unit == "K" ? "K" : "m");
     g.rmse_all_before = scale * before.at(g.name).rms;
     g.rmse_written = scale * after.at(g.name).rms;
   }

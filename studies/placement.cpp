@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "base/lists.hpp"
 #include "compensation/sensors/exchange_search.hpp"
 #include "mesh/machine_skin.hpp"
 #include "studies/placement_rivals.hpp"
@@ -53,12 +54,6 @@ struct Criteria {
     return both;
   }
 };
-
-std::vector<std::string> names_of(const std::vector<Cyclogram>& cyclograms) {
-  std::vector<std::string> names;
-  for (const Cyclogram& c : cyclograms) names.push_back(c.name);
-  return names;
-}
 
 /// Whether a node is a corner of a cell.
 std::vector<bool> corners_of(const mesh::Mesh& mesh) {
@@ -273,6 +268,66 @@ void add_judged(Placement& placement, const JudgedOnce& judged, const Sets& rand
   if (own.size() > n_mounted) placement.own = ChosenBy{.way = "the scenario's own", .sets = {own}, .left = judged.of({own})};
 }
 
+/// The best sets of each number by the criterion that is asked for, as numbers of a piece: what is left without any, and of
+/// each set its members and what it leaves, by the criterion, of the observer, of the regression.
+Pieces::Numbers chosen_places(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how,
+                              const std::vector<int>& mounted, const Pieces& pieces, const Listener& listener) {
+  const Criteria criteria(model, design, how, model.rows.topRows(model.n_candidates),
+                          model.ambient.head(model.n_candidates));
+  const DriftLeft& whole = criteria.of(how.placed_for);
+  const compensation::LeftWithLoss with_loss(whole, mounted);
+  const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
+  listener.begin("choosing");
+  Pieces::Numbers numbers = {whole.of(mounted)};
+  for (const compensation::ThermometerSet& set :
+       compensation::best_sets(objective, how.n_most, mounted, listener, pieces.from(kSearch))) {
+    add(numbers, set.members);
+    numbers.insert(numbers.end(), {set.left_um, criteria.observer.of(set.members), criteria.regression.of(set.members)});
+  }
+  return numbers;
+}
+
+/// From the numbers of chosen_places().
+void take_chosen(Placement& placement, const Pieces::Numbers& chosen) {
+  PieceReader reader(chosen);
+  placement.told_nothing_um = reader.number();
+  while (!reader.is_at_end()) {
+    placement.chosen.sets.push_back(reader.set());
+    placement.objective_um.push_back(reader.number());
+    placement.observer_um.push_back(reader.number());
+    placement.regression_um.push_back(reader.number());
+  }
+}
+
+/// All places of the sets that are judged, each once.
+std::vector<int> used_places(const Placement& placement, const Sets& random, const std::vector<int>& own) {
+  std::vector<int> used = own;
+  const auto use = [&](const Sets& sets) {
+    for (const std::vector<int>& set : sets) used.insert(used.end(), set.begin(), set.end());
+  };
+  use(placement.chosen.sets);
+  for (const ChosenBy& other : placement.others) use(other.sets);
+  use(random);
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  return used;
+}
+
+/// All sets whose remaining errors are needed. @param at_n  index of the number of thermometers that is asked for
+JudgedOnce all_to_judge(const Placement& placement, std::size_t at_n, const Sets& random, const std::vector<int>& own) {
+  const std::vector<int>& mounted = placement.mounted;
+  JudgedOnce judged;
+  judged.want({mounted});
+  for (const std::vector<int>& set : placement.chosen.sets) judged.want(with_losses(set, mounted.size()));
+  for (const ChosenBy& other : placement.others) {
+    judged.want(other.sets);
+    if (!other.sets[at_n].empty()) judged.want(with_losses(other.sets[at_n], mounted.size()));
+  }
+  judged.want(random);
+  if (own.size() > mounted.size()) judged.want({own});
+  return judged;
+}
+
 }  // namespace
 
 std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked,
@@ -327,29 +382,9 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
                       .is_linearised = model.is_linearised,
                       .mesh = {}};
   for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
-  const Pieces::Numbers chosen = pieces.of(kChosen, [&] {
-    const Criteria criteria(model, design(), how, model.rows.topRows(model.n_candidates),
-                            model.ambient.head(model.n_candidates));
-    const DriftLeft& whole = criteria.of(how.placed_for);
-    const compensation::LeftWithLoss with_loss(whole, mounted);
-    const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
-    listener.begin("choosing");
-    Pieces::Numbers numbers = {whole.of(mounted)};
-    for (const compensation::ThermometerSet& set :
-         compensation::best_sets(objective, how.n_most, mounted, listener, pieces.from(kSearch))) {
-      add(numbers, set.members);
-      numbers.insert(numbers.end(), {set.left_um, criteria.observer.of(set.members), criteria.regression.of(set.members)});
-    }
-    return numbers;
-  });
-  PieceReader reader(chosen);
-  placement.told_nothing_um = reader.number();
-  while (!reader.is_at_end()) {
-    placement.chosen.sets.push_back(reader.set());
-    placement.objective_um.push_back(reader.number());
-    placement.observer_um.push_back(reader.number());
-    placement.regression_um.push_back(reader.number());
-  }
+  const Pieces::Numbers chosen =
+      pieces.of(kChosen, [&] { return chosen_places(model, design(), how, mounted, pieces, listener); });
+  take_chosen(placement, chosen);
   const Pieces::Numbers rivals = pieces.of(kRivals, [&] {
     Pieces::Numbers numbers;
     for (const auto& sets : rival_places(model, chosen_on, how.n_most, how.noise_K)) {
@@ -367,15 +402,7 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
   for (int i = model.n_candidates; i < static_cast<int>(model.spots.size()); ++i) own.push_back(i);
 
   listener.begin("judging on other cyclograms and machines");
-  std::vector<int> used = own;
-  const auto use = [&](const Sets& sets) {
-    for (const std::vector<int>& set : sets) used.insert(used.end(), set.begin(), set.end());
-  };
-  use(placement.chosen.sets);
-  for (const ChosenBy& other : placement.others) use(other.sets);
-  use(random);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const std::vector<int> used = used_places(placement, random, own);
   std::optional<PlacementJudge> made_judge;
   const auto judge = [&]() -> const PlacementJudge& {
     if (!made_judge)
@@ -384,15 +411,7 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
     return *made_judge;
   };
   const auto at_n = static_cast<std::size_t>(how.n) - 1;
-  JudgedOnce judged;
-  judged.want({mounted});
-  for (const std::vector<int>& set : placement.chosen.sets) judged.want(with_losses(set, mounted.size()));
-  for (const ChosenBy& other : placement.others) {
-    judged.want(other.sets);
-    if (!other.sets[at_n].empty()) judged.want(with_losses(other.sets[at_n], mounted.size()));
-  }
-  judged.want(random);
-  if (own.size() > mounted.size()) judged.want({own});
+  JudgedOnce judged = all_to_judge(placement, at_n, random, own);
   const std::vector<Pieces::Numbers> residuals = pieces.of_shard(
       kJudged, judged.wanted().size() + 1, [&] { (void)judge(); },
       [&](std::size_t i) {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/characters.hpp"
+#include "base/lists.hpp"
 #include "mesh/reach.hpp"
 
 namespace driftwright::studies {
@@ -16,12 +18,8 @@ namespace {
 
 constexpr int kLeastOfRegion = 12;
 
-bool is_in(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool is_no_place(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+bool is_no_place(const std::string& its_name) {
+  const std::string name = lower_case(its_name);
   return std::any_of(std::begin(kNoPlace), std::end(kNoPlace),
                      [&](const char* word) { return name.find(word) != std::string::npos; });
 }

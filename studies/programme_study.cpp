@@ -198,6 +198,90 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Judge
   return s;
 }
 
+/// @throws InputError  for a machine that does not start in balance with the ambient, and for effects on readings
+void require_true_drift_from_balance(const scenarios::Programme& programme, const scenarios::MachineModel& machine) {
+  const bool starts_with_the_ambient =
+      machine.start == scenarios::Start::kAmbient || machine.start == scenarios::Start::kSteady ||
+      std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
+               scenarios::felt_ambient_at_start_K(machine)) < kBalance_K;
+  if (!starts_with_the_ambient) {
+    throw InputError(
+        programme.where,
+        "tests and cyclograms of a programme start in balance with the ambient; write `start: ambient` or `start: steady`");
+  }
+  if (effects::has_reading_effects(machine.effects)) {
+    throw InputError(
+        programme.where,
+        "a programme judges true drift; leave out the effects that change what instruments read and nothing else");
+  }
+}
+
+/// The displacements and tilts.
+TestChannels channels_of_programme(const scenarios::MachineModel& machine) {
+  TestChannels channels;
+  for (const auto& d : machine.displacements) {
+    channels.name.push_back(d.name);
+    channels.unit.emplace_back("um");
+  }
+  for (const auto& t : machine.tilts) {
+    channels.name.push_back(t.name);
+    channels.unit.emplace_back("urad");
+  }
+  return channels;
+}
+
+/// Predictors from the reduced model: as few of its modes as are enough, the same with fixed rates, with wrong numbers, and
+/// these scaled to the tests.
+void add_by_model(ProgrammeStudy& study, const scenarios::Scenario& scenario, const scenarios::Model& model,
+                  const std::vector<Cyclogram>& tests, const TestBed& bed, const Listener& listener) {
+  const scenarios::Programme& programme = *scenario.programme;
+  const scenarios::MachineModel& machine = *scenario.machine;
+  const double ambient_K = scenarios::felt_ambient_at_start_K(machine);
+  const auto add = [&](const std::string& name, const Courses& courses) {
+    study.predictors.push_back(judged(study, machine.ambient, name, courses));
+  };
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  if (!reduced) {
+    study.without_model =
+        "they come from a reduced model, and this machine was run in full (a lumped one, or `model: full`)";
+  } else if (!reduced->system.is_linear()) {
+    study.without_model = "they come from a linear model, and in this one films, heat or thermostats follow temperatures";
+  } else {
+    listener.begin("modes of the model");
+    const solver::ReducedSystem& system = reduced->system;
+    std::vector<const Cyclogram*> pointers;
+    for (const Cyclogram& c : tests) pointers.push_back(&c);
+    const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K},
+        typical{.drive = mean_drive(pointers), .ambient_K = ambient_K};
+    for (int n = 1; n <= std::min(kMostModelModes, system.size()); ++n) {
+      const ModalPredictor p = make_ritz_predictor(system, reduced->start, n, standstill);
+      JudgedPredictor trial = judged(study, machine.ambient, fmt::format("{} modes of the model", n),
+                                     by_model(machine, study.channels, p.system, p.start));
+      study.error_by_modes.emplace_back(n, largest_percent(trial));
+      const bool is_enough = study.error_by_modes.back().second <= kWantedPercent;
+      if (!is_enough && n < std::min(kMostModelModes, system.size())) continue;
+      study.n_modes_wanted = is_enough ? n : 0;
+      study.time_constant_s = p.time_constant_s;
+      study.predictors.push_back(std::move(trial));
+      const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
+      add(fmt::format("{} modes of the model, fixed rates", n), by_model(machine, study.channels, frozen, p.start));
+      const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
+      add("modes of a model that is off", by_model(machine, study.channels, wrong, p.start));
+      listener.begin("scaling the model's modes to tests");
+      std::vector<ThermalTest> felt_tests = bed.tests;
+      for (ThermalTest& t : felt_tests) {
+        scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
+        t.cyclogram = std::move(felt.cyclogram);
+        t.ambient = from_start(std::move(felt.ambient));
+      }
+      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, ambient_K, felt_tests, bed.all);
+      study.factors = scaled.factors;
+      add("hybrid: those, scaled to tests", by_model(machine, study.channels, scaled.system, p.start));
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 Summary summary(const ProgrammeStudy& study, const JudgedPredictor& predictor, std::size_t channel,
@@ -223,29 +307,9 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
                                const Listener& listener) {
   const scenarios::Programme& programme = *scenario.programme;
   const scenarios::MachineModel& machine = *scenario.machine;
-  const bool starts_with_the_ambient =
-      machine.start == scenarios::Start::kAmbient || machine.start == scenarios::Start::kSteady ||
-      std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
-               scenarios::felt_ambient_at_start_K(machine)) < kBalance_K;
-  if (!starts_with_the_ambient) {
-    throw InputError(
-        programme.where,
-        "tests and cyclograms of a programme start in balance with the ambient; write `start: ambient` or `start: steady`");
-  }
-  if (effects::has_reading_effects(machine.effects)) {
-    throw InputError(
-        programme.where,
-        "a programme judges true drift; leave out the effects that change what instruments read and nothing else");
-  }
+  require_true_drift_from_balance(programme, machine);
   ProgrammeStudy study;
-  for (const auto& d : machine.displacements) {
-    study.channels.name.push_back(d.name);
-    study.channels.unit.emplace_back("um");
-  }
-  for (const auto& t : machine.tilts) {
-    study.channels.name.push_back(t.name);
-    study.channels.unit.emplace_back("urad");
-  }
+  study.channels = channels_of_programme(machine);
 
   // --- the truth
   const std::vector<Cyclogram> tests = scenarios::test_cyclograms(programme),
@@ -256,7 +320,6 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
   for (const Cyclogram& c : tests) all.push_back(&c);
   for (const Cyclogram& c : asked) all.push_back(&c);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(scenario, model, all, listener);
-  const double ambient_K = scenarios::felt_ambient_at_start_K(machine);
   TestBed bed{study.channels, {}};
   for (const scenarios::Sensor& s : machine.sensors) {
     if (scenarios::is_on_ambient(s)) continue;
@@ -304,47 +367,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
     return curves.predict(cyclogram, time_s, extrapolate);
   });
 
-  // --- from the model
-  const scenarios::ReducedMachine* reduced = model.reduced();
-  if (!reduced) {
-    study.without_model =
-        "they come from a reduced model, and this machine was run in full (a lumped one, or `model: full`)";
-  } else if (!reduced->system.is_linear()) {
-    study.without_model = "they come from a linear model, and in this one films, heat or thermostats follow temperatures";
-  } else {
-    listener.begin("modes of the model");
-    const solver::ReducedSystem& system = reduced->system;
-    std::vector<const Cyclogram*> pointers;
-    for (const Cyclogram& c : tests) pointers.push_back(&c);
-    const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K},
-        typical{.drive = mean_drive(pointers), .ambient_K = ambient_K};
-    for (int n = 1; n <= std::min(kMostModelModes, system.size()); ++n) {
-      const ModalPredictor p = make_ritz_predictor(system, reduced->start, n, standstill);
-      JudgedPredictor trial = judged(study, machine.ambient, fmt::format("{} modes of the model", n),
-                                     by_model(machine, study.channels, p.system, p.start));
-      study.error_by_modes.emplace_back(n, largest_percent(trial));
-      const bool is_enough = study.error_by_modes.back().second <= kWantedPercent;
-      if (!is_enough && n < std::min(kMostModelModes, system.size())) continue;
-      study.n_modes_wanted = is_enough ? n : 0;
-      study.time_constant_s = p.time_constant_s;
-      study.predictors.push_back(std::move(trial));
-      const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
-      add(fmt::format("{} modes of the model, fixed rates", n), by_model(machine, study.channels, frozen, p.start));
-      const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
-      add("modes of a model that is off", by_model(machine, study.channels, wrong, p.start));
-      listener.begin("scaling the model's modes to tests");
-      std::vector<ThermalTest> felt_tests = bed.tests;
-      for (ThermalTest& t : felt_tests) {
-        scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
-        t.cyclogram = std::move(felt.cyclogram);
-        t.ambient = from_start(std::move(felt.ambient));
-      }
-      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, ambient_K, felt_tests, bed.all);
-      study.factors = scaled.factors;
-      add("hybrid: those, scaled to tests", by_model(machine, study.channels, scaled.system, p.start));
-      break;
-    }
-  }
+  add_by_model(study, scenario, model, tests, bed, listener);
 
   // --- schedules along the axis of the study
   const std::string target = scenario.study ? scenario.study->target : study.channels.name.front();

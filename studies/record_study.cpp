@@ -11,6 +11,7 @@
 
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
+#include "base/median.hpp"
 #include "compensation/judging/run_up.hpp"
 #include "compensation/predictors/regression_quality.hpp"
 #include "compensation/sensors/product_sums.hpp"
@@ -56,9 +57,7 @@ std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const s
   for (Eigen::Index r = 0; r < share.rows(); ++r) {
     const Eigen::RowVectorXd others = (share.colwise().sum() - share.row(r)) / static_cast<double>(share.rows() - 1);
     Eigen::RowVectorXd off = (share.row(r) - others).cwiseAbs();
-    std::vector<double> sorted(off.begin(), off.end());
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double common = std::max(kCommonScatter, sorted[sorted.size() / 2]);
+    const double common = std::max(kCommonScatter, upper_median({off.begin(), off.end()}));
     for (Eigen::Index a = 0; a < share.cols(); ++a) {
       for (Eigen::Index b = a + 1; b < share.cols(); ++b) {
         const double as_is = std::min(off(a), off(b)),

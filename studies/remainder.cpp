@@ -8,6 +8,8 @@
 
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
+#include "base/shown_units.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -21,8 +23,7 @@ double rounded(double value) {
 }
 
 std::string unit_of(const diagnosis::MeasuredChannel& c) {
-  if (c.unit == "K") return c.recorded_unit == "K" ? "K" : "degC";
-  return c.unit == "rad" ? "urad" : "um";
+  return c.recorded_unit == "K" ? "K" : shown_reading_unit(c.unit);
 }
 
 /// Converts the twin's units into those of a record.
@@ -101,7 +102,7 @@ BesideRecords beside(const std::vector<diagnosis::MeasuredRun>& runs, const std:
   for (const Channel& c : first.channels) {
     if (c.name == "speed" || c.name == "ambient" || !have(c.name)) continue;
     if (b.simulated.front().find(c.name))
-      (c.unit == "degC" || c.unit == "K" ? b.roles.thermometers : b.roles.displacements).push_back(c.name);
+      (is_temperature_unit(c.unit) ? b.roles.thermometers : b.roles.displacements).push_back(c.name);
     else if (changes(b.measured, c.name))
       b.roles.drives.push_back(c.name);
   }
@@ -136,7 +137,7 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
   std::vector<effects::Effect> list;
   for (const identification::IdentifiedChannel& c : extension.channels) {
     if (!c.is_extended) continue;
-    const bool is_sensor = c.unit == "degC" || c.unit == "K";
+    const bool is_sensor = is_temperature_unit(c.unit);
     const std::string table = is_sensor ? "rises" : c.unit == "urad" ? "tilts" : "grows";
     const std::size_t before = list.size();
     const auto make = [&] {

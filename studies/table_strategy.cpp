@@ -6,6 +6,7 @@
 
 #include "base/median.hpp"
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/thermometers.hpp"
 
 namespace driftwright::studies {
@@ -62,7 +63,7 @@ Record table_readings(const scenarios::Scenario& scenario, const scenarios::Felt
   const Record read = compensation::running_mean(
       compensation::as_read(compensation::sampled(thermometers, s.update_s), s.instrument, seed), s.sensor_mean_s);
   for (const Channel& channel : read.channels) {
-    Channel& given = result.channels[static_cast<std::size_t>(&result.at(channel.name) - result.channels.data())];
+    Channel& given = changeable_channel(result, channel.name);
     std::size_t row = 0;
     for (std::size_t i = 0; i < record.n_samples(); ++i) {
       while (row + 1 < read.n_samples() && read.time_s[row + 1] <= record.time_s[i] + 1e-6) ++row;

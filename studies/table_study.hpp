@@ -23,9 +23,9 @@ struct ExpansionFactors {
   double table = 1.0, scale_x = 1.0, scale_y = 1.0;
 };
 
-/// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its scales'
-/// thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel that
-/// does not exist
+/// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its
+/// scales' thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel
+/// that does not exist
 [[nodiscard]] TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun run,
                                  const ExpansionFactors& factor = {});
 

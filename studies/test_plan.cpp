@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "diagnosis/level_machine.hpp"
 
 namespace driftwright::studies {
@@ -201,7 +202,7 @@ Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
   for (double t_s : run.time_s) record.channels.front().values.push_back(run.cyclogram.speed_rpm(t_s));
   for (const diagnosis::MeasuredChannel& c : p.channels) {
     const bool is_temperature = c.unit == "K";
-    Channel channel{c.name, is_temperature ? "degC" : c.unit == "m" ? "um" : "urad", {}};
+    Channel channel{c.name, shown_reading_unit(c.unit), {}};
     for (Eigen::Index i = 0; i < readings.cols(); ++i)
       channel.values.push_back(is_temperature ? readings(c.output, i) + p.twin->reference_K() - kZeroCelsius_K
                                               : 1e6 * readings(c.output, i));

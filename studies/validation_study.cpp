@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/thermometers.hpp"
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -149,7 +150,7 @@ namespace {
 std::vector<std::string> thermometers_in(const Record& record, const std::string& target) {
   std::vector<std::string> names;
   for (const Channel& c : record.channels) {
-    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
+    const bool is_temperature = is_temperature_unit(c.unit) && c.name != scenarios::kAmbient;
     if (is_temperature && &c != record.find(target)) names.push_back(c.name);
   }
   return names;
@@ -240,8 +241,7 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].readings = read_in_validation(v, std::move(runs[i].readings), i);
     Random random(seed_of(v, i), 99);
-    const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
-    for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
+    for (double& um : changeable_channel(runs[i].readings, study.target).values) um += v.drift_noise_um * random.normal();
   }
   compensation::StrategySettings how;
   how.target = study.target;

@@ -35,7 +35,8 @@ struct StrategyTraining {
                                               const Record& exact);
 
 /// Judges strategies on measured records (record_study.hpp). Strategies with physics take part if the scenario has a
-/// machine that can be made linear (linear_physics.hpp), drift counts from the start of each record, and the records contain the drive.
+/// machine that can be made linear (linear_physics.hpp), drift counts from the start of each record, and the records contain
+/// the drive.
 [[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
                                                                const std::optional<compensation::Probing>& probing,
                                                                const Listener& listener);

@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "base/median.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/blocks.hpp"
 #include "compensation/sensors/principal_components.hpp"
 
@@ -157,8 +158,7 @@ std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& 
   std::vector<ObservedRun> rest;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     ObservedRun run = runs[r];
-    std::vector<double>& drift =
-        run.readings.channels[static_cast<std::size_t>(&run.readings.at(target) - run.readings.channels.data())].values;
+    std::vector<double>& drift = changeable_channel(run.readings, target).values;
     for (std::size_t i = 0; i < drift.size(); ++i) {
       if (fold.hidden[r][i]) drift[i] = std::numeric_limits<double>::quiet_NaN();
     }

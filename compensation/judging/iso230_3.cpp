@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/record_channel.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kRounding = 1e-9;  // of a time: row times are sums of interval
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool is_distortion(const Channel& channel) {
-  return channel.unit == "um" || channel.unit == "mm" || channel.unit == "urad";
+  return is_displacement_unit(channel.unit);
 }
 
 /// Duration of the spindle's running [s], from the first row to the end of the last row in which it turns; 0 if it does not

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "base/lists.hpp"
 #include "base/median.hpp"
 #include "compensation/judging/choice.hpp"
 #include "compensation/predictors/drift_model.hpp"
@@ -60,12 +61,6 @@ double noise_in(std::span<const ResidualSeries> series, double stated_um) {
   return n > 0.0 ? std::min(stated_um, std::sqrt(square / n)) : stated_um;
 }
 
-std::vector<std::string> names_of(const std::vector<Input>& inputs) {
-  std::vector<std::string> names;
-  for (const Input& input : inputs) names.push_back(input.name);
-  return names;
-}
-
 /// What the limits of a fail-safe are learned from.
 struct Seen {
   std::vector<Record> readings;
@@ -82,8 +77,8 @@ Seen seen_in(const Predictor& predictor, std::span<const ObservedRun> training, 
   return seen;
 }
 
-/// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before the
-/// first target if that is hidden. Readings often come between targets.
+/// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before
+/// the first target if that is hidden. Readings often come between targets.
 std::vector<bool> hidden_rows(const ObservedRun& run, const std::string& target, const std::vector<bool>& hidden) {
   const std::vector<double>& drift = run.readings.at(target).values;
   const auto is_target = [](double v) { return std::isfinite(v); };

@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/usual_step.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
 constexpr double kMostSteps = 5.0;            // longest gap between two files of one recording
 constexpr double kLongest_s = 12.0 * 3600.0;  // four times the longest lag of a formula: 2 % of earlier effects remain
-
-double usual_step_s(const Record& record) {
-  std::vector<double> step_s;
-  for (std::size_t i = 1; i < record.n_samples(); ++i) step_s.push_back(record.time_s[i] - record.time_s[i - 1]);
-  const auto middle = step_s.begin() + static_cast<std::ptrdiff_t>(step_s.size() / 2);
-  std::nth_element(step_s.begin(), middle, step_s.end());
-  return *middle;
-}
 
 bool has_the_channels_of(const Record& a, const Record& b) {
   return a.channels.size() == b.channels.size() && std::all_of(b.channels.begin(), b.channels.end(), [&](const Channel& c) {
@@ -29,7 +23,7 @@ bool has_the_channels_of(const Record& a, const Record& b) {
 RunUp with_run_up(const Record& run, const std::vector<Record>& earlier, const std::string& target) {
   for (const Record& before : earlier) {
     const double gap_s = run.time_s.front() - before.time_s.back();
-    if (!(gap_s > 0.0) || gap_s > kMostSteps * usual_step_s(before) || !has_the_channels_of(before, run)) continue;
+    if (!(gap_s > 0.0) || gap_s > kMostSteps * usual_step_s(before.time_s) || !has_the_channels_of(before, run)) continue;
     RunUp result{.record = run, .follows = before.source};
     const auto first = std::lower_bound(before.time_s.begin(), before.time_s.end(), run.time_s.front() - kLongest_s);
     const auto n_before = first - before.time_s.begin();

@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/judging/iso230_3.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
@@ -264,7 +265,7 @@ std::vector<std::string> other_axes(const StrategyMatrix& m) {
   std::vector<std::string> names;
   const Record& readings = m.runs.front().run.readings;
   for (const Channel& c : readings.channels) {
-    const bool is_axis = c.unit == "um" || c.unit == "mm" || c.unit == "urad";
+    const bool is_axis = is_displacement_unit(c.unit);
     if (is_axis && &c != readings.find(m.settings.strategies.target)) names.push_back(c.name);
   }
   return names;

@@ -99,7 +99,8 @@ struct Judgement {
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
 
-/// Sets `safety`, `is_worse_than_nothing`, `why`, `limits` and `cells` from the cases of a strategy; does nothing without cases.
+/// Sets `safety`, `is_worse_than_nothing`, `why`, `limits` and `cells` from the cases of a strategy; does nothing without
+/// cases.
 void give_verdict(const StrategyMatrix& matrix, JudgedStrategy& strategy);
 
 /// The worst values over some cases of a strategy.

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/normal.hpp"
+#include "base/record_channel.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
@@ -76,8 +79,7 @@ FollowedCorrection DeployedFollower::next(ObservedRun& run) {
             .half_width_um = deployed_.interval_um};
   }
   if (channel_.empty()) {
-    for (const FailSafe::Guard& g : deployed_.fail_safe->guards)
-      channel_.push_back(static_cast<std::size_t>(&readings.at(g.input) - readings.channels.data()));
+    for (const FailSafe::Guard& g : deployed_.fail_safe->guards) channel_.push_back(channel_index(readings, g.input));
   }
   for (std::size_t k = 0; k < channel_.size(); ++k) read_[k] = readings.channels[channel_[k]].values[last];
   const double deserved =

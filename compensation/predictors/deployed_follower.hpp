@@ -12,8 +12,9 @@ struct FollowedCorrection {
   double correction_um = 0.0;  ///< in force, guarded
   double trust = 1.0;          ///< factor on the prediction, 0 to 1
   /// Half width of the 95 % interval of the drift about the correction [um]: the predictor's half width divided by the
-  /// smallest trust of the last hours (kRemembersDoubt_s), at least 1.96 of the predictor's own deviations, plus the distance from the prediction to the correction, which
-  /// may be faded, clamped or slewed. None without trust, and if the predictor has no interval.
+  /// smallest trust of the last hours (kRemembersDoubt_s), at least kNormal95 of the predictor's own deviations, plus the
+  /// distance from the prediction to the correction, which may be faded, clamped or slewed. None without trust, and if the
+  /// predictor has no interval.
   std::optional<double> interval_um = {};
   std::optional<double> half_width_um = {};  ///< of that, without the distance from the prediction to the correction
 };

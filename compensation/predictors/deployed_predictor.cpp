@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/normal.hpp"
+
 namespace driftwright::compensation {
 
 std::optional<Input> unguarded_input(const DeployedPredictor& deployed) {

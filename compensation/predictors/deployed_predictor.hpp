@@ -10,8 +10,6 @@
 
 namespace driftwright::compensation {
 
-inline constexpr double kNormal95 = 1.96;  ///< deviations that 95 % of a normal number are within
-
 /// The error of a predictor of the same kind on one part of the training runs after a fit to the rest.
 struct FoldError {
   std::string kind, name;  ///< "run", "run 2.csv" (judging/folds.hpp)

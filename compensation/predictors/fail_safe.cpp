@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/median.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/predictors/control_tables.hpp"
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/sensors/redundancy.hpp"
@@ -120,8 +122,7 @@ FailSafe learn_limits(std::span<const Record> as_given, const std::vector<std::s
   }
   if (steps_s.empty())
     throw InputError("training records of one row say nothing about steps; at least two rows are required");
-  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
-  safe.period_s = steps_s[steps_s.size() / 2];
+  safe.period_s = upper_median(std::move(steps_s));
   safe.stale_s = 5.0 * safe.period_s;
   safe.fade_s = 10.0 * safe.period_s;
   drift.take(0.0);  // zero correction is always allowed
@@ -197,11 +198,7 @@ Repaired repaired(const FailSafe& safe, Record readings) {
   Repaired result{.readings = std::move(readings), .deserved = {}, .events = {}};
   const std::vector<double>& time_s = result.readings.time_s;
   std::vector<std::vector<double>*> channel;
-  for (const FailSafe::Guard& g : safe.guards) {
-    channel.push_back(
-        &result.readings.channels[static_cast<std::size_t>(&result.readings.at(g.input) - result.readings.channels.data())]
-             .values);
-  }
+  for (const FailSafe::Guard& g : safe.guards) channel.push_back(&changeable_channel(result.readings, g.input).values);
   drift_state state{};
   std::vector<drift_input_state> inputs(n);
   std::vector<double> room(n * (n + 1)), read(n), x(n);

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/json_value.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/predictors/control_tables.hpp"
 #include "compensation/predictors/predictor_kind.hpp"
 
@@ -96,7 +97,7 @@ class FormulaFollower final : public Follower {
       if (channel.unit != inputs_[k].unit)
         throw InputError(fmt::format("channel '{}' of {} is in {}, but the model was fitted in {}", channel.name,
                                      readings.source, channel.unit, inputs_[k].unit));
-      channel_[k] = static_cast<std::size_t>(&channel - readings.channels.data());
+      channel_[k] = channel_index(readings, inputs_[k].name);
     }
   }
 

@@ -10,6 +10,7 @@
 
 #include "base/dense.hpp"
 #include "base/errors.hpp"
+#include "base/normal.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -335,8 +336,8 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
     of_shape[0] = 1.0;
     of_shape.segment(1, i).setConstant(-1.0);
     const double sd = std::sqrt(std::max(0.0, of_shape.dot(best.covariance * of_shape)));
-    m.modes.push_back({time_constant_s[k], time_constant_s[k] * std::exp(-1.96 * sd),
-                       time_constant_s[k] * std::exp(1.96 * sd), best.shape.back()});
+    m.modes.push_back({time_constant_s[k], time_constant_s[k] * std::exp(-kNormal95 * sd),
+                       time_constant_s[k] * std::exp(kNormal95 * sd), best.shape.back()});
     const Eigen::MatrixXd of_mode =
         t.noise.asDiagonal() * a.middleRows(i * (options.powers + 1), options.powers + 1).transpose();
     m.level.emplace_back(of_mode.leftCols(options.powers));

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "base/record_channel.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
 namespace driftwright::compensation {
@@ -11,15 +12,11 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double>& values_of(Record& record, const std::string& channel) {
-  return record.channels[static_cast<std::size_t>(&record.at(channel) - record.channels.data())].values;
-}
-
 }  // namespace
 
 Record scored_readings(const ObservedRun& run, const std::string& target, bool from_start) {
   Record readings = from_start ? counted_from_start(run.readings, target) : run.readings;
-  std::vector<double>& drift = values_of(readings, target);
+  std::vector<double>& drift = changeable_channel(readings, target).values;
   std::fill_n(drift.begin(), std::min(run.n_before, drift.size()), kMissing);
   return readings;
 }
@@ -47,7 +44,7 @@ std::vector<ObservedRun> joined_histories(std::span<const ObservedRun> runs, con
   }
   for (ObservedRun& joined : result) {
     if (joined.history.empty()) continue;
-    std::vector<double>& drift = values_of(joined.readings, target);
+    std::vector<double>& drift = changeable_channel(joined.readings, target).values;
     std::vector<bool> is_own(drift.size());
     for (const ObservedRun& run : runs) {
       if (run.history != joined.history) continue;

@@ -2,7 +2,6 @@
 // State observer: the reduced model, corrected by the available thermometers. It combines physics and sensors: readings
 // reveal the errors of the model, and the model describes what no sensor measures.
 
-#include <map>
 #include <span>
 
 #include "compensation/predictors/predictor.hpp"
@@ -85,7 +84,8 @@ class Observer final : public Predictor {
   [[nodiscard]] std::vector<effects::Effect> laws() const override { return laws_; }
   [[nodiscard]] double period_s() const override { return settings_.period_s; }  ///< between the rows that it learned from
   [[nodiscard]] bool looks_after_inputs() const override { return true; }
-  /// Kind `observer`: matrices of the reduced model, the effects whose laws drive it, and what it has learned of its factors.
+  /// Kind `observer`: matrices of the reduced model, the effects whose laws drive it, and what it has learned of its
+  /// factors.
   [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] const Observer* observer() const override { return this; }
   /// Gives row by row the same as observe() for the whole run.
@@ -131,8 +131,7 @@ class Observer final : public Predictor {
   [[nodiscard]] static Observer of_state(State state);
 
  private:
-  struct Step;  // the effect of one drive on the state over one step
-  class Run;
+  class Run;  // in observer_run.cpp, with all that follows a run
 
   solver::ReducedSystem system_;
   Eigen::VectorXd start_;

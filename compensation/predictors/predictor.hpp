@@ -1,9 +1,10 @@
 #pragma once
 // The interface of everything that predicts the drift of a machine: a formula, a model, a model with thermometers, or
-// earlier measurements. A predictor is already fitted, and is followed row by row. It says what it needs, which of its inputs
-// must be guarded, how it is written (predictor_kind.hpp) and what else can be made of it; no other file knows its class.
-// With fail-safe and interval it becomes a DeployedPredictor (deployed_predictor.hpp), which `validate` judges and stores in a
-// file. Those that `run` fits, and the modes of `compensate --model modes`, are judged on their run and not stored.
+// earlier measurements. A predictor is already fitted, and is followed row by row. It says what it needs, which of its
+// inputs must be guarded, how it is written (predictor_kind.hpp) and what else can be made of it; no other file knows its
+// class. With fail-safe and interval it becomes a DeployedPredictor (deployed_predictor.hpp), which `validate` judges and
+// stores in a file. Those that `run` fits, and the modes of `compensate --model modes`, are judged on their run and not
+// stored.
 
 #include <memory>
 #include <optional>
@@ -75,7 +76,8 @@ class Predictor {
   /// What a file holds of it; none: it is not stored.
   [[nodiscard]] virtual std::optional<Written> written() const = 0;
 
-  /// The formula that gives the same drift, for text, C, LinuxCNC and means of several; null: it is no formula of its inputs.
+  /// The formula that gives the same drift, for text, C, LinuxCNC and means of several; null: it is no formula of its
+  /// inputs.
   [[nodiscard]] virtual const DriftModel* formula() const { return nullptr; }
   /// The state observer in it, for a watch over the machine and for functional mock-up units; null if it has no observer.
   [[nodiscard]] virtual const Observer* observer() const { return nullptr; }

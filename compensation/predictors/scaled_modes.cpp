@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/normal.hpp"
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
@@ -107,8 +108,8 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double sd = std::sqrt(std::max(0.0, variance * square[k * x.size() + k]));
     m.factors[k].value = std::exp(x[k]);
-    m.factors[k].low = std::exp(x[k] - 1.96 * sd);
-    m.factors[k].high = std::exp(x[k] + 1.96 * sd);
+    m.factors[k].low = std::exp(x[k] - kNormal95 * sd);
+    m.factors[k].high = std::exp(x[k] + kNormal95 * sd);
   }
   m.system = solver::with_factors(model, factors_of(model, x.data()));
   m.start = start;

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/median.hpp"
+#include "base/normal.hpp"
 
 namespace driftwright::compensation {
 
@@ -43,9 +45,7 @@ double noise_of(const std::vector<ThermalTest>& tests, Eigen::Index channel) {
   }
   const double least = kLeastNoise * std::max(1e-12, high - low);
   if (differences.empty()) return least;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(*middle / (0.6745 * std::sqrt(6.0)), least);
+  return std::max(upper_median(std::move(differences)) / (kNormalMedian * std::sqrt(6.0)), least);
 }
 
 TestedSpeeds tested_speeds(const std::vector<ThermalTest>& tests) {

@@ -19,7 +19,8 @@ struct BlockBeyond {
   double limit = 0.0;  ///< the same
 };
 
-/// Every block beyond a limit, in their order; a block beyond several is listed once for each. Blocks without duration have no speed.
+/// Every block beyond a limit, in their order; a block beyond several is listed once for each. Blocks without duration have
+/// no speed.
 [[nodiscard]] std::vector<BlockBeyond> blocks_beyond(const std::vector<NcStep>& steps, const MachineLimits& limits);
 
 /// "the spindle turns at 60000 rpm; at most 2000 rpm are allowed", without the block.

@@ -4,15 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/record_channel.hpp"
+
 namespace driftwright::compensation {
-namespace {
-
-std::vector<double>& values_of(Record& record, const std::string& channel) {
-  return record.channels[static_cast<std::size_t>(&record.at(channel) - record.channels.data())].values;
-}
-
-}  // namespace
-
 std::vector<Record> in_blocks(std::vector<Record> records, const std::string& target) {
   if (records.size() != 1) return records;
   const std::vector<double> drift = records.front().at(target).values;
@@ -23,7 +17,7 @@ std::vector<Record> in_blocks(std::vector<Record> records, const std::string& ta
   if (rows.size() < 2 * kBlocks) return records;
   std::vector<Record> blocks(kBlocks, records.front());
   for (std::size_t b = 0; b < kBlocks; ++b) {
-    std::vector<double>& own = values_of(blocks[b], target);
+    std::vector<double>& own = changeable_channel(blocks[b], target).values;
     std::fill(own.begin(), own.end(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t k = rows.size() * b / kBlocks; k < rows.size() * (b + 1) / kBlocks; ++k) own[rows[k]] = drift[rows[k]];
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/lists.hpp"
 #include "base/random.hpp"
 #include "compensation/sensors/sensor_selection.hpp"
 
@@ -14,16 +15,12 @@ constexpr double kHelps = 1e-9;  // of the remaining error: smaller improvements
 constexpr std::uint64_t kSeed = 1;
 constexpr int kTriedAtRandom = 400, kMostBeginnings = 20;  // candidates times random starts
 
-bool holds(const std::vector<int>& set, int candidate) {
-  return std::find(set.begin(), set.end(), candidate) != set.end();
-}
-
 /// The candidate that leaves the smallest error when added to a set; -1 if all are in it.
 int best_beside(const std::vector<int>& set, const std::vector<double>& left_um) {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < left_um.size(); ++c) {
-    if (left_um[c] < least && !holds(set, static_cast<int>(c))) {
+    if (left_um[c] < least && !is_in(set, static_cast<int>(c))) {
       least = left_um[c];
       best = static_cast<int>(c);
     }
@@ -60,7 +57,7 @@ std::vector<std::vector<int>> random_beginnings(int n_candidates, int most, int 
       std::vector<int> drawn = fixed;
       while (drawn.size() < fixed.size() + static_cast<std::size_t>(n)) {
         const int c = random.below(n_candidates);
-        if (!holds(drawn, c)) drawn.push_back(c);
+        if (!is_in(drawn, c)) drawn.push_back(c);
       }
       all.push_back(std::move(drawn));
     }
@@ -121,7 +118,7 @@ std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const s
 ThermometerSet best_of_all_sets(const DriftLeft& left, int n, const std::vector<int>& fixed) {
   std::vector<int> free;
   for (int c = 0; c < left.n_candidates(); ++c) {
-    if (!holds(fixed, c)) free.push_back(c);
+    if (!is_in(fixed, c)) free.push_back(c);
   }
   ThermometerSet best{{}, std::numeric_limits<double>::infinity()};
   for_each_set(static_cast<int>(free.size()), n, [&](std::span<const int> set) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/complete_rows.hpp"
 
 namespace driftwright::compensation {
@@ -22,10 +23,6 @@ double span_of(const Eigen::VectorXd& x) {
 
 bool is_constant(const Eigen::VectorXd& x) {
   return span_of(x) <= kConstantSpan * x.cwiseAbs().maxCoeff();
-}
-
-bool is_temperature(const std::string& unit) {
-  return unit == "degC" || unit == "K";
 }
 
 struct Choice {
@@ -49,7 +46,7 @@ Choice choose_image(const GreyOptions& options, const std::vector<std::string>& 
   }
   for (std::size_t j = 0; j < names.size(); ++j) {
     const Eigen::VectorXd x = rows.values.col(static_cast<Eigen::Index>(j));
-    if (is_temperature(rows.units[j])) {
+    if (is_temperature_unit(rows.units[j])) {
       return {Image::kRange, fmt::format("'{}' is a temperature, and its ratio to its first value depends on whether it "
                                          "is in degC or K, so the range image is used.",
                                          names[j])};

@@ -42,11 +42,11 @@ struct DoubtedThermometer {
   bool is_alone = true;
 };
 
-/// The thermometers that depart in some records, the worst first. Relations are fitted to each record alone (eighth of a single
-/// record), and a row of another record is predicted by the median of all of these: records in which the thermometer, or
-/// another one, is broken are outvoted as long as they are fewer than half. The usual difference is the median over all rows
-/// times 1.4826, at least `reading_K`, and in a row the scatter of the predictions by the relations if that is larger: so a row
-/// far from all records counts less. The worst is taken out, and the rest is judged again without it.
+/// The thermometers that depart in some records, the worst first. Relations are fitted to each record alone (eighth of a
+/// single record), and a row of another record is predicted by the median of all of these: records in which the thermometer,
+/// or another one, is broken are outvoted as long as they are fewer than half. The usual difference is the median over all
+/// rows times 1.4826, at least `reading_K`, and in a row the scatter of the predictions by the relations if that is larger:
+/// so a row far from all records counts less. The worst is taken out, and the rest is judged again without it.
 ///
 /// If more than a third of the thermometers depart, nothing distinguishes them from the rest, and none is returned. None is
 /// either of two or three records, whose relations cannot outvote each other, and none that has no row in common with the

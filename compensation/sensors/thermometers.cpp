@@ -8,20 +8,13 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "base/record_channel.hpp"
 #include "compensation/sensors/interpolate.hpp"
 
 namespace driftwright::compensation {
 namespace {
 
 constexpr double kMostSamples = 2e8;  // 1.6 GB
-
-bool is_temperature(const Channel& channel) {
-  return channel.unit == "degC" || channel.unit == "K";
-}
-
-Channel& find(Record& record, const std::string& name) {
-  return record.channels[static_cast<std::size_t>(&record.at(name) - record.channels.data())];
-}
 
 /// The value of the last row at or before each time.
 std::vector<double> held(const Record& record, const std::vector<double>& values, const std::vector<double>& at_s) {
@@ -40,7 +33,7 @@ Record as_read(Record record, const Thermometers& thermometers, std::uint64_t se
   const double step_K = thermometers.resolution_K;
   for (std::size_t c = 0; c < record.channels.size(); ++c) {
     Channel& channel = record.channels[c];
-    if (!is_temperature(channel)) continue;
+    if (!is_temperature_unit(channel.unit)) continue;
     Random random(seed, c);
     for (double& value : channel.values) {
       if (thermometers.noise_K > 0.0) value += thermometers.noise_K * random.normal();
@@ -52,7 +45,7 @@ Record as_read(Record record, const Thermometers& thermometers, std::uint64_t se
 
 Record running_mean(Record record, double window_s) {
   for (Channel& channel : record.channels) {
-    if (!is_temperature(channel) || !(window_s > 0.0)) continue;
+    if (!is_temperature_unit(channel.unit) || !(window_s > 0.0)) continue;
     const std::vector<double> read = channel.values;
     std::size_t first = 0;
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -72,8 +65,8 @@ Record running_mean(Record record, double window_s) {
 Record with_failed_sensor(Record record, const std::string& sensor, SensorFailure failure, double from_s,
                           const std::string& elsewhere) {
   const bool has_other = failure == SensorFailure::kDetached || failure == SensorFailure::kSwapped;
-  Channel* other = has_other ? &find(record, elsewhere) : nullptr;
-  Channel& failed = find(record, sensor);
+  Channel* other = has_other ? &changeable_channel(record, elsewhere) : nullptr;
+  Channel& failed = changeable_channel(record, sensor);
   if (other && other->unit != failed.unit) {
     throw InputError(fmt::format("'{}' in {} cannot read '{}' in {}", sensor, failed.unit, elsewhere, other->unit));
   }

@@ -105,6 +105,19 @@ void set_value(DriveVariable variable, Drive& drive, double value) {
   }
 }
 
+std::vector<DriveRange> largest_drives(const std::vector<Cyclogram>& cyclograms) {
+  std::vector<DriveRange> ranges;
+  for (int v = 0; v < kDriveVariables; ++v) {
+    const auto variable = static_cast<DriveVariable>(v);
+    double most = 0.0;
+    for (const Cyclogram& c : cyclograms) {
+      for (const Cyclogram::Section& s : c.sections) most = std::max(most, value_of(variable, s.drive));
+    }
+    if (most > 0.0) ranges.push_back({variable, most});
+  }
+  return ranges;
+}
+
 double DriveLaw::at(const std::vector<double>& x) const {
   double value = at_rest;
   for (const LawTerm& term : terms) {

@@ -39,6 +39,9 @@ struct DriveRange {
   double most = 0.0;
 };
 
+/// The variables that are above 0 in any section, with their largest values.
+[[nodiscard]] std::vector<DriveRange> largest_drives(const std::vector<Cyclogram>& cyclograms);
+
 /// Tabulates a law that is a sum of functions of one variable each. Pieces are halved until the polynomial is within
 /// 1e-13 of the law's largest value in the piece or at rest, or until they are 1e-9 wide in log x: around a kink or a
 /// jump, where the table has the law's value at the piece's end. The first piece begins at 1e-6 of the largest value.

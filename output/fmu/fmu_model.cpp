@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "effects/reading_chain.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -13,19 +14,6 @@ namespace {
 
 using scenarios::MachineModel;
 using scenarios::Scenario;
-
-std::vector<DriveRange> ranges_of(const Scenario& scenario) {
-  std::vector<DriveRange> ranges;
-  for (int v = 0; v < kDriveVariables; ++v) {
-    const auto variable = static_cast<DriveVariable>(v);
-    double most = 0.0;
-    for (const Cyclogram& c : scenario.cyclograms) {
-      for (const Cyclogram::Section& s : c.sections) most = std::max(most, value_of(variable, s.drive));
-    }
-    if (most > 0.0) ranges.push_back({variable, most});
-  }
-  return ranges;
-}
 
 std::vector<std::vector<double>> drives_of(const Scenario& scenario, const std::vector<DriveRange>& ranges) {
   constexpr std::size_t kMost = 24;  // each needs a decomposition; others are decomposed when they occur
@@ -60,12 +48,10 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
     const auto column = static_cast<Eigen::Index>(o);
     const bool is_temperature = outputs.unit[o] == "K";
     list.push_back({.name = outputs.name[o],
-                    .unit = is_temperature           ? "degC"
-                            : outputs.unit[o] == "m" ? "um"
-                                                     : "urad",
+                    .unit = shown_reading_unit(outputs.unit[o]),
                     .state = outputs.state.col(column),
                     .ambient = outputs.ambient[column],
-                    .factor = is_temperature ? 1.0 : 1e6,
+                    .factor = shown_scale(outputs.unit[o]),
                     .offset = is_temperature ? reference_K - kZeroCelsius_K : 0.0});
   }
   return list;
@@ -82,7 +68,7 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system)
   if (!system.change_times_s.empty())
     throw InputError(machine.where,
                      "a law changes with time on its own; no FMU is made of such a machine yet (docs/how-to/fmu.md)");
-  FmuModel model{.name = scenario.name, .drive = ranges_of(scenario), .reference_K = system.reference_K};
+  FmuModel model{.name = scenario.name, .drive = largest_drives(scenario.cyclograms), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;
   model.constant_load = model.ambient_load = Eigen::VectorXd::Zero(n);

@@ -19,19 +19,6 @@ constexpr double kColder_K = 25.0,
                  kWarmer_K =
                      90.0;  // below and above ambient and reference: range in which laws of temperature are tabulated
 
-std::vector<DriveRange> ranges_of(const Scenario& scenario) {
-  std::vector<DriveRange> ranges;
-  for (int v = 0; v < kDriveVariables; ++v) {
-    const auto variable = static_cast<DriveVariable>(v);
-    double most = 0.0;
-    for (const Cyclogram& c : scenario.cyclograms) {
-      for (const Cyclogram::Section& s : c.sections) most = std::max(most, value_of(variable, s.drive));
-    }
-    if (most > 0.0) ranges.push_back({variable, most});
-  }
-  return ranges;
-}
-
 TemperatureRange temperatures_of(const MachineModel& machine) {
   const auto [low, high] = std::minmax_element(machine.ambient.value.begin(), machine.ambient.value.end());
   return {.low_K = machine.reference_K + std::min(0.0, *low) - kColder_K,
@@ -121,7 +108,7 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
     throw InputError(machine.where,
                      fmt::format("laws change {} times on their own; the page holds up to {} (docs/how-to/view.md)",
                                  system.change_times_s.size(), kMostTimes));
-  TwinModel model{.drive = ranges_of(scenario),
+  TwinModel model{.drive = largest_drives(scenario.cyclograms),
                   .system = system,
                   .start = start,
                   .ambient = machine.ambient,

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/quantity.hpp"
+#include "base/shown_units.hpp"
 #include "effects/reading_chain.hpp"
 
 namespace driftwright::output {
@@ -84,10 +85,8 @@ Json json_of(const TwinModel& model) {
     output_ambient.push_back(s.outputs.ambient[o]);
     const bool is_temperature = s.outputs.unit[i] == "K";
     told.push_back({{"name", s.outputs.name[i]},
-                    {"unit", is_temperature             ? "degC"
-                             : s.outputs.unit[i] == "m" ? "um"
-                                                        : "urad"},
-                    {"factor", is_temperature ? 1.0 : 1e6},
+                    {"unit", shown_reading_unit(s.outputs.unit[i])},
+                    {"factor", shown_scale(s.outputs.unit[i])},
                     {"offset", is_temperature ? s.reference_K - kZeroCelsius_K : 0.0}});
   }
   for (const TwinTimedLaw& law : model.powers_W) powers.push_back(json_of(law));

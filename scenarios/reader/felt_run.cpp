@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/lists.hpp"
 #include "base/quantity.hpp"
 #include "effects/recorded_column.hpp"
 
@@ -17,13 +18,6 @@ void must_be_one_of(const Where& where, const char* what, const std::string& nam
   const std::string near = nearest_word(name, known);
   throw InputError(where, fmt::format("there is no {} '{}'; there are {}.{}", what, name, fmt::join(known, ", "),
                                       near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
-}
-
-template <class Entries>
-std::vector<std::string> names_of(const Entries& entries) {
-  std::vector<std::string> names;
-  for (const auto& entry : entries) names.push_back(entry.name);
-  return names;
 }
 
 /// Requires `tilt` for tilts, and any other amount for displacements.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/record_channel.hpp"
+
 namespace driftwright::scenarios {
 namespace {
 
@@ -72,7 +74,7 @@ double mean_of(const std::vector<double>& x, std::size_t first, std::size_t last
 std::vector<std::size_t> in_balance(const CutRecord& cut, const std::vector<std::size_t>& rows) {
   std::vector<bool> is_back(rows.size(), true);
   for (const Channel& c : cut.record.channels) {
-    const bool is_temperature = c.unit == "degC" || c.unit == "K";
+    const bool is_temperature = is_temperature_unit(c.unit);
     if (!is_temperature && c.unit != "um") continue;
     const std::vector<double> x = over_ambient(cut, c, is_temperature);
     const double begin = mean_of(x, 0, std::min(kMeanRows, x.size()));

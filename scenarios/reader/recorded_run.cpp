@@ -9,8 +9,8 @@
 
 #include "base/errors.hpp"
 #include "base/foreign_temperature.hpp"
-#include "base/median.hpp"
 #include "base/usual_ranges.hpp"
+#include "base/usual_step.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::scenarios {
@@ -166,9 +166,7 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
 
 /// Notes rows that are too far apart to know the drive between them.
 void note_coarse_rows(RecordedRun& run) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < run.time_s.size(); ++i) steps_s.push_back(run.time_s[i] - run.time_s[i - 1]);
-  if (const auto what = beyond_usual(Usual::kRowInterval, upper_median(steps_s)))
+  if (const auto what = beyond_usual(Usual::kRowInterval, usual_step_s(run.time_s)))
     run.findings.push_back(
         {"speed",
          fmt::format(

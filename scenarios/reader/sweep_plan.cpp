@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/designs.hpp"
+#include "base/normal.hpp"
 #include "base/quantity.hpp"
 #include "scenarios/reader/content_key.hpp"
 

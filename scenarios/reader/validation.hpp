@@ -39,8 +39,9 @@ struct Validation {
 [[nodiscard]] Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known,
                                          double tolerance_um);
 
-/// What is judged on where a scenario has no key `validation`: strategies are fitted on all cyclograms but the last and judged on that one, where there are three,
-/// and on random ones at the speeds of the others; in the scenario's ambient, and in one that is 5 K cooler or warmer. Instruments are as usual on machines: 0.1 K, 1 um.
+/// What is judged on where a scenario has no key `validation`: strategies are fitted on all cyclograms but the last and
+/// judged on that one, where there are three, and on random ones at the speeds of the others; in the scenario's ambient, and
+/// in one that is 5 K cooler or warmer. Instruments are as usual on machines: 0.1 K, 1 um.
 /// @throws InputError  where fewer than two different cyclograms turn the spindle
 [[nodiscard]] Validation default_validation(const std::vector<Cyclogram>& cyclograms, double tolerance_um);
 

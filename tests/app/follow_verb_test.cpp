@@ -19,7 +19,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Json = nlohmann::json;
 
-/// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient warms.
+/// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient
+/// warms.
 constexpr const char* kHead = R"(name: head
 reference_temperature: 20 degC
 machine: {generator: lumped}
@@ -131,7 +132,8 @@ TEST(FollowVerb, FadesWhereRowsNoLongerGiveTheDrive) {
   }
 }
 
-// An hour at 2000 rpm leads to 42 um. Four rows at 4000 rpm are above the limit: the correction is held, and goes on after them.
+// An hour at 2000 rpm leads to 42 um. Four rows at 4000 rpm are above the limit: the correction is held, and goes on after
+// them.
 TEST(FollowVerb, KeepsTheLimitsOfTheMachine) {
   std::string rows = "time_s,speed_rpm,ambient_degC\n";
   for (int minute = 0; minute <= 120; ++minute)

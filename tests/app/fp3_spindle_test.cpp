@@ -54,7 +54,8 @@ TEST_F(Fp3Spindle, ReachesTheMagnitudesOfThePaper) {
     EXPECT_GT(peak(sensor), 23.0) << sensor;
     EXPECT_LT(peak(sensor), 29.0) << sensor;
   }
-  // A machine symmetric about x = 0 neither moves nor tilts sideways; drift_x is the quill's own radius, 62.5 mm on one side.
+  // A machine symmetric about x = 0 neither moves nor tilts sideways; drift_x is the quill's own radius, 62.5 mm on one
+  // side.
   const double radius_growth_um = 11.5e-6 * 62.5e3 * (peak("t06") - 20.0);
   // The reading is 9 % above that: under the thermometer the quill is warmer inside. 15 % leaves room for nothing else.
   EXPECT_NEAR(peak("drift_x"), radius_growth_um, 0.15 * radius_growth_um);

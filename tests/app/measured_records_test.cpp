@@ -1,4 +1,5 @@
-// The same commands on measured records. The records are not part of the project; without them the test says so and is skipped.
+// The same commands on measured records. The records are not part of the project; without them the test says so and is
+// skipped.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What other people's programs count in the files of `driftwright inject`: LinuxCNC's HAL encoder and sigrok's rotary decoder.
-// A machine has one HAL at a time; CTest keeps others off by the resource lock `hal`.
+// What other people's programs count in the files of `driftwright inject`: LinuxCNC's HAL encoder and sigrok's rotary
+// decoder. A machine has one HAL at a time; CTest keeps others off by the resource lock `hal`.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is installed.
+// `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is
+// installed.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -48,7 +48,8 @@ cyclograms:
   steps: [[60 min, 1000 rpm], [60 min, 2000 rpm], [60 min, 3000 rpm], [60 min, 0 rpm]]
   to_and_fro: [[40 min, 2500 rpm], [40 min, 0 rpm], [40 min, 1500 rpm], [40 min, 0 rpm], [40 min, 3000 rpm]]
 )";
-// Its oil thins, and its bearing gets tighter as the spindle outruns the column: 150 W cold and 100 W 20 K warmer, at 3000 rpm.
+// Its oil thins, and its bearing gets tighter as the spindle outruns the column: 150 W cold and 100 W 20 K warmer, at 3000
+// rpm.
 constexpr const char* kOil =
     "{type: bearing_friction, node: spindle, count: 2, f0: 1, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, "
     "mean_diameter: 90 mm, f1: 0.0006, load: 300 N, preload_growth: 10 N/K, inner: {node: spindle}, outer: {node: column}}";
@@ -173,7 +174,8 @@ TEST_F(ValidateRecords, PhysicsIsJudgedOnRecordsOfAMachine) {
   expect_exact(validate(machine_, "to_and_fro"));
 }
 
-// What is judged is what is deployed: each predictor's file corrects the judged record as `validate` said, to its last digit.
+// What is judged is what is deployed: each predictor's file corrects the judged record as `validate` said, to its last
+// digit.
 TEST_F(ValidateRecords, AFileCorrectsAsItWasJudged) {
   const auto out = fresh_folder("judged") / "out", corrected = fresh_folder("corrected") / "out";
   for (const std::string& scenario : {machine_, records_only_}) {
@@ -461,7 +463,8 @@ TEST_F(ValidateRecords, APartOfALongRecordGoesOnFromWhatCameBefore) {
   EXPECT_THAT(selected.output, AllOf(HasSubstr("cut into"), Not(HasSubstr("not possible"))));
 }
 
-// Three files of one recording: lags of the third begin with what the second holds, in `validate` and in `compensate --after`.
+// Three files of one recording: lags of the third begin with what the second holds, in `validate` and in `compensate
+// --after`.
 TEST_F(ValidateRecords, ARecordThatContinuesAnotherIsCorrectedAsJudged) {
   const std::string shifts = scenario("shifts", [](std::string& t) {
     replace(t, "  to_and_fro:",

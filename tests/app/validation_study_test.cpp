@@ -99,8 +99,8 @@ TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) 
   EXPECT_EQ(strategy("observer")["worse_than_nothing"], false);
 }
 
-// Polyakov, Marusich & Nikitina: a regression on temperatures that was fitted to continuous running does not predict the drift of another
-// cyclogram.
+// Polyakov, Marusich & Nikitina: a regression on temperatures that was fitted to continuous running does not predict the
+// drift of another cyclogram.
 TEST_F(ValidationStudy, TemperaturesAloneFailWhereTheyWereNotTrained) {
   const auto chaotic_as_trained = [](const CsvRow& r) {
     return is_intact(r) && r.family == "chaotic" && r.season == "as trained";

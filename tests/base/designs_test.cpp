@@ -73,21 +73,5 @@ TEST(Grid, TakesEachCombinationOnceTheFirstSlowest) {
   EXPECT_EQ(grid_point(23, {2, 3, 4}), (std::vector<std::size_t>{1, 2, 3}));
 }
 
-TEST(NormalQuantile, InvertsTheDistribution) {
-  // Φ(x) = erfc(-x/√2)/2; relative error of p is |x| that of x for large |x|, and erfc has its own rounding: 1e-14 |x|.
-  for (double x = -8.0; x <= 8.0; x += 0.37) {
-    const double p = 0.5 * std::erfc(-x / std::sqrt(2.0));
-    if (p < 0.999) {
-      EXPECT_NEAR(normal_quantile(p), x, 1e-14 * (1.0 + std::abs(x)));
-    }
-  }
-  EXPECT_EQ(normal_quantile(0.5), 0.0);
-  EXPECT_DOUBLE_EQ(normal_quantile(0.975), 1.959963984540054);
-  EXPECT_NEAR(normal_quantile(1e-300), -37.0470962993612, 1e-12);  // far in the tail; erfc there gives 1.0000e-300 back
-  EXPECT_THROW((void)normal_quantile(0.0), RangeError);
-  EXPECT_THROW((void)normal_quantile(1.0), RangeError);
-  EXPECT_THROW((void)normal_quantile(std::nan("")), RangeError);
-}
-
 }  // namespace
 }  // namespace driftwright::designs_test

@@ -35,8 +35,8 @@ Apart largest(const Subject& s, const Eigen::MatrixXd& a, const Eigen::MatrixXd&
 class BlindIntegration : public testing::TestWithParam<const char*> {};
 
 TEST_P(BlindIntegration, AgreesWithTheProgramsOwnAtTightToleranceTo2mKAnd5nm) {
-  // Same matrices, same laws, another method, other steps: what is left is the truth's own time error, far below the quietest
-  // sensor (30 mK and 200 nm).
+  // Same matrices, same laws, another method, other steps: what is left is the truth's own time error, far below the
+  // quietest sensor (30 mK and 200 nm).
   const Subject s = make_subject(kMachines, GetParam(), 1.0);
   const Cyclogram drive = up_and_down(s.top_speed_rpm);
   const TimeSeries ambient{{0.0, drive.duration_s()}, {0.3, 1.5}};

@@ -158,7 +158,8 @@ TEST(Formulas, SurviveASensorThatStandsStillInAllRunsButOne) {
   }
 }
 
-/// A sensor of random steps; the drift 3 um/K after its first-order lag of 20 min, dL/dt = (x - L)/tau between linear readings.
+/// A sensor of random steps; the drift 3 um/K after its first-order lag of 20 min, dL/dt = (x - L)/tau between linear
+/// readings.
 Record lagging(std::uint64_t seed) {
   Random random(seed);
   Record r{.source = "lag", .time_s = {}, .channels = {{"X1", "degC", {}}, {"drift_y", "um", {}}}};

@@ -267,7 +267,8 @@ TEST(RankingStability, IsTheSameFromRunToRunAndLeavesOutTheDead) {
   }
 }
 
-// Two blocks that differ: the mean of a resample is one of three, and over many its deviation is that of the mean of n draws.
+// Two blocks that differ: the mean of a resample is one of three, and over many its deviation is that of the mean of n
+// draws.
 TEST(RankingStability, DeviationIsThatOfABlockBootstrap) {
   // Range images; candidate differs from the drift in the second half of the blocks only. Deng's coefficient is 1 in the
   // first, with D = max = 1/2 on the second: (0 + 1/4)/(1/2 + 1/4) = 1/3. A grade is (1 + 2 k / 20)/3 with k binomial

@@ -15,8 +15,8 @@ namespace {
 
 const FoldSettings kFolds{.target = "tip_z", .from_start = false, .thermometers = {"bed"}, .speed = ""};
 
-/// A bed that warms from 20 to 60 degC in 400 min, and a drift that follows it by a law [um] of its rise [K], read every `step`
-/// rows.
+/// A bed that warms from 20 to 60 degC in 400 min, and a drift that follows it by a law [um] of its rise [K], read every
+/// `step` rows.
 FoldedRuns warming(const std::function<double(double)>& law, int step = 1) {
   ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
   run.readings.channels = {{"bed", "degC", {}}, {"tip_z", "um", {}}};

@@ -228,7 +228,8 @@ TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
   }
 }
 
-// An ambient thermometer whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is back.
+// An ambient thermometer whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is
+// back.
 TEST(Observer, AnAmbientThatJumpsIsHeld) {
   const ObservedRun run = run_of(three_parts(), 60.0, 4.0);
   ObservedRun exchanged = run;

@@ -102,7 +102,8 @@ Followed follow(const DeployedPredictor& d, const ObservedRun& run) {
   return f;
 }
 
-// Each power and each film wrong by a factor of 1.3 to 3, either way, twelve of each: a second machine unknown to the observer.
+// Each power and each film wrong by a factor of 1.3 to 3, either way, twelve of each: a second machine unknown to the
+// observer.
 TEST(ObserverTrust, FallsWhereTheModelIsWrongInOneNumber) {
   const DeployedPredictor d = taught();
   int n = 0, n_calm_and_wrong = 0;

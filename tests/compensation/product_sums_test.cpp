@@ -64,8 +64,8 @@ TEST(HeldOutRmse, CountsCompleteRowsAlone) {
               1e-10);
 }
 
-// An ambient thermometer moves in one run only: without that run it shows nothing, and the others must not be spoilt by a slope
-// made of rounding.
+// An ambient thermometer moves in one run only: without that run it shows nothing, and the others must not be spoilt by a
+// slope made of rounding.
 TEST(HeldOutRmse, OfASensorThatStandsStillInTheOtherRunsIsThatOfTheOthers) {
   for (const double stands_at : {20.0, 21.7, 19.999}) {
     std::vector<Record> records = four_records(3);

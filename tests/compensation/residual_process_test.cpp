@@ -90,8 +90,8 @@ TEST(ProbeFeedback, LeavesAsMuchAsItSays) {
   EXPECT_LT(square / n, 0.45 * 16.0);  // 0.40 by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ = 0.91
 }
 
-// Errors three times as large as those of the fit: after 25 probings two thirds of the variance that is left are said, in place of a ninth.
-// The rest is that of probings which are refused or count as four deviations.
+// Errors three times as large as those of the fit: after 25 probings two thirds of the variance that is left are said, in
+// place of a ninth. The rest is that of probings which are refused or count as four deviations.
 TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
   const ResidualProcess fitted{2.0, 7200.0}, truth{6.0, 7200.0};
   double square = 0.0, said = 0.0;
@@ -121,8 +121,8 @@ TEST(ProbeFeedback, IsNoStricterAfterACalmTime) {
   EXPECT_EQ(probe_scale(&feedback.state()), 1.0);
 }
 
-// Three chips in a row are taken for a jump. After them a probing may be further off than usual, by a factor of 3.5 at most; two good ones
-// bring the axis back.
+// Three chips in a row are taken for a jump. After them a probing may be further off than usual, by a factor of 3.5 at most;
+// two good ones bring the axis back.
 TEST(ProbeFeedback, ComesBackAfterThreeChipsInARow) {
   ProbeFeedback feedback({1.5, 7200.0}, {.noise_um = 1.0}, true);
   const std::vector<double> reads = {0.4, 40.0, -35.0, 60.0, 0.3, -0.2, 0.5};
@@ -143,8 +143,8 @@ struct Read {
   double time_s, um;
 };
 
-/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers, whose scale
-/// is known as from one of them and is 1 at least: no filter.
+/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers, whose
+/// scale is known as from one of them and is 1 at least: no filter.
 /// @param jumped_s  probings from then on read a level, too, of which nothing is known before; negative: none
 std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
                                          const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
@@ -243,8 +243,8 @@ TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {
   EXPECT_EQ(feedback.state().n_jumps, 1);
 }
 
-// A drift that is faster than the process ever was is not refused for ever: each third probing is taken, and what is left stays below
-// what the axis moves meanwhile.
+// A drift that is faster than the process ever was is not refused for ever: each third probing is taken, and what is left
+// stays below what the axis moves meanwhile.
 TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
   ProbeFeedback feedback({2.0, 36000.0}, {.noise_um = 0.5}, true);
   double most_um = 0.0;
@@ -257,8 +257,8 @@ TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
   EXPECT_LT(most_um, 42.0);
 }
 
-// An axis that was knocked stays where it is: after a jump the filter is the joint distribution with a level of which nothing
-// was known, and 10 time constants later it still expects the level.
+// An axis that was knocked stays where it is: after a jump the filter is the joint distribution with a level of which
+// nothing was known, and 10 time constants later it still expects the level.
 TEST(ProbeFeedback, AJumpIsALevelThatDoesNotFade) {
   const ResidualProcess p{2.0, 3600.0};
   const Probe probe{0.5, 0.0};
@@ -281,8 +281,8 @@ TEST(ProbeFeedback, AJumpIsALevelThatDoesNotFade) {
   EXPECT_GT(feedback.estimate_um(), 38.0);
 }
 
-// Two good probings after a jump disagree by more than the bound as seldom as the header says: the distance of two draws of the
-// process h apart, with two noises, is within 4 deviations, and often beyond one.
+// Two good probings after a jump disagree by more than the bound as seldom as the header says: the distance of two draws of
+// the process h apart, with two noises, is within 4 deviations, and often beyond one.
 TEST(ProbeFeedback, TwoProbingsAfterAJumpAgreeWithinTheBound) {
   const ResidualProcess p{3.0, 3600.0};
   int n_beyond = 0;

@@ -1,4 +1,5 @@
-// Explanations that the present records cannot distinguish, and the experiment that would distinguish them, compared with records simulated one by one.
+// Explanations that the present records cannot distinguish, and the experiment that would distinguish them, compared with
+// records simulated one by one.
 
 #include "diagnosis/experiment.hpp"
 

@@ -1,4 +1,5 @@
-// Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same changes.
+// Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same
+// changes.
 
 #include "diagnosis/extended_scenario.hpp"
 

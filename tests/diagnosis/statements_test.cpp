@@ -62,7 +62,8 @@ class ColumnTest : public testing::Test {
         ground_(beside_),
         space_(*ground_.fitter, beside_.twin->as_written()) {}
 
-  /// Largest difference between a column and what a little of an effect does to the twin's readings, over the largest of that.
+  /// Largest difference between a column and what a little of an effect does to the twin's readings, over the largest of
+  /// that.
   double misses(const effects::Effect& effect, double amount, const std::function<bool(const Statement&)>& is_it) {
     const Twin& twin = *beside_.twin;
     Twin::Workspace workspace(twin);

@@ -234,7 +234,8 @@ TEST(Axes, ServoHoldsAndGrowsWithItsOwnFeed) {
 }
 
 TEST(Axes, BallScrewTurnsDragAndThrustIntoHeat) {
-  // 2 N m, lead 10 mm, 0.2 m/s = 20 turns a second: 2 * 2 pi * 20 = 251.327 W. A thrust of 900 N at 0.9: 900 * 0.2 / 9 = 20 W.
+  // 2 N m, lead 10 mm, 0.2 m/s = 20 turns a second: 2 * 2 pi * 20 = 251.327 W. A thrust of 900 N at 0.9: 900 * 0.2 / 9 = 20
+  // W.
   const std::string screw = "{type: ball_screw, region: nut, axis: z, torque: 2 N m, lead: 10 mm, thrust: 900 N";
   EXPECT_NEAR(balance_of(screw + "}").heats[0].power_W(moving(0, 0, 0.2)), 271.3274, 1e-4);
   EXPECT_NEAR(balance_of(screw + ", share: 0.5, efficiency: 1}").heats[0].power_W(moving(0, 0, 0.2)), 125.6637, 1e-4);

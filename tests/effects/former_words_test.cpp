@@ -1,4 +1,5 @@
-// `hall` of earlier releases is read as `ambient`, with a note for each place; both at once, and ambiguous words, are refused.
+// `hall` of earlier releases is read as `ambient`, with a note for each place; both at once, and ambiguous words, are
+// refused.
 
 #include "effects/former_words.hpp"
 

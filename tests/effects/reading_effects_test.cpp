@@ -1,4 +1,5 @@
-// Displacements that no temperature makes and errors of instruments, as the user writes them, by value; and what they refuse.
+// Displacements that no temperature makes and errors of instruments, as the user writes them, by value; and what they
+// refuse.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

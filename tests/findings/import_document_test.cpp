@@ -13,8 +13,8 @@
 namespace driftwright::import_document_test {
 namespace {
 
-/// Twelve rows of a minute over noon, with marks after the sixth and at the end. As a HOBO logger's export has it: a button that was pressed, and a
-/// last row that says only that the file ends.
+/// Twelve rows of a minute over noon, with marks after the sixth and at the end. As a HOBO logger's export has it: a button
+/// that was pressed, and a last row that says only that the file ends.
 nlohmann::ordered_json summary_of(const std::string& middle, const std::string& end) {
   std::string text = "\"#\",\"Date Time, GMT+01:00\",\"Temp, °C\",\"Button\",\"End Of File\"\n";
   for (int i = 0; i < 12; ++i) {

@@ -137,7 +137,8 @@ TEST(SampleRows, AnObservationFarAheadOfTheAgentsOwnTimeIsOfThatTime) {
 }
 
 TEST(SampleRows, AnObservationThatComesBehindARowOfLaterTimeIsNotLost) {
-  // The observations are older than the answer that lacks them, because their clock is slower than the agent's: a spindle that turned for a moment.
+  // The observations are older than the answer that lacks them, because their clock is slower than the agent's: a spindle
+  // that turned for a moment.
   Agent agent(streams(0, 2, 1, {{1, 0, 1000}}),
               {streams(10, 2, 1, {}), streams(20, 4, 3, {{2, 9, 1500}, {3, 10, 1800}}), streams(20, 4, 3, {})});
   SampleRows source(agent.url(), speed(), 0.05, [](const std::string&) {});
@@ -175,7 +176,8 @@ TEST(SampleRows, SayThatAnAnswerDoesNotGoOnAndAskAgainAtTheirPace) {
   }
 }
 
-// --- units ------------------------------------------------------------------------------------------------------------------------
+// --- units
+// ------------------------------------------------------------------------------------------------------------------------
 
 struct Item {
   const char* element;

@@ -253,8 +253,9 @@ FollowLine minute(Session& session, int k, double probed_um = NAN) {
   return session.take({.time_s = 60.0 * k, .values = {25.0, probed_um}});
 }
 
-// The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found fades with the
-// time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`, times what the probing says of its scale.
+// The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found
+// fades with the time constant of 2 h, and the interval widens from 1.96 noises or so to that of `validate`, times what the
+// probing says of its scale.
 TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
   Session session = probed_session();
   FollowLine line;
@@ -289,8 +290,8 @@ TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
   EXPECT_NEAR(*line.axes[0].interval_um, 12.0 * std::sqrt(scale), 0.01);
 }
 
-// What a probe reads on the corrected axis is the drift minus the correction that was in force, also with a lag and while the axis
-// is on its way.
+// What a probe reads on the corrected axis is the drift minus the correction that was in force, also with a lag and while
+// the axis is on its way.
 TEST(FollowProbing, WhatIsLeftOnTheCorrectedAxisIsTheSameNews) {
   for (const double lag_s : {0.0, 90.0}) {
     const FollowOptions options{.most_rate_um_s = 0.05, .probe_lag_s = lag_s};

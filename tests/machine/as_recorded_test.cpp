@@ -168,7 +168,8 @@ TEST(CheckCyclogram, TriesLawsAtTheSpeedThatTheMachineTurnsAt) {
               ThrowsMessage<InputError>(AllOf(HasSubstr("rotating_cylinder"), HasSubstr("800 rpm"))));
 }
 
-// --- materials ---------------------------------------------------------------------------------------------------------------
+// --- materials
+// ---------------------------------------------------------------------------------------------------------------
 
 Machine column_and_head(const ColumnAndHead& what) {
   const Scenario scenario = read_scenario(fixtures::write_column_and_head(fresh_folder("factors"), what));
@@ -236,7 +237,8 @@ TEST(MaterialFactors, OfAnUnknownRegionAreRefused) {
               ThrowsMessage<InputError>(AllOf(HasSubstr("'colum'"), HasSubstr("Did you mean 'column'?"))));
 }
 
-// --- reduced machines --------------------------------------------------------------------------------------------------------
+// --- reduced machines
+// --------------------------------------------------------------------------------------------------------
 
 TEST(ReducedMachines, FollowWhatTheFullOneFeels) {
   ColumnAndHead what;

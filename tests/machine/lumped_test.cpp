@@ -148,8 +148,8 @@ TEST(Positions, MakeOneOutputEachOnAnotherSpotOfTheTable) {
   EXPECT_EQ(outputs[2].name, "travel_z_x200");
   const PlacedMachine placed = place(*scenario.machine);
   // A table that bends by u_z = x²: the foot is at x = -travel, where it rises by travel² and turns by -2 travel about y.
-  // The stand carries the dial at (0, 305, 1382.5) - (foot after travel: 0, 320, 840): arm (0, -15, 542.5) mm; a turn about y
-  // moves it along x alone. So travel_z = -(0.2 m)² at both ends and 0 in the middle, but for the curved cells' rounding.
+  // The stand carries the dial at (0, 305, 1382.5) - (foot after travel: 0, 320, 840): arm (0, -15, 542.5) mm; a turn about
+  // y moves it along x alone. So travel_z = -(0.2 m)² at both ends and 0 in the middle, but for the curved cells' rounding.
   for (int i = 0; i < 3; ++i) {
     double reading_m = 0.0;
     for (const auto& [node, weight] : placed.functionals[i].terms) {

@@ -1,5 +1,5 @@
-// Meshes and drawings as other programs write them: input decks in any order and system, cells with points of their own, products of one name, bodies that
-// overlap. Volumes and areas are closed forms.
+// Meshes and drawings as other programs write them: input decks in any order and system, cells with points of their own,
+// products of one name, bodies that overlap. Volumes and areas are closed forms.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -118,7 +118,8 @@ TEST(DeckOfAnotherProgram, WhatIsNoPartOfTheMeshIsLeftOutWithANote) {
               ThrowsMessage<InputError>(HasSubstr(":18: there is no element 6")));
 }
 
-// A quarter of a ring of six chords: half the product of two radii and the sine of the angle between them is a triangle's area.
+// A quarter of a ring of six chords: half the product of two radii and the sine of the angle between them is a triangle's
+// area.
 TEST(DeckOfAnotherProgram, NodesInCylindricalCoordinatesAreUnderstood) {
   constexpr int kSteps = 6;
   std::string nodes = "*NODE, SYSTEM=C\n", cells = "*ELEMENT, TYPE=C3D8, ELSET=ring\n";

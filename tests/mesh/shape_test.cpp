@@ -137,8 +137,8 @@ TEST_P(EachShape, QuadratureOutsideItsDegreesIsRefused) {
   EXPECT_THROW((void)quadrature(GetParam(), -1), std::logic_error);
 }
 
-/// A cell with straight edges that is no affine image of the reference cell where the shape can be so: corners moved by a map
-/// that is bilinear in each pair of directions; facets stay plane.
+/// A cell with straight edges that is no affine image of the reference cell where the shape can be so: corners moved by a
+/// map that is bilinear in each pair of directions; facets stay plane.
 Eigen::Matrix3Xd distorted(CellShape shape) {
   const auto reference = reference_nodes(shape);
   Eigen::Matrix3Xd x(3, reference.size());

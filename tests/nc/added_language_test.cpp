@@ -1,5 +1,5 @@
-// A language of which the program knows nothing but this file: a program in it is recognised, read, timed, corrected, written
-// and read again. Every byte that a language decides on is its own.
+// A language of which the program knows nothing but this file: a program in it is recognised, read, timed, corrected,
+// written and read again. Every byte that a language decides on is its own.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,8 +24,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// MARK first; UNIT MM, UNIT INCH; SPIN S600; JUMP X0 Z5; LINE X10 F300; SHIFT X0.1, which sets an added offset; ORIGIN X3, which
-/// moves the origin by 3 and takes the added offset away; STOP; ! remarks. Blocks may have numbers, such as :7, and a full stop.
+/// MARK first; UNIT MM, UNIT INCH; SPIN S600; JUMP X0 Z5; LINE X10 F300; SHIFT X0.1, which sets an added offset; ORIGIN X3,
+/// which moves the origin by 3 and takes the added offset away; STOP; ! remarks. Blocks may have numbers, such as :7, and a
+/// full stop.
 class Marker final : public NcLanguage {
  public:
   std::string name() const override { return "Marker"; }

@@ -138,7 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
               2.0 / 250 + 2 * (10.0 / 250 + 12.0 / 5 + 12.0 / 250) + 20.0 / 250,
               {40, 0, 2 + 48},
               0},
-        // Depths 6 and then 10: the amount 6 shrinks by 2 to 4. To clear: out to 2, back to 0.6 above, which is fed once more.
+        // Depths 6 and then 10: the amount 6 shrinks by 2 to 4. To clear: out to 2, back to 0.6 above, which is fed once
+        // more.
         Timed{"deep_drilling",
               kS,
               "G71 G90 F300\nG0 Z2\nCYCLE83(2,0,2,-10,,,6,2,0,0,1,1)\nM30\n",
@@ -318,7 +319,8 @@ TEST(NcLanguages, MakeTheSameMovesOfOnePart) {
   }
 }
 
-// Numbers that are rounded to 0.01 mm or 0.001 in: radii at start and end differ by 0.028 mm and 0.0028 in, which is just what rounding may come to.
+// Numbers that are rounded to 0.01 mm or 0.001 in: radii at start and end differ by 0.028 mm and 0.0028 in, which is just
+// what rounding may come to.
 TEST(NcLanguages, AllowTheRoundingOfArcsAlike) {
   const auto inch = [](const std::string& blocks) { return "BEGIN PGM T INCH\n" + blocks + "END PGM T INCH\n"; };
   const std::vector<std::pair<const char*, std::string>> programs = {

@@ -174,7 +174,8 @@ TEST(NcArc, TravelsAreTheIntegralsOfTheAbsoluteVelocities) {
 }
 
 TEST(NcArc, OfRoundedNumbersIsASpiral) {
-  // Radii that differ by up to what two decimals of a millimetre come to, against the sum over chords. The travels take the radius as its mean.
+  // Radii that differ by up to what two decimals of a millimetre come to, against the sum over chords. The travels take the
+  // radius as its mean.
   struct Spiral {
     double radius_m, growth_m, sweep;
     bool clockwise;
@@ -237,8 +238,8 @@ TEST_P(NcRounding, IsAllowedAsFarAsWrittenDecimalsExplainIt) {
   }
 }
 
-// Centre: 4 sqrt(2) e is 0.02828 mm with e = 0.005 mm, and 0.002828 in with e = 0.0005 in. Radius: (1 + sqrt(2)) e is 0.01207 mm and 0.001207 in,
-// on half of the chord. The relative tolerance of 0.1 % ends at 0.5 mm.
+// Centre: 4 sqrt(2) e is 0.02828 mm with e = 0.005 mm, and 0.002828 in with e = 0.0005 in. Radius: (1 + sqrt(2)) e is
+// 0.01207 mm and 0.001207 in, on half of the chord. The relative tolerance of 0.1 % ends at 0.5 mm.
 INSTANTIATE_TEST_SUITE_P(Each, NcRounding,
                          ::testing::Values(Rounded{"mm_below", "G2 X4.028 I2 F100\nM2\n", true},
                                            Rounded{"mm_above", "G2 X4.029 I2 F100\nM2\n", false},

@@ -178,7 +178,8 @@ TEST_P(CFunction, GivesTheBitsOfTheProgramCallByCall) {
   }
 }
 
-// The source file asks for plain products and sums itself; without that, GCC's own C for a processor with FMA has fused ones.
+// The source file asks for plain products and sums itself; without that, GCC's own C for a processor with FMA has fused
+// ones.
 TEST(CFunction, HasNoFusedMultiplyAddWhateverTheFlags) {
 #ifndef __x86_64__
   GTEST_SKIP() << "looks for instructions of x86-64";
@@ -242,8 +243,8 @@ TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
   for (const Row& row : got) EXPECT_EQ(row.correction_um, 83.0);
 }
 
-// Probings in the exported C are the program's filter on top of the guarded correction: within the clamp, no faster than the slew
-// limit, and by the same source file.
+// Probings in the exported C are the program's filter on top of the guarded correction: within the clamp, no faster than the
+// slew limit, and by the same source file.
 TEST(CFunction, TakesProbingsAsTheProgramDoes) {
   DeployedModel d = deployed(true, 60.0);
   d.residual = compensation::ResidualProcess{4.0, 5400.0};

@@ -259,7 +259,8 @@ TEST(LinuxcncComponent, IsAtZeroWhileTheMachineIsOffAndBeginsAnewAtARestart) {
   EXPECT_EQ(out[forgotten + 150].at("eoffset_counts"), 0.0);
 }
 
-// Period by period the component's model is the exported function: here with all sorts of terms, and a sensor that falls off.
+// Period by period the component's model is the exported function: here with all sorts of terms, and a sensor that falls
+// off.
 TEST(LinuxcncComponent, StepsTheModelAsFarApartAsItWasJudgedOn) {
   const DeployedModel d = fixtures::deployed(true, 60.0);
   Record r = fixtures::machine(5, 60.0);
@@ -287,8 +288,8 @@ TEST(LinuxcncComponent, StepsTheModelAsFarApartAsItWasJudgedOn) {
   EXPECT_EQ(out[80].at("doubt_X3_degC"), 1.0);
 }
 
-// 20 um of correction, and the axis is 8 um off: the probe reads that on the corrected axis, once for each time that the strobe
-// turns on. Then the residual fades with its time constant. A chip is refused, what is probed twice is a jump.
+// 20 um of correction, and the axis is 8 um off: the probe reads that on the corrected axis, once for each time that the
+// strobe turns on. Then the residual fades with its time constant. A chip is refused, what is probed twice is a jump.
 TEST(LinuxcncComponent, TakesProbings) {
   DeployedModel d = two_um_per_K();
   d.residual = compensation::ResidualProcess{5.0, 1800.0};

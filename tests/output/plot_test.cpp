@@ -161,7 +161,8 @@ std::map<long, At> reach(const std::vector<At>& line) {
 }
 
 TEST(Plot, ALongRecordLooksAsIfEverySampleWereDrawn) {
-  // A frame of 838 pixels: samples are 0.02 px apart and 0.01 px from the edges of columns, so rounding moves none to the next.
+  // A frame of 838 pixels: samples are 0.02 px apart and 0.01 px from the edges of columns, so rounding moves none to the
+  // next.
   std::vector<double> x = {0.0};
   for (int i = 1; i < 83800; i += 2) x.push_back(i);
   x.push_back(83800.0);

@@ -39,7 +39,8 @@ TEST(RecordedRun, IsDrivenFromEachRowOnAndCountsFromTheFirst) {
   EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 0.0);
 }
 
-// A tachometer's jitter returns to the old reading. A command of 0.7 % less stays, and a twin that ignored it would have the wrong heat.
+// A tachometer's jitter returns to the old reading. A command of 0.7 % less stays, and a twin that ignored it would have the
+// wrong heat.
 TEST(RecordedRun, ASmallChangeOfSpeedThatStaysIsNoJitter) {
   Record r = record();
   r.time_s.clear();

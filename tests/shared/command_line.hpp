@@ -11,8 +11,8 @@
 
 namespace driftwright {
 
-/// Where programs started by tests keep reduced machines: in a store that all tests of a run share (`./test` begins with an empty one),
-/// else in the test's own folder. The user's cache is not touched.
+/// Where programs started by tests keep reduced machines: in a store that all tests of a run share (`./test` begins with an
+/// empty one), else in the test's own folder. The user's cache is not touched.
 inline std::string test_store() {
   const std::string own = (temporary_folder() / "cache").string();  // the folder is made here, before a test changes TMPDIR
   const char* shared = std::getenv("DRIFTWRIGHT_TEST_STORE");

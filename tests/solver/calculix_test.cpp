@@ -1,5 +1,5 @@
-// Side by side with CalculiX on the same mesh: steady and transient temperatures and thermo-elastic displacements of a frame of
-// two materials. Skipped where its program ccx (Debian: calculix-ccx) is not installed.
+// Side by side with CalculiX on the same mesh: steady and transient temperatures and thermo-elastic displacements of a frame
+// of two materials. Skipped where its program ccx (Debian: calculix-ccx) is not installed.
 
 #include "tests/shared/calculix.hpp"
 
@@ -166,8 +166,8 @@ Eigen::VectorXd on_corners(const mesh::Mesh& mesh, Eigen::VectorXd theta) {
 TEST_P(SameMesh, Displacements) {
   // Of the same temperatures. How CalculiX 2.20 takes them within a cell (its resultsmech.f): C3D4 and C3D10 by the shape
   // functions, as we do; C3D20 by those of the eight corners alone; C3D8 as one mean value. So C3D20 must agree where
-  // mid-side temperatures lie on the chord, and C3D8 where the temperature is even; elsewhere both programs differ by what the
-  // cell does not resolve.
+  // mid-side temperatures lie on the chord, and C3D8 where the temperature is even; elsewhere both programs differ by what
+  // the cell does not resolve.
   const Eigen::VectorXd theta = steady_by_us(mesh_, kFilmed);
   struct Field {
     const char* name;

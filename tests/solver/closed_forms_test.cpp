@@ -195,8 +195,8 @@ class Sleeve : public ::testing::TestWithParam<Convergence> {};
 
 TEST_P(Sleeve, PassesOnAllHeatAndJumpsByTheClosedForm) {
   // A shaft of radius 20 mm heated by 2e6 W/m^3 in a sleeve of 20 / 50 mm, contact 2000 W/(m^2 K), film 100 W/(m^2 K)
-  // outside. 2 n cells along the shaft's quarter, 3 n along the sleeve's: the faces share no node but at the ends of the arc.
-  // Flux at the joint q = Q r / 2 = 20 kW/m^2, jump q / c = 10 K.
+  // outside. 2 n cells along the shaft's quarter, 3 n along the sleeve's: the faces share no node but at the ends of the
+  // arc. Flux at the joint q = Q r / 2 = 20 kW/m^2, jump q / c = 10 K.
   const double r_i = 0.02, r_o = 0.05, heat_W_m3 = 2e6, contact_W_m2K = 2000.0, h_o = 100.0;
   const double k = fixtures::steel().conductivity_W_mK;
   const double exact_jump_K = heat_W_m3 * r_i / 2 / contact_W_m2K;

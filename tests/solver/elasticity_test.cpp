@@ -68,8 +68,8 @@ TEST_P(EachOrder, BlockAcrossAJointExpandsAsOnePiece) {
 }
 
 TEST_P(EachOrder, DistortedBlockExpandsInProportionToPlace) {
-  // Patch test: cells bent inside, faces plane; tetrahedra with straight edges (their rule of four points is not exact on bent
-  // ones).
+  // Patch test: cells bent inside, faces plane; tetrahedra with straight edges (their rule of four points is not exact on
+  // bent ones).
   mesh::Mesh mesh = fixtures::box_mesh({{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, GetParam()});
   bend_inside(mesh);
   if (GetParam() == CellShape::kTet10) fixtures::straighten_edges(mesh);

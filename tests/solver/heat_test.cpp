@@ -227,8 +227,8 @@ TEST(TransientPlate, HolmanExample45) {
 }
 
 TEST(TransientHalfSpace, HolmanExample42) {
-  // Step flux of 3.2e5 W/m^2 on a half space at 35 degC: T - T0 = 2 q sqrt(a t/pi)/k exp(-x^2/4at) - q x/k erfc(x/2sqrt(at)).
-  // 79.314 degC at 25 mm after 30 s. The bar of 0.2 m is 4.9 sqrt(4 a t) long: its end stays cold.
+  // Step flux of 3.2e5 W/m^2 on a half space at 35 degC: T - T0 = 2 q sqrt(a t/pi)/k exp(-x^2/4at) - q x/k
+  // erfc(x/2sqrt(at)). 79.314 degC at 25 mm after 30 s. The bar of 0.2 m is 4.9 sqrt(4 a t) long: its end stays cold.
   const double k = 45.0, a_m2_s = 1.4e-5, q_W_m2 = 3.2e5, x_m = 0.025, time_s = 30.0;
   const double at = a_m2_s * time_s;
   const double exact_K = 2 * q_W_m2 * std::sqrt(at / pi) / k * std::exp(-x_m * x_m / (4 * at)) -

@@ -1,4 +1,5 @@
-// A machine that is mirrored, moved or turned has the same temperatures and displacements that are mirrored or turned with it.
+// A machine that is mirrored, moved or turned has the same temperatures and displacements that are mirrored or turned with
+// it.
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -112,7 +113,8 @@ TEST_P(InvarianceOfEachCell, RotationTurnsDisplacementsAndNothingElse) {
   expect_unchanged(GetParam(), turn, Eigen::Vector3d::Zero());
 }
 
-/// The nodes of a cell or facet after its first two reference directions have changed places: a mirrored one, right side out.
+/// The nodes of a cell or facet after its first two reference directions have changed places: a mirrored one, right side
+/// out.
 std::vector<int> turned_inside_out(CellShape shape, std::span<const int> nodes) {
   const auto reference = mesh::reference_nodes(shape);
   std::vector<int> turned;

@@ -173,7 +173,8 @@ TEST(ModelFactors, OnTheCapacityOfOneNodeStretchItsTimeConstant) {
   }
 }
 
-// K(u) stays as it is only as a whole: conduction, films and joint, motor, ambient and stratified air, all have to be faster.
+// K(u) stays as it is only as a whole: conduction, films and joint, motor, ambient and stratified air, all have to be
+// faster.
 TEST(ModelFactors, OnRatesStretchTimeAndLeaveLevels) {
   const ReducedSystem s = head_and_bed(), fast = with_factors(s, {.rate = 1.6});
   const Eigen::VectorXd start = Eigen::Vector3d(1.0, -2.0, 4.0);

@@ -149,8 +149,8 @@ std::string shape_name(const ::testing::TestParamInfo<Convergence>& test) {
 class NafemsT3 : public ::testing::TestWithParam<Convergence> {};
 
 TEST_P(NafemsT3, NodesConvergeToTheSeries) {
-  // A single value converges at least at the order of the L2 error: 2 and 3. Along a line of hexahedra the nodes of quadratic
-  // cells reach 4 (twice their degree), as in one dimension.
+  // A single value converges at least at the order of the L2 error: 2 and 3. Along a line of hexahedra the nodes of
+  // quadratic cells reach 4 (twice their degree), as in one dimension.
   const double exact_C = t3_exact_K(0.08, kT3End_s);
   ASSERT_NEAR(exact_C, 36.6031, 5e-5);
   std::vector<double> h_m, error_K;
@@ -229,10 +229,10 @@ double t4_temperature_C(CellShape shape, int n) {
 class NafemsT4 : public ::testing::TestWithParam<Convergence> {};
 
 TEST_P(NafemsT4, PointEConvergesToTheSeries) {
-  // At the corner (0.6, 0) a fixed temperature meets a film that would carry 75 kW/m^2 there: the solution has a term r ln r,
-  // with second derivatives like 1/r. In the integral of (gradient of the error) x (gradient of the error of the point's
-  // influence function, which is smooth there) this gives h^2 for linear and h^4 ln h for quadratic cells: the corner
-  // leaves single values their orders, 2 and at least 3 (4 at nodes of a grid of hexahedra).
+  // At the corner (0.6, 0) a fixed temperature meets a film that would carry 75 kW/m^2 there: the solution has a term r ln
+  // r, with second derivatives like 1/r. In the integral of (gradient of the error) x (gradient of the error of the point's
+  // influence function, which is smooth there) this gives h^2 for linear and h^4 ln h for quadratic cells: the corner leaves
+  // single values their orders, 2 and at least 3 (4 at nodes of a grid of hexahedra).
   const double exact_C = t4_exact_K(0.6, 0.2);
   ASSERT_NEAR(exact_C, 18.25376, 5e-6);
   std::vector<double> h_m, error_K;

@@ -192,8 +192,8 @@ TEST(Nonlinear, ALawThatIsLeftForGoodIsNamedWhenTheRunGivesUp) {
 // --- properties over temperature --------------------------------------------------------------------------------
 
 TEST(VariableConductivity, SlabFollowsTheKirchhoffTransform) {
-  // k = 40 W/(m K) at 0 K of rise, falling by 0.05 W/(m K) a kelvin; faces at 220 degC and 20 degC. F(θ) = 40 θ - 0.025 θ^2 is
-  // linear in x: θ = 800 - sqrt(640000 - 40 F), F = 7000 (1 - x / L); flux F(200) / L = 70 kW/m^2, 700 W.
+  // k = 40 W/(m K) at 0 K of rise, falling by 0.05 W/(m K) a kelvin; faces at 220 degC and 20 degC. F(θ) = 40 θ - 0.025 θ^2
+  // is linear in x: θ = 800 - sqrt(640000 - 40 F), F = 7000 (1 - x / L); flux F(200) / L = 70 kW/m^2, 700 W.
   Material m = fixtures::steel();
   m.conductivity_curve = {{293.15, 493.15}, {40.0, 30.0}};
   std::vector<double> h, error;

@@ -1,5 +1,5 @@
-// Where temperatures keep the bounds of conduction and where they do not: the consistent mass matrix undershoots beside a jump
-// that is sharper than the mesh. How much, for how long, and whether the report of it names the place.
+// Where temperatures keep the bounds of conduction and where they do not: the consistent mass matrix undershoots beside a
+// jump that is sharper than the mesh. How much, for how long, and whether the report of it names the place.
 
 #include "solver/overshoot.hpp"
 
@@ -42,8 +42,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, NonObtuse, ::testing::Values(CellShape::kTet4, 
                          [](const auto& test) { return fixtures::name_of(test.param); });
 
 TEST_P(NonObtuse, LinearMeshesOfCubesKeepTheBoundsInSteadyState) {
-  // Of cubes, hexahedra and Kuhn's tetrahedra have no positive entry of K off the diagonal, so that every node is a mean of its
-  // neighbours. One hot cell's face of 1000 K in a body that a film (Biot number of a cell 0.03) and a foot keep at 293 K.
+  // Of cubes, hexahedra and Kuhn's tetrahedra have no positive entry of K off the diagonal, so that every node is a mean of
+  // its neighbours. One hot cell's face of 1000 K in a body that a film (Biot number of a cell 0.03) and a foot keep at 293
+  // K.
   const mesh::Mesh mesh = [] {
     mesh::Mesh m = fixtures::box_mesh({.size_m = {0.3, 0.3, 0.3}, .n = {6, 6, 6}, .shape = GetParam()});
     const auto corner = m.facets.nodes(m.facets_on(m.surface("x1")).front());
@@ -172,8 +173,8 @@ TEST_P(AfterAJump, LongEnoughStepsOfBackwardEulerDoNotUndershoot) {
 }
 
 TEST_P(AfterAJump, UndershootOfTheRunDiesWithinTheTimeHeatNeedsForFewCells) {
-  // The integrator takes steps as short as accuracy requires, also below h^2 / (6 a): early on, whole nodes of linear cells are
-  // colder than the start. What counts is how soon that dies. Alike for all h, and for tight and shipped tolerances.
+  // The integrator takes steps as short as accuracy requires, also below h^2 / (6 a): early on, whole nodes of linear cells
+  // are colder than the start. What counts is how soon that dies. Alike for all h, and for tight and shipped tolerances.
   const std::vector<double> times = {1, 2, 4, 8, 12, 16, 32};
   for (double h_m : {0.02, 0.005}) {
     for (double tolerance_K : {1e-6, 5e-3}) {

@@ -1,4 +1,5 @@
-// The small system in time where laws look at temperatures and thermostats switch, against the full system in a complete basis.
+// The small system in time where laws look at temperatures and thermostats switch, against the full system in a complete
+// basis.
 
 #include "solver/reduced_transient.hpp"
 

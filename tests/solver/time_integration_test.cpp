@@ -22,8 +22,8 @@ using mesh::CellShape;
 constexpr double kKelvin = 293.15;
 const std::vector<double> kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 
-/// Runs `error_K(tolerance)` for all tolerances: the error stays below `factor` x tolerance x (1 K + the largest |θ|), what one
-/// step may err by, and falls by three decades when the tolerance falls by four.
+/// Runs `error_K(tolerance)` for all tolerances: the error stays below `factor` x tolerance x (1 K + the largest |θ|), what
+/// one step may err by, and falls by three decades when the tolerance falls by four.
 template <class Error>
 void expect_error_follows_tolerance(Error error_K, double largest_K, double factor) {
   std::vector<double> errors;

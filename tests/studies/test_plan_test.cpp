@@ -1,4 +1,5 @@
-// Test programmes and the expected information of their records, compared with closed forms, the fitter and the machine itself.
+// Test programmes and the expected information of their records, compared with closed forms, the fitter and the machine
+// itself.
 
 #include "studies/test_plan.hpp"
 
