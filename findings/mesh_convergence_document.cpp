@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftwright::findings {
@@ -167,7 +168,16 @@ output::Document document_of(const MeshConvergence& found, const scenarios::Scen
       .subtitle = fmt::format("cyclogram {} on three meshes with the {} model", found.cyclogram, found.model)};
   output::Section& body = document.body;
   const ConvergedValue* worst = studies::worst_displacement(found);
-  if (worst) add(body, verdict_of(found, *worst));
+  const bool has_displacements =
+      std::any_of(found.values.begin(), found.values.end(), [](const ConvergedValue& v) { return v.unit != "K"; });
+  if (worst) {
+    add(body, verdict_of(found, *worst));
+  } else if (has_displacements) {
+    add(body, output::Verdict{.kind = output::Verdict::Kind::kGood,
+                              .title = "The mesh is fine enough for this model",
+                              .text = "No displacement and no tilt changes from mesh to mesh by more than the error of the "
+                                      "model itself."});
+  }
   add(body, output::Value{.key = "cyclogram", .datum = found.cyclogram});
   add(body, output::Value{.key = "model", .datum = found.model});
   add(body, output::Value{.key = "theoretical_order",
@@ -185,11 +195,15 @@ output::Document document_of(const MeshConvergence& found, const scenarios::Scen
     if (!table.rows.empty()) add(numbers, std::move(table));
   }
   add(numbers, meshes_table(found));
-  add(numbers, output::Text{.words = fmt::format(
-                                "Order, extrapolated value and error follow from the three values by Roache's grid "
-                                "convergence index with the safety factor {}; the order is limited to {} at least and {} at "
-                                "most. An error of an oscillating value is {} times the range of the three values.",
-                                studies::kSafetyFactor, studies::kLeastOrder, found.highest_order, studies::kSafetyFactor)});
+  add(numbers,
+      output::Text{
+          .words = fmt::format(
+              "Order, extrapolated value and error follow from the three values by Roache's grid "
+              "convergence index with the safety factor {}; the order is limited to {} at least and {} at "
+              "most. An error of an oscillating value is {} times the range of the three values. An order far above "
+              "the highest one, and an oscillation, mean that two meshes agree by chance: compare a fourth "
+              "size.",
+              studies::kSafetyFactor, studies::kLeastOrder, found.highest_order, studies::kSafetyFactor)});
   if (scenario.solver.model == scenarios::ModelKind::kReduced)
     add(numbers, output::Text{.words = fmt::format(
                                   "'No change' means that the three values agree within the tolerance of the reduced model, "

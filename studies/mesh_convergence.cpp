@@ -105,7 +105,7 @@ const ConvergedValue* worst_displacement(const MeshConvergence& found) {
     const double largest = std::max(std::abs(found.values[i].values[2]), std::abs(found.values[i + 1].values[2]));
     for (std::size_t j : {i + 1, i}) {
       const ConvergedValue& value = found.values[j];
-      if (value.unit == "K" || largest == 0.0) continue;
+      if (value.unit == "K" || largest == 0.0 || value.convergence.kind == Convergence::kUnresolved) continue;
       const double share = value.convergence.error[found.own] / largest;
       if (share > worst_share) {
         worst_share = share;

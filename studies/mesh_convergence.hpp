@@ -46,8 +46,8 @@ struct MeshConvergence {
 [[nodiscard]] MeshConvergence mesh_convergence(const scenarios::Scenario& scenario, const Cyclogram& cyclogram,
                                                int most_elements, const Listener& listener);
 
-/// The displacement or tilt with the largest error on the scenario's own mesh, relative to its own largest value; null
-/// without displacements and tilts.
+/// The displacement or tilt with the largest error on the scenario's own mesh, relative to its own largest value; null if
+/// there is none that changes from mesh to mesh by more than the model's own error.
 [[nodiscard]] const ConvergedValue* worst_displacement(const MeshConvergence& found);
 
 }  // namespace driftwright::studies
