@@ -55,9 +55,13 @@ GridConvergence grid_convergence(const std::array<double, 3>& values, const std:
   found.used_order = !shrinks                  ? kLeastOrder
                      : std::isnan(found.order) ? highest_order
                                                : std::clamp(found.order, kLeastOrder, highest_order);
-  const double limit = values[2] - fine_change / std::expm1(found.used_order * log_r21);
-  if (shrinks) found.extrapolated = limit;
-  for (std::size_t k = 0; k < values.size(); ++k) found.error[k] = kSafetyFactor * std::abs(values[k] - limit);
+  const double p = found.used_order;
+  if (shrinks) found.extrapolated = values[2] - fine_change / std::expm1(p * log_r21);
+  // |c| h^p at the finest mesh, by either change
+  const double by_fine = std::abs(fine_change) / std::expm1(p * log_r21),
+               by_coarse = std::abs(coarse_change) / std::expm1(p * log_r32) * std::exp(-p * log_r21);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    found.error[k] = kSafetyFactor * std::max(by_fine, by_coarse) * std::pow(sizes[k] / sizes[2], p);
   return found;
 }
 

@@ -15,10 +15,11 @@ enum class Convergence {
 /// What three meshes say of one number. Index 0: coarsest, 2: finest.
 struct GridConvergence {
   Convergence kind = Convergence::kUnresolved;
-  double order = 0.0;                ///< observed order p [-]; NaN if there is none, for example of an oscillation
-  double used_order = 0.0;           ///< p within its limits; NaN without `order`, except for kGrowing: the lower limit
-  double extrapolated = 0.0;         ///< estimate for an element size of zero; NaN except for kMonotone
-  std::array<double, 3> error = {};  ///< estimated error of each value, >= 0; that of the finest is the GCI times its value
+  double order = 0.0;         ///< observed order p [-]; NaN if there is none, for example of an oscillation
+  double used_order = 0.0;    ///< p within its limits; NaN without `order`, except for kGrowing: the lower limit
+  double extrapolated = 0.0;  ///< estimate for an element size of zero; NaN except for kMonotone
+  std::array<double, 3> error =
+      {};  ///< estimated error of each value, >= 0; that of the finest is the GCI times its value if p is within its limits
 };
 
 inline constexpr double kSafetyFactor = 1.25;  ///< of an error estimated from three meshes (Roache 1994)
@@ -28,8 +29,10 @@ inline constexpr double kLeastOrder = 0.5;     ///< a smaller observed order cou
 ///
 ///     (f3 - f2) / (f2 - f1) = r21^p (r32^p - 1) / (r21^p - 1)      gives p, uniquely: the right side grows with p
 ///     f0 = f1 - (f2 - f1) / (r21^p - 1)                           with p limited to 0.5 ... theoretical order
-///     error of f_k = 1.25 |f_k - f0|                              for k = 1 this is GCI |f1|
+///     error of f_k = 1.25 |c| h_k^p                               for k = 1 this is GCI |f1|
 ///
+/// Both changes give the same |c| if p is within its limits. Otherwise the larger one counts: an order above the theoretical
+/// one means that the two finer meshes agree by chance, and their change alone would promise too much.
 /// The error of an oscillation is 1.25 times the range of the three values: the limit is expected within it, and each value
 /// may be at an end of it. Changes that grow give no f0; their error is that of the order 0.5.
 /// @param values          on the meshes from coarse to fine

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <optional>
@@ -30,7 +31,7 @@ double elements_of_finer(const MeshRung& from) {
 std::optional<MeshRung> next_rung(const scenarios::MeshRecipe& own, const MeshRung& from, bool finer, int most_elements) {
   constexpr int kTries = 6;         // the factor is corrected by what the last one gave; two or three are enough
   constexpr double kMargin = 1.01;  // meshes of nearly one size differ in their number of elements by a few per cent
-  constexpr double kAfterFailure = 1.1;
+  constexpr double kAfterFailure = 1.1, kMostGrowth = 2.0;
   if (finer && elements_of_finer(from) > most_elements) return std::nullopt;
   double step = kLeastSizeRatio;
   for (int i = 0; i < kTries; ++i) {
@@ -40,7 +41,9 @@ std::optional<MeshRung> next_rung(const scenarios::MeshRecipe& own, const MeshRu
       if (finer && rung.n_elements > most_elements) return std::nullopt;
       const double ratio = finer ? from.size_m / rung.size_m : rung.size_m / from.size_m;
       if (ratio >= kLeastSizeRatio) return rung;
-      step *= kMargin * kLeastSizeRatio / std::max(ratio, 1.0);
+      // The size follows as the factor to an exponent below 1 where walls are thin; the next step assumes the same exponent.
+      const double exponent = std::log(ratio) / std::log(step), most = kMostGrowth * step;
+      step = exponent > 0.0 ? std::min(most, std::pow(kMargin * kLeastSizeRatio, 1.0 / exponent)) : most;
     } catch (const SolveError&) {  // Gmsh may fail at one size and not at the next
       step *= kAfterFailure;
     } catch (const InputError&) {  // so coarse that a named place has no element, or so fine that there are too many

@@ -55,7 +55,8 @@ TEST(MeshConvergence, OfASmallMachineHasThreeSizesAndTheScenariosOwnResult) {
     const Json& mesh = found["meshes"][k];
     EXPECT_LE(mesh["elements"].get<int>(), 3000);
     if (mesh["is_own"].get<bool>()) own = mesh["mesh"].get<std::string>() + "_um";
-    if (k > 0) EXPECT_GE(found["meshes"][k - 1]["size_mm"].get<double>() / mesh["size_mm"].get<double>(), 1.299);
+    if (k == 0) continue;
+    EXPECT_GE(found["meshes"][k - 1]["size_mm"].get<double>() / mesh["size_mm"].get<double>(), 1.299);
   }
   ASSERT_EQ(found["displacements"].size(), 2U);
   ASSERT_EQ(found["thermometers"].size(), 2U);
