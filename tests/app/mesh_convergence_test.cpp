@@ -65,7 +65,7 @@ TEST(MeshConvergence, OfASmallMachineHasThreeSizesAndTheScenariosOwnResult) {
   // The scenario's own mesh gives what `simulate` gives.
   const std::string simulated = (folder / "simulated").string();
   ASSERT_EQ(run_program("simulate " + scenario + " --cyclogram short -o " + simulated).exit_code, 0);
-  const Record record = read_record_csv(simulated + "/records/short.csv");
+  const Record record = read_record_csv(simulated + "/record.csv");
   EXPECT_NEAR(found["displacements"][0][own].get<double>(), record.at("bow").values.back(), 1e-4);
 }
 
