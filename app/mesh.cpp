@@ -5,11 +5,13 @@
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
 #include "base/file_name.hpp"
+#include "findings/mesh_convergence_document.hpp"
 #include "findings/scenario_document.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/unnamed_geometry.hpp"
 #include "output/vtk_fields.hpp"
 #include "scenarios/reader/geometry.hpp"
+#include "studies/prediction.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -35,9 +37,29 @@ scenarios::Geometry geometry_of(const MeshOptions& options, bool is_file) {
   return geometry;
 }
 
+void show_convergence(const MeshOptions& options) {
+  if (mesh::is_geometry_file(options.scenario))
+    throw InputError(
+        fmt::format("--convergence runs a cyclogram of a machine, so it needs a scenario; '{}' is a mesh or a drawing. "
+                    "`driftwright init` writes a scenario of it",
+                    clean_name(options.scenario)));
+  const scenarios::Scenario scenario = read_scenario(options);
+  (void)scenarios::require_machine(scenario, "mesh --convergence");
+  if (options.cyclogram.empty() && scenario.cyclograms.empty())
+    throw InputError("The scenario has no cyclogram. --convergence needs one: name a record CSV with --cyclogram");
+  const Cyclogram cyclogram =
+      options.cyclogram.empty() ? scenario.cyclograms.front() : studies::named_cyclogram(scenario, options.cyclogram);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  const studies::MeshConvergence found =
+      studies::mesh_convergence(scenario, cyclogram, options.most_elements, progress.listener());
+  finish(findings::document_of(found, scenario, folder.made_by()), folder, progress, options);
+}
+
 }  // namespace
 
 void mesh(const MeshOptions& options) {
+  if (options.convergence) return show_convergence(options);
   const bool is_file = mesh::is_geometry_file(options.scenario);
   const scenarios::Geometry geometry = geometry_of(options, is_file);
   output::ResultsFolder folder = open_results(options, file_name(geometry.name, ""));

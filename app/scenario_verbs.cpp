@@ -30,12 +30,31 @@ void add_check(CLI::App& cli, CommonOptions& options) {
 
 void add_mesh(CLI::App& cli, MeshOptions& options) {
   CLI::App* verb = cli.add_subcommand(
-      "mesh", "builds or reads a mesh, reports its quality, draws its named surfaces and writes mesh.vtu");
-  verb->add_option("scenario", options.scenario,
-                   "scenario file (only its mesh is used), or a mesh or drawing: .step, .msh, .inp, .vtu")
+      "mesh",
+      "builds or reads a mesh, reports its quality, draws its named surfaces and writes mesh.vtu; with --convergence: says "
+      "whether it is fine enough (docs/how-to/meshes.md)");
+  verb->add_option(
+          "scenario", options.scenario,
+          "scenario file (only its mesh is used, unless --convergence), or a mesh or drawing: .step, .msh, .inp, .vtu")
       ->required();
   verb->add_option("--units", options.units,
                    "unit of length of a mesh or drawing: mm, cm, m or inch [guessed from the size]");
+  CLI::Option* convergence = verb->add_flag(
+      "--convergence", options.convergence,
+      "runs one cyclogram on three mesh sizes and estimates the error that the mesh causes in each displacement and "
+      "thermometer");
+  verb->add_option(
+          "--cyclogram", options.cyclogram,
+          "cyclogram for --convergence: a name in the scenario, or a record CSV with the column speed_rpm [the first "
+          "of the scenario]")
+      ->needs(convergence);
+  verb->add_option(
+          "--most-elements", options.most_elements,
+          "largest number of elements of a mesh that --convergence makes finer than the scenario's own; if it would "
+          "have more, two coarser meshes are made instead")
+      ->needs(convergence)
+      ->check(CLI::Range(1, 5000000))
+      ->capture_default_str();
   add_results(verb, options, "<name of the scenario>",
               "mesh scenarios/fp3_spindle.yaml -o results/mesh\n  driftwright mesh scenarios/parts/vertical_mill.step -o "
               "results/drawing");

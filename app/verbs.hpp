@@ -32,6 +32,9 @@ void check(const CommonOptions& options);
 
 struct MeshOptions : CommonOptions {  ///< `scenario` may be a mesh or a drawing, too
   std::string units;                  ///< length unit of a mesh file: mm, cm, m, inch; empty: guessed from its size
+  bool convergence = false;           ///< run a cyclogram on three meshes
+  std::string cyclogram;              ///< with convergence: as in PredictOptions; empty: the first of the scenario
+  int most_elements = 30000;          ///< with convergence: of a mesh that is finer than the scenario's
 };
 void mesh(const MeshOptions& options);
 
@@ -137,7 +140,7 @@ void inject(const InjectOptions& options);
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
 
 struct RecordOptions : CommonOptions, studies::RecordPaths {
-  std::string target;  ///< displacement of the records; empty: that of the scenario's `study`
+  std::string target;                       ///< displacement of the records; empty: that of the scenario's `study`
   std::string probe, probe_noise = "1 um";  ///< time between two probings, "60 min"; empty: the axis is not probed
 };
 void select(const RecordOptions& options);

@@ -85,6 +85,27 @@ double density_kg_m3(const scenarios::MachineModel& machine, const std::string& 
   return std::nan("");
 }
 
+std::string mm(double size_m) {
+  return fmt::format("{:.4g} mm", 1e3 * size_m);
+}
+
+/// How the mesh sizes of a machine were chosen.
+std::string size_words(const mesh::KneeMill& mill) {
+  return fmt::format("given in the scenario: frame {}, spindle {}", mm(mill.coarse_m), mm(mill.fine_m));
+}
+std::string size_words(const mesh::GantryTable& table) {
+  return "given in the scenario: " + mm(table.mesh_size_m);
+}
+std::string size_words(const mesh::ImportedMesh& import) {
+  if (import.mesh_size_m == 0.0) return "fixed by the mesh file";
+  std::string words = "given in the scenario: default " + mm(import.mesh_size_m);
+  for (const auto& [region, size_m] : import.mesh_size_of_region_m) words += fmt::format(", {} {}", region, mm(size_m));
+  return words;
+}
+std::string size_words(const scenarios::LumpedMachine&) {
+  return "";
+}
+
 }  // namespace
 
 output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
@@ -98,6 +119,9 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
   } else {
     if (placed->mesh.n_nodes() > 0) {
       add_size(body, placed->mesh);
+      add(body, Value{.key = "mesh_size",
+                      .words = "mesh size",
+                      .datum = std::visit([](const auto& of_kind) { return size_words(of_kind); }, scenario.machine->mesh)});
       if (demand) add_demand(body, *demand);
     }
     add(body, Value{.key = "lumped_nodes", .words = "lumped nodes", .datum = placed->balance.nodes.size()});
