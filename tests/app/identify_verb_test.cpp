@@ -84,7 +84,8 @@ TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
         << channel.at("name") << ": what was learned once is there";
 }
 
-TEST_F(IdentifyVerb, LearnsNothingBesideAScenarioThatIsRight) {
+using IdentifyVerbAtLength = IdentifyVerb;
+TEST_F(IdentifyVerbAtLength, LearnsNothingBesideAScenarioThatIsRight) {
   const CommandOutcome run =
       run_program("identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/good.csv -o " + out_.string());
   ASSERT_EQ(run.exit_code, 0) << run.output;
