@@ -53,7 +53,7 @@ struct InpDeck {
   std::vector<SurfaceLine> surface_lines;
 };
 
-/// @throws InputError  with file and line: a number that is none, a set or node that is defined wrongly, a 3-D element that
+/// @throws InputError  with file and line: a number that cannot be read, a set or node that is defined wrongly, a 3-D element that
 ///                     is not computed with, a keyword that makes nodes or elements (*NGEN, *INCLUDE, *INSTANCE with a shift
 ///                     ...)
 [[nodiscard]] InpDeck read_inp_deck(const std::string& path);

@@ -21,7 +21,7 @@ struct NcControl {
 /// All of them; the first is the default of scenarios.
 [[nodiscard]] const std::vector<NcControl>& nc_controls();
 
-/// The control with that key. @throws InputError  if there is none
+/// The control with that key. @throws InputError  for a key that no control has
 [[nodiscard]] const NcControl& nc_control(const std::string& key, const std::vector<NcControl>& known = nc_controls());
 
 /// One word of each control, such as &NcControl::key.
