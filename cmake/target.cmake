@@ -1,14 +1,14 @@
-# driftwright_target(NAME [QUICK] [HEADERS <a> <b> ...] [HEADERS_OF target]): what every target of this project has: include paths from the top folder,
+# driftwright_target(NAME [NUMERIC] [HEADERS <a> <b> ...] [HEADERS_OF target]): what every target of this project has: include paths from the top folder,
 # warnings, OpenMP, and the precompiled headers that nearly every file needs (built once, with the target `base`). HEADERS: these
 # too, built for this target; HEADERS_OF: those of a target that has its own.
-# QUICK, with HEADERS: this target, and each that takes its headers, computes little by itself (reports, files, options, studies, tests). The
-# compiler optimises it less and takes a third less time. GCC takes the level from the precompiled header, whatever the command says; so both are decided here.
+# NUMERIC, with HEADERS: this target, and each that takes its headers, is where the program spends its time (Eigen's kernels, the solver). The
+# compiler optimises the others less and takes a third less time. GCC takes the level from the precompiled header, whatever the command says; so both are decided here.
 #
-# The compiler spends most of its time on headers and templates, so files of a target are compiled in batches of a few dozen kB of source, each
+# The compiler spends most of its time on headers and templates, so files of a target are compiled in batches of some 120 kB of source, each
 # one translation unit; a name in an anonymous namespace is therefore one in its room. -DDRIFTWRIGHT_BATCHED=OFF, which the
 # preset dev has, compiles each file alone and shows which include is missing.
 option(DRIFTWRIGHT_BATCHED "Compile files of a target in batches" ON)
-set(DRIFTWRIGHT_BATCH_BYTES 60000)
+set(DRIFTWRIGHT_BATCH_BYTES 120000)
 
 function(driftwright_batches name)
   get_target_property(sources ${name} SOURCES)
@@ -42,7 +42,7 @@ target_compile_options(driftwright_warnings INTERFACE -Wall -Wextra -Wpedantic -
   -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
 
 function(driftwright_target name)
-  cmake_parse_arguments(ARG "QUICK" "HEADERS_OF" "HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "NUMERIC" "HEADERS_OF" "HEADERS" ${ARGN})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
   get_target_property(type ${name} TYPE)
   if(type STREQUAL EXECUTABLE)  # they share precompiled headers with libraries, which are made for a shared one
@@ -53,17 +53,18 @@ function(driftwright_target name)
     driftwright_batches(${name})
   endif()
   if(ARG_HEADERS_OF)
-    get_target_property(ARG_QUICK ${ARG_HEADERS_OF} DRIFTWRIGHT_QUICK)
+    get_target_property(ARG_NUMERIC ${ARG_HEADERS_OF} DRIFTWRIGHT_NUMERIC)
   endif()
-  if(ARG_QUICK)
-    set_target_properties(${name} PROPERTIES DRIFTWRIGHT_QUICK ON)
+  if(ARG_NUMERIC)
+    set_target_properties(${name} PROPERTIES DRIFTWRIGHT_NUMERIC ON)
+  else()
     # With -fexpensive-optimizations products and sums are contracted as with -O3: `run` of the FP3 writes the same bytes.
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-fexpensive-optimizations>)
   endif()
   # Eigen's own threads would wait for each other in loops, and sums would depend on their number.
   target_compile_definitions(${name} PRIVATE EIGEN_DONT_PARALLELIZE)
   target_link_libraries(${name} PRIVATE driftwright_warnings OpenMP::OpenMP_CXX Eigen3::Eigen fmt::fmt)
-  if(name STREQUAL driftwright_base OR ARG_HEADERS)
+  if(name STREQUAL driftwright_base OR ARG_HEADERS OR ARG_NUMERIC AND NOT ARG_HEADERS_OF)
     target_precompile_headers(${name} PRIVATE <Eigen/Sparse> ${PROJECT_SOURCE_DIR}/base/eigen_kernels.hpp <fmt/format.h> <fmt/ranges.h> <algorithm> <functional> <map> <memory>
       <optional> <set> <string> <vector> ${ARG_HEADERS})
   elseif(ARG_HEADERS_OF)

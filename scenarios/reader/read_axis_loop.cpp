@@ -7,7 +7,9 @@
 namespace driftwright::scenarios {
 namespace {
 
-using namespace compensation;
+using compensation::AxisLoop, compensation::AxisMotion, compensation::Counting, compensation::Encoder;
+using compensation::Feedback, compensation::GrowingPart, compensation::InjectorSettings, compensation::kQuartersPerPeriod,
+    compensation::Servo;
 
 void read_encoder(const ConfigMap& in, Encoder& encoder, double default_period_um) {
   encoder.period_um =
