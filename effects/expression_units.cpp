@@ -170,7 +170,7 @@ BaseUnits units_in_formula(const std::string& unit) {
 }
 
 bool is_temperature(const std::string& unit) {
-  return has_offset(unit);
+  return in_base_units(unit).powers == BaseUnits{.powers = {{"K", 1.0}}}.powers && has_offset(unit);
 }
 
 ValueUnit value_unit(const std::string& unit) {

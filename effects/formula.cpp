@@ -93,9 +93,11 @@ struct Bound {
   std::string numbers;  ///< "P0 = 150 W, k = 0.01 1/K", for errors
   double least;
 
+  /// @param time_s   for errors; none where the solver adds its own, because a law's is that of a stretch
   /// @param own_K    of a reading: the temperature of the sensor's place
   /// @param probe_K  of the bodies
-  [[nodiscard]] double operator()(const Drive& drive, double time_s, double own_K, const double* probe_K) const {
+  [[nodiscard]] double operator()(const Drive& drive, std::optional<double> time_s, double own_K,
+                                  const double* probe_K) const {
     std::array<double, kMostNames> x;
     std::size_t i = 0;
     for (const Given& g : kGiven) x[i++] = g.value(drive);
@@ -108,7 +110,7 @@ struct Bound {
   }
 
  private:
-  [[noreturn]] void refuse(double value, double time_s, const std::array<double, kMostNames>& x) const {
+  [[noreturn]] void refuse(double value, std::optional<double> time_s, const std::array<double, kMostNames>& x) const {
     std::string with;
     for (const Expression::Step& s : kind->expression.steps) {
       const std::string& name = kind->names[s.name];
@@ -128,8 +130,8 @@ struct Bound {
     const std::string what = failing ? fmt::format("'{}' is not a finite number", kind->expression.part(*failing))
                              : std::isfinite(value) ? fmt::format("{:.4g} is negative", value)
                                                     : "the result is not a finite number";
-    throw RangeError(fmt::format("the formula of the {} of {}, '{}', fails at {:.4g} min: {}{}", kind->result, place,
-                                 kind->expression.text, time_s / 60.0, what,
+    throw RangeError(fmt::format("the formula of the {} of {}, '{}', fails{}: {}{}", kind->result, place,
+                                 kind->expression.text, time_s ? fmt::format(" at {:.4g} min", *time_s / 60.0) : "", what,
                                  with.empty() ? "" : fmt::format(", with {}", with)));
   }
 };
@@ -157,7 +159,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   const auto& kind = static_cast<const DeclaredKind&>(*e.kind);
   std::vector<Body> probes;
   for (const std::string& name : kind.bodies) probes.push_back(e.references.at(name));
-  Law law([b = bound(e)](const Inputs& u) { return (*b)(u.drive, u.time_s, 0.0, u.probe_K.data()); }, std::move(probes));
+  Law law([b = bound(e)](const Inputs& u) { return (*b)(u.drive, std::nullopt, 0.0, u.probe_K.data()); }, std::move(probes));
   if (kind.result == "power") {
     balance.heats.push_back({e.name(), e.body(), std::move(law)});
   } else if (e.place_kind == Place::kJoint) {
