@@ -11,8 +11,9 @@ namespace driftwright::effects {
 namespace {
 
 /// Units that a message calls by these names; others are products of base units.
-constexpr const char* kNamedUnits[] = {"W",   "W/K", "W/(m^2 K)", "W/m^2", "J",   "J/K", "K",  "1/K",  "K/W", "m",    "m^2",
-                                       "m/s", "s",   "1/s",       "N",     "N m", "Pa",  "kg", "kg/s", "m/K", "m^3/s"};
+constexpr const char* kNamedUnits[] = {"W",   "W K", "W/K", "W/(m^2 K)", "W/m^2", "J",    "J/K", "K",
+                                       "1/K", "K/W", "m",   "m^2",       "m/s",   "s",    "1/s", "N",
+                                       "N m", "Pa",  "kg",  "kg/s",      "m/K",   "m^3/s"};
 
 bool is_of_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_';

@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"W*(n/6000) @+ k", "W: 1 W, k: 1 1/K", "is in W, 'k' is in 1/K"},
                       Bad{"W*k*@T_a", "W: 1 W, k: 1 1/K, T_a: a", "'T_a' is a temperature; write the difference"},
                       Bad{"G*(T_a @+ T_b)", "G: 1 W/K, T_a: a, T_b: b", "temperatures, which cannot be added"},
-                      Bad{"G@*(T_a - T_b)", "G: 1 W, T_a: a, T_b: b", "gives a value in W K"},
+                      Bad{"G@*(T_a - T_b)", "G: 1 W, T_a: a, T_b: b", "gives a value in W K, but"},
                       Bad{"W*exp(@k)", "W: 1 W, k: 1 1/K", "must be a number without unit; 'k' is in 1/K"},
                       Bad{"W*(T_a - T_b)@^x", "W: 1 W, x: 2, T_a: a, T_b: b", "must be written as a number"},
                       Bad{"@n", "", "gives a number, but a value in W is required"},
