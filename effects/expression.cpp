@@ -331,6 +331,26 @@ double value_of(std::span<const Step> steps, const double* values) {
   return evaluated(steps, values, [](const Step&, double, const double*, int) {});
 }
 
+std::vector<Step> with_constants_folded(const std::vector<Step>& steps) {
+  std::vector<Step> folded;
+  for (const Step& s : steps) {
+    const auto n = static_cast<std::size_t>(n_arguments(s.op));
+    const std::span<const Step> last(folded.end() - static_cast<std::ptrdiff_t>(n), n);
+    const bool is_constant =
+        n > 0 && std::all_of(last.begin(), last.end(), [](const Step& a) { return a.op == Op::kNumber; });
+    std::array<double, 3> arguments = {};
+    if (is_constant) std::transform(last.begin(), last.end(), arguments.begin(), [](const Step& a) { return a.number; });
+    const double number = is_constant ? applied(s.op, arguments.data()) : 0.0;
+    if (!is_constant || !std::isfinite(number)) {
+      folded.push_back(s);
+      continue;
+    }
+    folded.resize(folded.size() - n);
+    folded.push_back({.op = Op::kNumber, .number = number, .begin = s.begin, .end = s.end, .sign = s.sign});
+  }
+  return folded;
+}
+
 const Step* failing_step(std::span<const Step> steps, const double* values) {
   const Step* failing = nullptr;
   (void)evaluated(steps, values, [&](const Step& s, double value, const double* arguments, int n) {

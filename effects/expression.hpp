@@ -73,6 +73,9 @@ struct Expression {
 /// by zero or leaves the range of a function. Thread-safe.
 [[nodiscard]] double value_of(std::span<const Expression::Step> steps, const double* values);
 
+/// The same steps with each part that has no name as its number, unless that is not finite.
+[[nodiscard]] std::vector<Expression::Step> with_constants_folded(const std::vector<Expression::Step>& steps);
+
 /// The first step whose value is not finite although those of its arguments are; nullptr if all are finite.
 [[nodiscard]] const Expression::Step* failing_step(std::span<const Expression::Step> steps, const double* values);
 

@@ -92,6 +92,7 @@ struct Bound {
   std::vector<Expression::Step> steps;
   std::string numbers;  ///< "P0 = 150 W, k = 0.01 1/K", for errors
   double least;
+  std::vector<std::size_t> given = {};  ///< of kGiven, those that the formula uses
 
   /// @param time_s   for errors; none where the solver adds its own, because a law's is that of a stretch
   /// @param own_K    of a reading: the temperature of the sensor's place
@@ -99,8 +100,8 @@ struct Bound {
   [[nodiscard]] double operator()(const Drive& drive, std::optional<double> time_s, double own_K,
                                   const double* probe_K) const {
     std::array<double, kMostNames> x;
-    std::size_t i = 0;
-    for (const Given& g : kGiven) x[i++] = g.value(drive);
+    for (const std::size_t g : given) x[g] = kGiven[g].value(drive);
+    std::size_t i = std::size(kGiven);
     if (kind->result == "reading") x[i++] = own_K;
     i += kind->parameters.size();
     for (std::size_t b = 0; b < kind->bodies.size(); ++b) x[i++] = probe_K[b];
@@ -151,6 +152,11 @@ std::shared_ptr<const Bound> bound(const Effect& e) {
       if (s.op == Op::kName && s.name == kind.first_parameter() + p)
         s = {.op = Op::kNumber, .number = e.values[p] * kind.factor[p], .begin = s.begin, .end = s.end, .sign = s.sign};
     }
+  }
+  b.steps = with_constants_folded(b.steps);
+  for (const Expression::Step& s : b.steps) {
+    const bool is_new = std::find(b.given.begin(), b.given.end(), s.name) == b.given.end();
+    if (s.op == Op::kName && s.name < std::size(kGiven) && is_new) b.given.push_back(s.name);
   }
   return std::make_shared<const Bound>(std::move(b));
 }

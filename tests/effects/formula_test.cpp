@@ -215,6 +215,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadEntry{"{type: formula, sensor: t, reading: \"b\", b: 1 K}", "a temperature is required"},
         BadEntry{"{type: formula, sensor: t, reading: \"T\", T: a}", "'T' is the temperature of the sensor's place"}));
 
+TEST(Formula, ANumberThatIsInfiniteFailsWhereItIsUsed) {
+  EXPECT_THAT([] { (void)power_W(heat("P/(a - 3) + P*n/1000", "P: 1 W, a: 3"), 1000); },
+              ThrowsMessage<RangeError>(HasSubstr("'P/(a - 3)' is not a finite number")));
+  EXPECT_DOUBLE_EQ(power_W(heat("P*((a + 1)*(a - 1))^(1/2 + 1/2)", "P: 1 W, a: 3"), 0), 8.0);
+}
+
 TEST(Formula, SaysWhatFailedAndWithWhichValues) {
   const Effect e = heat("P*((T_a - T_b)/d)^0.25", "P: 100 W, d: 2 K, T_a: a, T_b: {region: b}");
   EXPECT_NEAR(power_W(e, 0, {52, 20}), 200.0, 1e-9);
