@@ -1,6 +1,7 @@
 #pragma once
 // Units of a formula: found for each part from those of its names, so that a sum of watts and kelvins is refused.
 
+#include <map>
 #include <string>
 #include <vector>
 
