@@ -85,15 +85,45 @@ ConverterPtr make_converter(const std::string& from, const std::string& to) {
   return ConverterPtr(ut_get_converter(a.get(), b.get()));
 }
 
-/// Each thread keeps the converters that it has used: making one takes longer than all the rest of reading a value, and
 /// UDUNITS' parser is not thread-safe.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Each thread keeps the converters that it has used: making one takes longer than all the rest of reading a value.
 const cv_converter* converter(const std::string& from, const std::string& to) {
   thread_local std::map<std::pair<std::string, std::string>, ConverterPtr> known;
   const auto found = known.find({from, to});
   if (found != known.end()) return found->second.get();
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
+  const std::lock_guard lock(one_at_a_time());
   return known.emplace(std::pair(from, to), make_converter(from, to)).first->second.get();
+}
+
+// What ut_accept_visitor() calls for each kind of unit, with a BaseUnits; a kind without one is refused.
+ut_status add_power(const ut_unit* basic, int power, BaseUnits& to) {
+  const std::string symbol = ut_get_symbol(basic, UT_ASCII);
+  if (symbol != "rad") to.powers[symbol] += power;
+  return UT_SUCCESS;
+}
+ut_status visit_basic(const ut_unit* unit, void* to) {
+  return add_power(unit, 1, *static_cast<BaseUnits*>(to));
+}
+ut_status visit_product(const ut_unit*, int n, const ut_unit* const* basic, const int* power, void* to) {
+  for (int i = 0; i < n; ++i) add_power(basic[i], power[i], *static_cast<BaseUnits*>(to));
+  return UT_SUCCESS;
+}
+ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* of, double, void* to);
+ut_status visit_date(const ut_unit*, const ut_unit*, double, void*) {
+  return UT_MEANINGLESS;
+}
+ut_status visit_logarithm(const ut_unit*, double, const ut_unit*, void*) {
+  return UT_MEANINGLESS;
+}
+constexpr ut_visitor kToBaseUnits = {visit_basic, visit_product, visit_scaled, visit_date, visit_logarithm};
+ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* of, double, void* to) {
+  static_cast<BaseUnits*>(to)->factor *= scale;
+  return ut_accept_visitor(of, &kToBaseUnits, to);
 }
 
 Quantity split(const std::string& text, const std::string& wanted) {
@@ -155,6 +185,16 @@ double parse_temperature_K(const std::string& text) {
 double unit_factor(const std::string& from, const std::string& to) {
   const cv_converter* c = converter(from, to);
   return cv_convert_double(c, 1.0) - cv_convert_double(c, 0.0);
+}
+
+BaseUnits in_base_units(const std::string& unit) {
+  BaseUnits base;
+  const std::lock_guard lock(one_at_a_time());
+  const UnitPtr parsed = parse_unit(unit.empty() ? "1" : unit);
+  if (ut_accept_visitor(parsed.get(), &kToBaseUnits, &base) != UT_SUCCESS)
+    throw RangeError(fmt::format("'{}' has no base units", unit));
+  std::erase_if(base.powers, [](const auto& p) { return p.second == 0.0; });
+  return base;
 }
 
 Quantity split_quantity(const std::string& text) {

@@ -3,6 +3,7 @@
 // Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens. All functions are
 // thread-safe.
 
+#include <map>
 #include <string>
 
 namespace driftwright {
@@ -23,6 +24,16 @@ namespace driftwright {
 /// Factor that turns a value in `from` into a value in `to` (no offsets: for degC use parse_temperature_K).
 /// @throws RangeError  when the dimensions differ
 [[nodiscard]] double unit_factor(const std::string& from, const std::string& to);
+
+/// A unit as a factor times powers of base units.
+struct BaseUnits {
+  double factor = 1.0;                        ///< a value in the unit times this is in base units, without an offset
+  std::map<std::string, double> powers = {};  ///< by symbol: m, kg, s, K, A, mol, cd; an angle counts as a number [rad]
+  bool operator==(const BaseUnits&) const = default;
+};
+/// @param unit  in UDUNITS syntax; "" means "1"
+/// @throws RangeError  when it is unknown, or logarithmic or a date
+[[nodiscard]] BaseUnits in_base_units(const std::string& unit);
 
 /// A quantity as written in a file.
 struct Quantity {

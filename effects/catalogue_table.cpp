@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
-#include "effects/effect.hpp"
+#include "effects/formula.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -56,6 +56,7 @@ std::string catalogue_table() {
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", kind.key, kind.title, places_of(kind), keys_of(kind), law,
                         kind.doubts                      ? "yes"
                         : !kind.exchange_finding.empty() ? "as another size"
+                        : has_formula(kind)              ? "as other numbers"
                                                          : "");
   }
   return text;

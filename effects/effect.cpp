@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "effects/effect_schema.hpp"
+#include "effects/formula.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -178,12 +179,12 @@ Body Effect::body() const {
 
 Effect read_effect(const ConfigMap& entry) {
   const ConfigMap in = entry.described_by(effect_schemas());
-  const EffectKind& kind = kind_of(in.choice("type"));
+  const EffectKind& kind = declared_kind(kind_of(in.choice("type")), in);
   Effect effect;
   effect.kind = &kind;
   read_place(in, effect);
   for (const Parameter& p : kind.parameters)
-    effect.values.push_back(in.has(p.name) ? in.quantity(p.name) : p.fallback.value_or(kNotGiven));
+    effect.values.push_back(in.has(p.name) ? in.quantity_in(p.name, p.unit) : p.fallback.value_or(kNotGiven));
   for (const Reference& r : kind.references) read_reference(in, r, effect);
   for (const Choice& c : kind.choices) effect.words[c.name] = in.choice(c.name);
   for (const Table& t : kind.tables) read_table(in, t, effect);

@@ -74,12 +74,14 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to; `Effect::words` holds its name, "" if left out.
+/// Another sensor, displacement or recorded column that an effect refers to, or a formula; `Effect::words` holds its name or text,
+/// "" if left out.
 struct Mention {
   enum class Of {
     kSensor,
     kDisplacement,
-    kColumn,  ///< of the cyclogram (Cyclogram::column()), with or without its unit
+    kColumn,   ///< of the cyclogram (Cyclogram::column()), with or without its unit
+    kFormula,  ///< no name: a formula, whose entry declares the names in it (formula.hpp)
   };
   std::string name;
   Of of = Of::kSensor;
@@ -147,7 +149,7 @@ struct EffectKind {
 
 /// One effect of a scenario: its kind, its place and its values.
 struct Effect {
-  const EffectKind* kind = nullptr;  ///< points into catalogue(), which lives as long as the program
+  const EffectKind* kind = nullptr;  ///< in catalogue(), or declared by an entry (formula.hpp); lives as long as the program
   Place place_kind = Place::kRegion;
   std::string place = {};           ///< name of the place; for the ambient, the clock and the spindle equal to place_key()
   std::vector<double> values = {};  ///< in the order of kind->parameters

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "effects/effect.hpp"
+#include "effects/formula.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -94,6 +94,23 @@ Key key_of(const Mention& m) {
   return key;
 }
 
+/// Exactly one formula, and every further key a name in it.
+void add_names(const EffectKind& kind, schema::Map& map) {
+  std::vector<std::string> keys;
+  for (const Mention& m : kind.mentions) {
+    if (m.of == Mention::Of::kFormula) keys.push_back(m.name);
+  }
+  map.groups.push_back({Group::Rule::kExactlyOne, keys,
+                        fmt::format("{} requires exactly one formula: {}", kind.key, fmt::join(keys, " or "))});
+  Key name =
+      key_of(Reference{"name in the formula",
+                       {BodyKind::kNode, BodyKind::kRegion, BodyKind::kSurface},
+                       "",
+                       "a quantity with its unit, such as 150 W, or a body, whose mean temperature the name then is"});
+  name.values.push_back(quantity(""));
+  map.others.push_back(std::move(name));
+}
+
 schema::Map map_of(const EffectKind& kind) {
   schema::Map map{
       .name = "effect " + kind.key, .when_key = "type", .when_word = kind.key, .about = kind.title + ": " + kind.law};
@@ -113,7 +130,8 @@ schema::Map map_of(const EffectKind& kind) {
     map.keys.push_back(schema::optional("from", quantity("s", 0.0, 1e9), 0.0, "when it begins to act"));
     map.keys.push_back(schema::optional("until", quantity("s", 0.0, 1e9), kNever_s, "when it no longer acts"));
   }
-  if (const auto names = kind.known_roughly(); !names.empty()) map.keys.push_back(known_to_key(names));
+  if (has_formula(kind)) add_names(kind, map);
+  if (const auto names = kind.known_roughly(); !names.empty() || has_formula(kind)) map.keys.push_back(known_to_key(names));
   return map;
 }
 

@@ -29,10 +29,12 @@ std::string word(double share) {
 
 schema::Key known_to_key(const std::vector<std::string>& names) {
   const schema::Ways share = {schema::choice({"fixed", "guess"}), schema::quantity("1", 1e-3, 2.0)};
-  schema::Map by_name{.name = fmt::format("known_to ({})", fmt::join(names, ", ")),
-                      .about = "How well single numbers are known: 1 sigma of their logarithms."};
+  schema::Map by_name{
+      .name = fmt::format("known_to ({})", names.empty() ? "by name" : fmt::format("{}", fmt::join(names, ", "))),
+      .about = "How well single numbers are known: 1 sigma of their logarithms."};
   for (const std::string& name : names)
     by_name.keys.push_back(schema::optional(name, share, schema::Said{}, "as `known_to`"));
+  if (names.empty()) by_name.others.push_back(schema::optional("name of a number", share, schema::Said{}, "as `known_to`"));
   schema::Ways ways = share;
   ways.push_back(schema::map(by_name));
   return schema::optional(kKey, ways, schema::Said{"10 %, exponents 3 %"},
@@ -41,6 +43,8 @@ schema::Key known_to_key(const std::vector<std::string>& names) {
 }
 
 KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names) {
+  if (names.empty() && in.description().find(kKey) && in.has(kKey))
+    in.fail(kKey, "this entry has no number that a diagnosis calibrates");
   if (names.empty() || !in.has(kKey)) return {};
   if (!in.is_map(kKey)) return {{"", read_share(in, kKey)}};
   const ConfigMap by_name = in.map(kKey);

@@ -13,7 +13,7 @@ namespace driftwright::effects {
 using KnownTo = std::map<std::string, double>;
 inline constexpr double kGuess = 0.6931471805599453;  ///< standard deviation for `guess`: ln 2, a factor of 2
 
-/// The schema of the key `known_to` of an entry with numbers of these names, at least one.
+/// The schema of the key `known_to` of an entry with numbers of these names; none: of names that the entry declares.
 [[nodiscard]] schema::Key known_to_key(const std::vector<std::string>& names);
 /// Reads `known_to` of an entry; empty if the key is missing. @param names  of the numbers that may be uncertain
 /// @throws InputError  for another word, a share outside 0.1 % to 200 %, a name that is not in `names`

@@ -58,7 +58,8 @@ std::string numbers_of_laws(const MachineModel& model) {
   std::string text;
   for (const effects::Effect& e : model.effects) {
     if (!e.kind->acts_on_heat()) continue;
-    text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
+    text += e.name() + ":";
+    for (std::size_t p = 0; p < e.values.size(); ++p) text += fmt::format(" {} {}", e.values[p], e.kind->parameters[p].unit);
     for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
     for (const auto& [name, table] : e.tables) {
       text += fmt::format(" {} {} {}", name, fmt::join(table.time_s, " "), fmt::join(table.value, " "));

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "effects/effect.hpp"
+#include "effects/formula.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::yaml_of_test {
@@ -82,6 +82,7 @@ Effect drawn(const EffectKind& kind, Place place, Random& random) {
 TEST(YamlOf, ComesBackForEveryKindAtEveryPlace) {
   Random random(17, 0);
   for (const EffectKind& kind : catalogue()) {
+    if (has_formula(kind)) continue;  // its entries declare the names that they have: formula_test
     int n_read = 0;
     for (const Place place : kind.places) {
       for (int i = 0; i < 40; ++i) {
