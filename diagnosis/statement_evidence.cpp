@@ -381,22 +381,26 @@ double StatementEvidence::of_rows(std::size_t k, const Sizes& on, Scored& scored
     for (Eigen::Index row : rows_about(scored.end)) edges.push_back(row);
   }
   const auto n = static_cast<Eigen::Index>(edges.size());
-  TakenColumns steps;  // one step from each row on
+  const auto [first_row, n_of_run] = space_.rows[scored.run];
+  const Eigen::Index n_acted = scored.when == When::kLastingOn ? residual_.x.rows() - first_row : n_of_run;
+  Eigen::MatrixXd steps;  // one step from each row on; only rows of its record, and of later ones where it lasts
   Scored tried = scored;
   for (Eigen::Index i = 0; i < n; ++i) {
     tried.rows = StatedRows{scored.run, edges[static_cast<std::size_t>(i)], n_rows};
-    if (i == 0) {
-      steps.x = item(tried).columns.x.replicate(1, n);  // in all other records they are equal
-    } else {
-      const auto& [first, n_of_run] = space_.rows[scored.run];
-      steps.x.col(i).segment(first, n_of_run) = space_.condensed(scored.run, space_.readings({chosen(tried)})[scored.run]);
-    }
+    if (i == 0)
+      steps = item(tried).columns.x.middleRows(first_row, n_acted).replicate(1, n);  // equal in all other records
+    else
+      steps.col(i).head(n_of_run) = space_.condensed(scored.run, space_.readings({chosen(tried)})[scored.run]);
   }
-  steps.nuisance = q_.transpose() * steps.x;
-  Eigen::MatrixXd g = products(steps, steps);
-  Eigen::VectorXd along = products(steps, residual_);
+  const Eigen::MatrixXd nuisance = q_.middleRows(first_row, n_acted).transpose() * steps,
+                        shared = share_.asDiagonal() * nuisance;
+  Eigen::MatrixXd g = steps.transpose() * steps;
+  g.noalias() -= nuisance.transpose() * shared;
+  Eigen::VectorXd along = steps.transpose() * residual_.x.col(0).segment(first_row, n_acted);
+  along.noalias() -= shared.transpose() * residual_.nuisance.col(0);
   if (on.size.size() > 0) {
-    const Eigen::MatrixXd common = products(on.columns, steps);
+    Eigen::MatrixXd common = on.columns.x.middleRows(first_row, n_acted).transpose() * steps;
+    common.noalias() -= on.columns.nuisance.transpose() * shared;
     g.noalias() -= common.transpose() * (on.covariance * common);
     along.noalias() -= common.transpose() * on.size;
   }
