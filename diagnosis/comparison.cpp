@@ -71,8 +71,12 @@ void Comparison::whiten(std::size_t r, const Eigen::Ref<const Eigen::MatrixXd>& 
   const Run& run = runs_[r];
   for (std::size_t c = 0; c < run.n_blocks; ++c) {
     const Block& block = blocks_[run.first_block + c];
-    whiteners_[run.first_block + c].apply(readings.row(static_cast<Eigen::Index>(c)).transpose(),
-                                          whitened.segment(block.first - run.first, block.n));
+    const auto of_channel = readings.row(static_cast<Eigen::Index>(c));
+    auto to = whitened.segment(block.first - run.first, block.n);
+    if (of_channel.isZero(0.0))  // usual of a statement about an instrument
+      to.setZero();
+    else
+      whiteners_[run.first_block + c].apply(of_channel.transpose(), to);
   }
   without_shared(run, whitened);
 }

@@ -90,14 +90,29 @@ bool acts_alike(const effects::Effect& a, const effects::Effect& b) {
          });
 }
 
-/// Whether two states act equally in a run. The first was made from the second by changing numbers and appending effects.
-bool acts_alike(const TwinState& before, const TwinState& after, const std::string& run) {
+/// Whether an effect changes how far parts expand, and nothing else.
+bool is_of_expansion(const effects::Effect& e) {
+  if (!e.kind->change_material || e.kind->acts_on_heat() || e.kind->change_drive || e.kind->change_readings) return false;
+  const std::vector<effects::MaterialFactor> factors = effects::material_factors({e});
+  return std::all_of(factors.begin(), factors.end(),
+                     [](const effects::MaterialFactor& f) { return f.conductivity == 1.0 && f.heat_capacity == 1.0; });
+}
+
+/// What two states have in common in a run.
+enum class Common { kReadings, kTemperatures, kNothing };
+
+/// @param after  made from `before` by changing numbers and appending effects
+Common in_common(const TwinState& before, const TwinState& after, const std::string& run) {
+  if (after.size() < before.size()) return Common::kNothing;
+  Common common = Common::kReadings;
   for (std::size_t i = 0; i < after.size(); ++i) {
     const bool is_there = i < before.size();
     const bool acts = after[i].acts_in(run) || (is_there && before[i].acts_in(run));
-    if (acts && (!is_there || !acts_alike(before[i], after[i]))) return false;
+    if (!acts || (is_there && acts_alike(before[i], after[i]))) continue;
+    if (!is_of_expansion(after[i]) || (is_there && !is_of_expansion(before[i]))) return Common::kNothing;
+    common = Common::kTemperatures;
   }
-  return after.size() >= before.size();
+  return common;
 }
 
 }  // namespace
@@ -225,12 +240,14 @@ Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction
   const TwinState s = state(hypothesis, x);
   Prediction prediction;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    if (acts_alike(known_state, s, runs_[r].name)) {
+    const Common common = in_common(known_state, s, runs_[r].name);
+    if (common == Common::kReadings) {
       prediction.push_back(known[r]);
       continue;
     }
     const solver::KeptRun* near = about.empty() ? nullptr : about[r].get();
-    Eigen::MatrixXd response = twin_.respond(s, runs_[r], workspace, near);
+    Eigen::MatrixXd response = near && common == Common::kTemperatures ? twin_.outputs_of(s, runs_[r], near->states())
+                                                                       : twin_.respond(s, runs_[r], workspace, near);
     if (responses) (*responses)[r] = response;
     prediction.push_back(readings(s, r, x, std::move(response)));
   }
@@ -336,14 +353,14 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
   whiten_slopes();
 }
 
-Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) const {
+Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Prediction responses) const {
   Eigen::MatrixXd slopes = slopes_;
   KeptRuns about;
   Prediction base;
   const Eigen::VectorXd x = of_machine(at.x);
   {
-    Twin::Workspace workspace(twin_);  // computed at the same place as the slopes they are compared with
-    base = predict(hypothesis, x, workspace);
+    Twin::Workspace workspace(twin_);
+    base = predict(hypothesis, x, workspace, &responses, true);
     about = kept_runs(state(hypothesis, x), workspace);
   }
   for_each_index(
@@ -423,7 +440,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const double far = gone.cwiseAbs().maxCoeff();
     const bool are_here = n_retakes > 0 && far == 0.0;
     if (n_retakes == kMostRetakes || are_here || (far <= kFar && promised < kPromised)) return false;
-    own_slopes = slopes_at(hypothesis, f);
+    own_slopes = slopes_at(hypothesis, f, responses);
     own_squares.noalias() = own_slopes.transpose() * own_slopes;
     nuisance_slopes = &own_slopes;
     nuisance_squares = &own_squares;

@@ -129,7 +129,7 @@ class Fitter {
 
   /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects
   /// act are taken from it.
-  /// @param about      of a state near by, which others are answered from where it can be
+  /// @param about      of the known state, which others are answered from where it can be
   /// @param responses  the machine's outputs at the known state; they become those at x
   [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
                                           const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
@@ -147,8 +147,9 @@ class Fitter {
   [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
                                  const KeptRuns& about, std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener = {});
-  /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
-  [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at) const;
+  /// W f's slopes by scatter and linear columns at an x far from where scatter was settled. @param responses  of the machine
+  /// there
+  [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Prediction responses) const;
   [[nodiscard]] Eigen::MatrixXd whitened_slopes(const std::vector<Prediction>& differences) const;
   void whiten_slopes();
 

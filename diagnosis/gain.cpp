@@ -146,7 +146,9 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   }
   Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(kept)};
   if (named != 0) models.named = judge.filed(named);
-  if (search_again) {
+  if (n_claims == 0) {
+    // Nothing is claimed, so there is no choice that kept-out rows could judge: only the scenario's own numbers.
+  } else if (search_again) {
     Judge::Refound again = judge.refound(search_again, kept, listener);
     models.calibrated = std::move(again.calibrated);
     models.found = std::move(again.extended);

@@ -41,8 +41,8 @@ using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& f
 /// rest. Events in a single run, or at a time of the only run, are judged on blocks of it, with every other block kept
 /// out. All numbers are fitted anew each time. Errors are those of a written file: of the machine's effects and numbers,
 /// without unknown warm starts or mesh errors.
-/// @param search_again  repeats the search without the rows of each run, or of the last third; null: the claims were
-/// found on all rows
+/// @param search_again  repeats the search without the rows of each run, or of the last third, if something is claimed;
+/// null: the claims were found on all rows
 /// @param listener      after a request to end, the errors are those of fitted rows, and nothing is written
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
                                     const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again,

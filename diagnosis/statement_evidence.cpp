@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "base/dense.hpp"
 #include "base/parallel.hpp"
@@ -19,11 +20,9 @@ constexpr int kMostWindows = 12;
 constexpr Eigen::Index kEdgesTried = 16;  // trial rows of an edge, in its two cells
 constexpr std::size_t kFewRecords = 5;    // with more records, unordered choices are left out
 
-double log_mean(const std::vector<double>& terms) {
-  const double most = *std::max_element(terms.begin(), terms.end());
-  double sum = 0.0;
-  for (double t : terms) sum += std::exp(t - most);
-  return most + std::log(sum / static_cast<double>(terms.size()));
+double log_mean(const Eigen::ArrayXd& terms) {
+  const double most = terms.maxCoeff();
+  return most + std::log((terms - most).exp().mean());
 }
 
 Eigen::Index n_pieces_of(Eigen::Index n_cells) {
@@ -138,6 +137,27 @@ double StatementEvidence::mixed(double squares, double along, double& best_width
     }
   }
   return best + std::log(sum / static_cast<double>(options_.widths.size()));
+}
+
+/// The sum over widths is that of exp(q - q of the widest) / sqrt(1 + w² squares), q = along² / (2 (squares + 1 / w²)), which
+/// takes one logarithm in all.
+Eigen::ArrayXd StatementEvidence::mixed(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& along) const {
+  const double widest = *std::max_element(options_.widths.begin(), options_.widths.end());
+  const Eigen::ArrayXd half = 0.5 * along.square(), most = half / (squares + 1.0 / (widest * widest));
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(squares.size());
+  for (double w : options_.widths) sum += (half / (squares + 1.0 / (w * w)) - most).exp() / (1.0 + w * w * squares).sqrt();
+  return most + (sum / static_cast<double>(options_.widths.size())).log();
+}
+
+StatementEvidence::OfWindows StatementEvidence::evaluated(const Windows& windows) const {
+  const auto n = static_cast<Eigen::Index>(windows.squares.size());
+  OfWindows of{.evidence = mixed(Eigen::Map<const Eigen::ArrayXd>(windows.squares.data(), n),
+                                 Eigen::Map<const Eigen::ArrayXd>(windows.along.data(), n))};
+  Eigen::Index best = 0;
+  of.evidence.maxCoeff(&best);
+  of.best = static_cast<std::size_t>(best);
+  (void)mixed(windows.squares[of.best], windows.along[of.best], of.width);
+  return of;
 }
 
 std::vector<Scored> StatementEvidence::scored(const std::vector<Item>& set) const {
@@ -361,30 +381,32 @@ double StatementEvidence::of_rows(std::size_t k, const Sizes& on, Scored& scored
     for (Eigen::Index row : rows_about(scored.end)) edges.push_back(row);
   }
   const auto n = static_cast<Eigen::Index>(edges.size());
-  TakenColumns steps{.x = Eigen::MatrixXd::Zero(residual_.x.rows(), n), .nuisance = {}};  // one step from each row on
+  const auto [first_row, n_of_run] = space_.rows[scored.run];
+  const Eigen::Index n_acted = scored.when == When::kLastingOn ? residual_.x.rows() - first_row : n_of_run;
+  Eigen::MatrixXd steps;  // one step from each row on; only rows of its record, and of later ones where it lasts
   Scored tried = scored;
   for (Eigen::Index i = 0; i < n; ++i) {
     tried.rows = StatedRows{scored.run, edges[static_cast<std::size_t>(i)], n_rows};
-    steps.x.col(i) = item(tried).columns.x.col(0);
+    if (i == 0)
+      steps = item(tried).columns.x.middleRows(first_row, n_acted).replicate(1, n);  // equal in all other records
+    else
+      steps.col(i).head(n_of_run) = space_.condensed(scored.run, space_.readings({chosen(tried)})[scored.run]);
   }
-  steps.nuisance = q_.transpose() * steps.x;
-  Eigen::MatrixXd g = products(steps, steps);
-  Eigen::VectorXd along = products(steps, residual_);
+  const Eigen::MatrixXd nuisance = q_.middleRows(first_row, n_acted).transpose() * steps,
+                        shared = share_.asDiagonal() * nuisance;
+  Eigen::MatrixXd g = steps.transpose() * steps;
+  g.noalias() -= nuisance.transpose() * shared;
+  Eigen::VectorXd along = steps.transpose() * residual_.x.col(0).segment(first_row, n_acted);
+  along.noalias() -= shared.transpose() * residual_.nuisance.col(0);
   if (on.size.size() > 0) {
-    const Eigen::MatrixXd common = products(on.columns, steps);
+    Eigen::MatrixXd common = on.columns.x.middleRows(first_row, n_acted).transpose() * steps;
+    common.noalias() -= on.columns.nuisance.transpose() * shared;
     g.noalias() -= common.transpose() * (on.covariance * common);
     along.noalias() -= common.transpose() * on.size;
   }
-  std::vector<double> terms;
-  double best = -1e300;
+  Windows windows;
   const auto take = [&](double squares, double in, Eigen::Index first, Eigen::Index end) {
-    if (!(squares > kNothingLeft)) return;
-    double width = 1.0;
-    terms.push_back(mixed(squares, in, width));
-    if (terms.back() <= best) return;
-    best = terms.back();
-    scored.width = width;
-    scored.rows = StatedRows{scored.run, first, end};
+    if (squares > kNothingLeft) windows.add(squares, in, first, end);
   };
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(n_first); ++i) {
     const Eigen::Index first = edges[static_cast<std::size_t>(i)];
@@ -394,7 +416,11 @@ double StatementEvidence::of_rows(std::size_t k, const Sizes& on, Scored& scored
       if (end > first) take(g(i, i) + g(j, j) - 2.0 * g(i, j), along[i] - along[j], first, end);
     }
   }
-  return terms.empty() ? -1e300 : log_mean(terms);
+  if (windows.edges.empty()) return -1e300;
+  const OfWindows of = evaluated(windows);
+  scored.width = of.width;
+  scored.rows = StatedRows{scored.run, windows.edges[of.best].first, windows.edges[of.best].second};
+  return log_mean(of.evidence);
 }
 
 void StatementEvidence::score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
@@ -412,43 +438,28 @@ void StatementEvidence::score_windows(std::size_t k, const Sizes& on, const Eige
                  along_after = n_after > 0 ? along.tail(n_after).sum() : 0.0;
     Scored window{.of = of, .when = When::kWindow, .run = r}, lasting{.of = of, .when = When::kLasting, .run = r},
         later{.of = of, .when = When::kLastingOn, .run = r};
-    std::vector<double> of_windows, of_lasting, of_on;
-    double best_window = -1e300, best_lasting = -1e300, best_on = -1e300;
+    Windows of_windows, of_lasting, of_on;
     for (Eigen::Index end = n; end > 1; --end) {
       double d = 0.0, b = 0.0;
       for (Eigen::Index first = end - 1; first > 0; --first) {
         d += g(at + first, at + first) + 2.0 * g.col(at + first).segment(at + first + 1, end - first - 1).sum();
         b += along[at + first];
         if (!(d > kNothingLeft)) continue;
-        double w = 1.0;
-        if (end < n) {
-          of_windows.push_back(mixed(d, b, w));
-          if (of_windows.back() > best_window) {
-            best_window = of_windows.back();
-            window.first = first, window.end = end, window.width = w;
-          }
-        } else {
-          of_lasting.push_back(mixed(d, b, w));
-          if (of_lasting.back() > best_lasting) {
-            best_lasting = of_lasting.back();
-            lasting.first = first, lasting.end = end, lasting.width = w;
-          }
-          if (n_after == 0) continue;
-          of_on.push_back(mixed(d + 2.0 * with_after.segment(first, n - first).sum() + d_after, b + along_after, w));
-          if (of_on.back() > best_on) {
-            best_on = of_on.back();
-            later.first = first, later.end = end, later.width = w;
-          }
-        }
+        (end < n ? of_windows : of_lasting).add(d, b, first, end);
+        if (end == n && n_after > 0)
+          of_on.add(d + 2.0 * with_after.segment(first, n - first).sum() + d_after, b + along_after, first, end);
       }
     }
     const double runs = std::log(static_cast<double>(n_runs));
-    const auto take = [&](Scored& s, std::vector<double>& terms, double share) {
-      if (terms.empty()) return;
-      double& most = *std::max_element(terms.begin(), terms.end());
+    const auto take = [&](Scored& s, const Windows& windows, double share) {
+      if (windows.edges.empty()) return;
+      OfWindows all = evaluated(windows);
+      std::tie(s.first, s.end) = windows.edges[all.best];
+      s.width = all.width;
+      double& most = all.evidence[static_cast<Eigen::Index>(all.best)];
       if (is_sharp) most = std::max(most, of_rows(k, on, s));
       s.log_prior = prior_cells_[k].window + std::log(share) - runs;
-      s.log_evidence = log_mean(terms);
+      s.log_evidence = log_mean(all.evidence);
       list.push_back(s);
     };
     const bool lasts = space_.cells[k].lasts;
@@ -471,29 +482,21 @@ void StatementEvidence::score_several(std::size_t k, const Eigen::MatrixXd& g, c
   for (int windows = 1; windows <= kMostWindows; ++windows) {
     const Eigen::VectorXd beside = g * in;
     const double d_before = in.dot(beside), b_before = in.dot(along);
-    double most = -1e300, sum = 0.0, n_places = 0.0, width = 1.0;
-    Eigen::Index first = 0, end = 0;
+    Windows places;
     for (std::size_t r = 0; r < n_runs; ++r) {
       for (Eigen::Index from = cells.first[r]; from < cells.first[r + 1]; ++from) {
         double d = d_before, b = b_before;
         for (Eigen::Index last = from; last < cells.first[r + 1] && in[last] == 0.0; ++last) {
           d += 2.0 * beside[last] + g(last, last) + 2.0 * g.col(last).segment(from, last - from).sum();
           b += along[last];
-          if (!(d > kNothingLeft)) continue;
-          double w = 1.0;
-          const double e = mixed(d, b, w);
-          n_places += 1.0;
-          if (e > most) {
-            sum = sum * std::exp(most - e) + 1.0;
-            most = e, width = w, first = from, end = last + 1;
-          } else {
-            sum += std::exp(e - most);
-          }
+          if (d > kNothingLeft) places.add(d, b, from, last + 1);
         }
       }
     }
-    if (n_places == 0.0) break;
-    const double stage = most + std::log(sum / n_places);
+    if (places.edges.empty()) break;
+    const OfWindows of = evaluated(places);
+    const auto [first, end] = places.edges[of.best];
+    const double most = of.evidence[static_cast<Eigen::Index>(of.best)], stage = log_mean(of.evidence);
     const double whole = stage - paid - windows * std::log(2.0);
     in.segment(first, end - first).setOnes();
     paid += most - stage;
@@ -501,7 +504,7 @@ void StatementEvidence::score_several(std::size_t k, const Eigen::MatrixXd& g, c
     if (whole > best) {
       best = whole;
       s.cells.assign(in.data(), in.data() + in.size());
-      s.width = width;
+      s.width = of.width;
       s.n_windows = windows;
     } else if (windows > 3) {
       break;
@@ -536,12 +539,14 @@ void StatementEvidence::score_unknown(std::size_t k, const Eigen::MatrixXd& g, c
     const Eigen::ArrayXd d = eigen.eigenvalues().cwiseMax(0.0).array();
     const Eigen::ArrayXd in = (eigen.eigenvectors().transpose() * b).array();
     Scored s{.of = of, .when = r == n_runs ? When::kUnknownInAll : When::kUnknown, .run = from};
-    std::vector<double> terms;
-    double best = -1e300;
-    for (double w : options_.widths) {
-      terms.push_back((-0.5 * (w * w * d).log1p() + 0.5 * in.square() / (d + 1.0 / (w * w))).sum());
-      if (terms.back() > best) best = terms.back(), s.width = w;
+    Eigen::ArrayXd terms(options_.widths.size());
+    for (Eigen::Index i = 0; i < terms.size(); ++i) {
+      const double w = options_.widths[static_cast<std::size_t>(i)];
+      terms[i] = (-0.5 * (w * w * d).log1p() + 0.5 * in.square() / (d + 1.0 / (w * w))).sum();
     }
+    Eigen::Index best = 0;
+    terms.maxCoeff(&best);
+    s.width = options_.widths[static_cast<std::size_t>(best)];
     s.log_prior =
         prior_cells_[k].unknown + (n_runs == 1   ? 0.0
                                    : r == n_runs ? std::log(options_.all_records)

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "diagnosis/statement.hpp"
 
@@ -130,7 +131,27 @@ class StatementEvidence {
   [[nodiscard]] Chosen chosen(const Scored& scored) const;
   [[nodiscard]] std::vector<StatedWindow> windows_of(const Chosen& chosen) const;
   [[nodiscard]] Eigen::Index n_pieces_of(const Scored& scored) const;
+  /// Evidence of one column of a size with this class's prior. @param best_width  receives the likeliest width
   [[nodiscard]] double mixed(double squares, double along, double& best_width) const;
+  /// The same for many columns, without the widths.
+  [[nodiscard]] Eigen::ArrayXd mixed(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& along) const;
+  /// Windows that are evaluated together: products of their columns, and their first and last places.
+  struct Windows {
+    std::vector<double> squares, along;
+    std::vector<std::pair<Eigen::Index, Eigen::Index>> edges;
+    void add(double d, double b, Eigen::Index first, Eigen::Index end) {
+      squares.push_back(d);
+      along.push_back(b);
+      edges.emplace_back(first, end);
+    }
+  };
+  struct OfWindows {
+    Eigen::ArrayXd evidence;
+    std::size_t best = 0;  ///< index of the likeliest window
+    double width = 1.0;    ///< its likeliest width
+  };
+  /// @param windows  one at least
+  [[nodiscard]] OfWindows evaluated(const Windows& windows) const;
   void score_columns(const Sizes& on, std::vector<Scored>& list) const;
   void score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
                      std::vector<Scored>& list) const;

@@ -402,10 +402,14 @@ Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run,
 
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                               const solver::KeptRun* near) const {
-  const Eigen::MatrixXd z = states(state, run, workspace, near);
+  return outputs_of(state, run, states(state, run, workspace, near));
+}
+
+Eigen::MatrixXd Twin::outputs_of(const TwinState& state, const MeasuredRun& run,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& states) const {
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
-  Eigen::MatrixXd outputs = weights.transpose() * z;
+  Eigen::MatrixXd outputs = weights.transpose() * states.topRows(machine_.system.size());
   if ((outputs_.ambient.array() == 0.0).all()) return outputs;
   const effects::DriveChange change = effects::drive_change(state, run.name);
   const TimeSeries ambient = effects::true_ambient(change, run.ambient, effects::true_cyclogram(change, run.cyclogram));

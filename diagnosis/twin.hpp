@@ -65,6 +65,9 @@ class Twin {
   /// @throws SolveError  if a state has no solution
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                         const solver::KeptRun* near = nullptr) const;
+  /// respond() if the reduced states are known, size (or more, with places that the state adds) x n_grid.
+  [[nodiscard]] Eigen::MatrixXd outputs_of(const TwinState& state, const MeasuredRun& run,
+                                           const Eigen::Ref<const Eigen::MatrixXd>& states) const;
   /// Data from which states near this one are computed; null if that is not possible.
   /// @param for_slopes  first-order accuracy is sufficient
   [[nodiscard]] std::shared_ptr<const solver::KeptRun> kept_run(const TwinState& state, const MeasuredRun& run,
