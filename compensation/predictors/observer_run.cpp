@@ -97,9 +97,10 @@ class Observer::Run final : public ObserverFollower {
     core.factor_covariance = o_.factors_.covariance.data();
     core.with_drift = with_drift;
     core.keeps_all = !gives_up;
-    remembered_.resize(observer_n_remembered(&core));
-    room_.reset(new double[observer_n_room(&core, kStepsKept, kModesKept)]);  // most of it is never touched
-    run_ = observer_run_in(&core, remembered_.data(), room_.get(), kStepsKept, kModesKept);
+    // observer_start() sets what is read; most of both is touched late or never
+    remembered_.reset(new double[observer_n_remembered(&core)]);
+    room_.reset(new double[observer_n_room(&core, kStepsKept, kModesKept)]);
+    run_ = observer_run_in(&core, remembered_.get(), room_.get(), kStepsKept, kModesKept);
     observer_clear_room(&run_);
     observer_start(&run_);
   }
@@ -270,8 +271,7 @@ class Observer::Run final : public ObserverFollower {
   const Observer& o_;
   bool with_drift_, has_channels_ = false;
   ObserverTables tables_;
-  std::vector<double> remembered_;
-  std::unique_ptr<double[]> room_;
+  std::unique_ptr<double[]> remembered_, room_;
   observer_run run_ = {};
   const ObservedRun* rows_of_ = nullptr;  // of the call of next() that is under way
   double section_end_s_ = 0.0;
