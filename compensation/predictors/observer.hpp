@@ -48,18 +48,10 @@ class ObserverFollower : public Follower {
   [[nodiscard]] virtual const std::vector<double>& deviation_K() const = 0;
 };
 
-/// Extended Kalman filter for the reduced state z and the uncertain factors:
-///
-///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_ambient(u) + sum_e v_e c_e(u) (ambient g_e + o_e - G_e z), w, v:
-///     random walks reading_i = l_i'z + ambient share, drift = (1 + g) l_d'(z - z_start) + ambient share
-///
-/// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. If a sensor's readings
-/// differ from the values expected from the rest (mean over about ten rows, by more than five deviations), it is dropped for
-/// the rest of the run, and the filter returns to its state before that began. If other sensors still differ without it, the
-/// model is wrong: the sensor is used again, and the trust in the model is 1 divided by the ratio of their mean distance to
-/// the distance that chance exceeds in a thousand rows, or that the training runs had (`most_apart`). An ambient that jumps
-/// by more than 3 K from row to row (for rows more than 10 min apart: in 10 min) is held at its old value until it returns.
-/// Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+/// Extended Kalman filter for the reduced state z and the uncertain factors on its heat flows
+/// (compensation/control/observer_filter.h) with reading_i = l_i'z + ambient share, drift = (1 + g) l_d'(z - z_start) +
+/// ambient share. Which readings it uses, when it drops a sensor, what it does while the ambient jumps and how far it is
+/// trusted: compensation/control/state_observer.h. Both are C that a functional mock-up unit compiles, too.
 class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied

@@ -105,19 +105,24 @@ ModelLists lists_of(const FmuModel& model) {
   return lists;
 }
 
+/// In the order of observer_settings (compensation/control/observer_filter.h).
+std::vector<double> settings_of(const FmuObserver& observer) {
+  const compensation::ObserverSettings& s = observer.settings;
+  return {s.reading_K, s.model_K,     s.drift_um,       s.model_um, s.model_holds_s,
+          s.factor,    s.factor_walk, s.longest_step_s, s.period_s, s.most_apart};
+}
+
 std::string observer_text(const FmuModel& model, const ModelLists& lists) {
   if (!model.observer) return "const observer_data observer = {0};\n";
   const FmuObserver& o = *model.observer;
-  const compensation::ObserverSettings& s = o.settings;
+  std::string settings;
+  for (double value : settings_of(o)) settings += fmt::format("{}{:a}", settings.empty() ? "" : ", ", value);
   return array("factor_mean", lists.factor_mean) + array("factor_covariance", lists.factor_covariance) +
          fmt::format("static const int sensor_output[] = {{{}}};\n",
                      o.sensor_output.empty() ? "0" : fmt::format("{}", fmt::join(o.sensor_output, ", "))) +
          fmt::format(
-             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {:a}, {:a}, {:a}, {:a}, {:a}, {:a}, {:a}, "
-             "{:a},\n"
-             "  factor_mean, factor_covariance}};\n",
-             o.sensors.size(), o.drift_output, s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk,
-             s.longest_step_s, s.drift_um);
+             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {{{}}},\n  factor_mean, factor_covariance}};\n",
+             o.sensors.size(), o.drift_output, settings);
 }
 
 /// A block of numbers of eight bytes each, as binary/model_numbers.c reads it.
@@ -200,13 +205,10 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
   block.add_counts(model.observer ? 1 : 0);
   if (model.observer) {
     const FmuObserver& o = *model.observer;
-    const compensation::ObserverSettings& s = o.settings;
     block.add_counts(o.sensors.size());
     for (int output : o.sensor_output) block.add_counts(output);
     block.add_counts(o.drift_output);
-    for (double value :
-         {s.period_s, s.reading_K, s.model_K, s.model_holds_s, s.factor, s.factor_walk, s.longest_step_s, s.drift_um})
-      block.add(value);
+    block.add(settings_of(o));
     block.add(lists.factor_mean);
     block.add(lists.factor_covariance);
   }

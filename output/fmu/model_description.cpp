@@ -121,8 +121,9 @@ void add_observer(std::vector<FmuVariable>& list, const FmuModel& model) {
   add(drift + "_deviation", "its standard deviation by the filter", "um");
   for (const FmuOutput& out : model.outputs)
     add("model." + out.name, words_of(out.unit) + " of the model in the state that is believed", out.unit);
-  for (const std::string& sensor : o.sensors) add("doubted." + sensor, "1 where the thermometer is no longer believed", "");
+  for (const std::string& sensor : o.sensors) add("doubted." + sensor, "1 while the thermometer is not believed", "");
   add("doubted.ambient_temperature", "1 while the ambient thermometer is not believed", "");
+  add("trust", "0 to 1: trust in the model that its thermometers justify; a correction is the drift times it", "");
 }
 
 std::string interface_attributes(FmiVersion version, const FmuModel& model, bool is_co_simulation,

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/quantity.hpp"
+#include "base/record_channel.hpp"
 #include "output/fmu/fmu_file.hpp"
 #include "studies/prediction.hpp"
 #include "tests/fmu/importer.h"
@@ -310,7 +311,8 @@ TEST_P(Fmu, IsValidByTheSchemaAndTheSameBytesEachTime) {
   EXPECT_EQ(unit.files, Unit(fp3.order(GetParam()), name("again")).files);
 }
 
-/// Readings with noise, one of which goes wrong, and an ambient's thermometer that jumps for a while.
+/// Readings with noise, one of which goes wrong, two thermometers that are exchanged later, and an ambient's thermometer that jumps for
+/// longer than the rows that the observer goes back.
 compensation::ObservedRun troubled_run(const Fp3& fp3) {
   const Record predicted = fp3.predicted("chaotic");
   compensation::ObservedRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .ambient = {}, .readings = predicted};
@@ -324,13 +326,17 @@ compensation::ObservedRun troubled_run(const Fp3& fp3) {
       if (c.name == "t06" && i % 17 == 3) c.values[i] = NAN;
     }
   }
+  std::vector<double>& t07 = changeable_channel(run.readings, "t07").values;
+  std::vector<double>& t10 = changeable_channel(run.readings, "t10").values;
+  for (std::size_t i = 180; i < t07.size(); ++i) std::swap(t07[i], t10[i]);
   for (std::size_t i = 0; i < predicted.n_samples(); ++i) {
     run.ambient.time_s.push_back(predicted.time_s[i]);
-    run.ambient.value.push_back(fp3.scenario.machine->ambient.at(predicted.time_s[i]) + (i > 60 && i < 75 ? 6.0 : 0.0));
+    run.ambient.value.push_back(fp3.scenario.machine->ambient.at(predicted.time_s[i]) + (i > 60 && i < 100 ? 6.0 : 0.0));
   }
   return run;
 }
 
+// Both run the same C; the test is of what is exported to it: numbers, laws as tables, samples, rows of the past.
 TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   const Fp3& fp3 = Fp3::get();
   const scenarios::ReducedMachine& reduced = *fp3.model.reduced();
@@ -352,7 +358,8 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   for (double v : run.ambient.value) ambient.values.push_back(v + fp3.scenario.machine->reference_K - kZeroCelsius_K);
   inputs.channels.push_back(ambient);
   for (const std::string& s : observer.sensors()) inputs.channels.push_back(run.readings.at(s));
-  const std::vector<std::string> outputs = {"drift_y", "drift_y_deviation", "model.drift_y", "doubted.t05", "doubted.t06"};
+  const std::vector<std::string> outputs = {"drift_y",     "drift_y_deviation", "model.drift_y",
+                                            "doubted.t05", "doubted.t06",       "trust"};
   const std::size_t n = inputs.n_samples() - 1;  // the last row begins no step
   std::vector<double> believed;
   for (Eigen::Index i = 0; i < seen.outputs.cols(); ++i)
@@ -360,6 +367,13 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
         1e6 * seen.outputs(std::find(reduced.system.outputs.name.begin(), reduced.system.outputs.name.end(), "drift_y") -
                                reduced.system.outputs.name.begin(),
                            i));
+  std::vector<double> trust;
+  const auto follower = observer.follow();
+  for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
+    (void)follower->next(run);
+    trust.push_back(follower->deserved_trust());
+  }
+  EXPECT_LT(*std::min_element(trust.begin(), trust.end()), 0.999) << "while two thermometers are exchanged";
   const auto expect_it = [&](const Told& told) {
     EXPECT_LT(largest_gap(told.of[0], seen.drift_um, n), kSame_um);
     EXPECT_LT(largest_gap(told.of[1], seen.deviation_um, n), kSame_um);
@@ -367,6 +381,7 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
     EXPECT_EQ(told.of[3][100], 0.0);
     EXPECT_EQ(told.of[3][n - 1], 1.0) << "t05 fell out";
     EXPECT_EQ(told.of[4][n - 1], 0.0);
+    EXPECT_LT(largest_gap(told.of[5], trust, n), kSame_um);
   };
   const Told told = import_unit(unit, inputs, outputs, {.tells_behind_step = true});
   expect_it(told);

@@ -117,14 +117,16 @@ static int take(reader* r, const char** guid) {
     for (i = 0; i < observer.n_sensors; ++i) sensor_output[i] = (int)of[i];
     observer.sensor_output = sensor_output;
     observer.drift_output = count(r);
-    observer.period_s = number(r);
-    observer.reading_K = number(r);
-    observer.model_K = number(r);
-    observer.model_holds_s = number(r);
-    observer.factor = number(r);
-    observer.factor_walk = number(r);
-    observer.longest_step_s = number(r);
-    observer.drift_um = number(r);
+    observer.settings.reading_K = number(r);
+    observer.settings.model_K = number(r);
+    observer.settings.drift_um = number(r);
+    observer.settings.model_um = number(r);
+    observer.settings.model_holds_s = number(r);
+    observer.settings.factor = number(r);
+    observer.settings.factor_walk = number(r);
+    observer.settings.longest_step_s = number(r);
+    observer.settings.period_s = number(r);
+    observer.settings.most_apart = number(r);
     observer.factor_mean = list(r, f);
     observer.factor_covariance = list(r, f * f);
   }

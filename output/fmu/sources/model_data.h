@@ -4,6 +4,8 @@
 #ifndef DRIFTWRIGHT_MODEL_DATA_H
 #define DRIFTWRIGHT_MODEL_DATA_H
 
+#include "observer_filter.h"
+
 /* A law of one variable x >= 0 of the drive: 0 at x = 0, and behind it a polynomial of log x in Chebyshev's form in each piece.
  * Below the first piece it is what it is at the piece's beginning. */
 typedef struct {
@@ -56,8 +58,7 @@ typedef struct {
   int n_sensors;
   const int* sensor_output; /* of each sensor, index of the output that it reads */
   int drift_output;
-  double period_s; /* from sample to sample */
-  double reading_K, model_K, model_holds_s, factor, factor_walk, longest_step_s, drift_um;
+  observer_settings settings;      /* period_s: from sample to sample */
   const double* factor_mean;       /* of the sources, the exchanges and the drift, minus 1 */
   const double* factor_covariance; /* by rows */
 } observer_data;
