@@ -153,8 +153,10 @@ void inject(const InjectOptions& options);
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
 
 struct RecordOptions : CommonOptions, studies::RecordPaths {
-  std::string target;                       ///< displacement of the records; empty: that of the scenario's `study`
-  std::string probe, probe_noise = "1 um";  ///< time between two probings, "60 min"; empty: the axis is not probed
+  std::string target;                  ///< displacement of the records; empty: that of the scenario's `study`
+  std::string probe;                   ///< times between two probings, "60 min, 4 h"; empty: the axis is not probed
+  std::string probe_noise = "1 um";    ///< of a probing, 1 sigma
+  std::string probing_time = "2 min";  ///< that a probing takes
 };
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);

@@ -34,31 +34,17 @@ std::string allowed_words(const ProbePlan& plan) {
                      100.0 * plan.kept_free);
 }
 
-/// Largest distance of two neighbouring places, the end of the job included [s].
-double longest_gap_s(const ProbePlan& plan) {
-  double before_s = 0.0, most_s = 0.0;
-  for (const ProbePlace& p : plan.job.places) {
-    most_s = std::max(most_s, p.time_s - before_s);
-    before_s = p.time_s;
-  }
-  return std::max(most_s, plan.job.work.back().until_s - before_s);
-}
-
-/// How the plan compares with equal intervals, and why it is no better where it is not.
+/// How the plan compares with equal intervals, and why it is not much better where it is not.
 std::string beside_equal(const ProbePlan& plan) {
   const ProbeSequence* equal = plan.equal();
   if (!plan.best || plan.best->probings.empty() || !equal) return "";
-  const double saved = 1.0 - plan.best->worst_um / equal->worst_um;
-  std::string words = fmt::format(" At equal intervals as many leave {:.1f} µm", equal->worst_um);
-  if (saved >= 1.0 / 3.0) return fmt::format("{}, {:.0f} % more.", words, 100.0 * (1.0 / (1.0 - saved) - 1.0));
-  const double gap_s = longest_gap_s(plan);
-  const double interval_s = plan.job.work.back().until_s / static_cast<double>(plan.best->probings.size() + 1);
+  constexpr double kMuch = 2.0 / 3.0;
   return fmt::format(
-      "{}{}.", words,
-      gap_s < 0.5 * interval_s
-          ? ": the errors of a correction grow alike at all times and places are close to each other, so equal "
-            "intervals are nearly the best"
-          : "");
+      " At equal intervals as many leave {:.1f} µm{}.", equal->worst_um,
+      plan.best->worst_um <= kMuch * equal->worst_um
+          ? ""
+          : ": errors of a correction grow alike at all times, so equal intervals are nearly the best wherever "
+            "places of this job are near them");
 }
 
 Verdict verdict_of(const ProbePlan& plan) {
@@ -171,7 +157,8 @@ Plot curve_plot(const ProbePlan& plan) {
   Plot plot{.title = "Minutes against micrometres",
             .x_label = "time of all probings [min]",
             .y_label = "largest half width of the 95 % interval [µm]",
-            .series = {{.label = "planned"}, {.label = "equal intervals", .style = Series::Style::kDashed}},
+            .series = {{.label = "planned", .style = Series::Style::kPoints},
+                       {.label = "equal intervals", .style = Series::Style::kPoints}},
             .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
             .marks = {}};
   for (const studies::ProbeCurveRow& row : plan.curve) {

@@ -94,12 +94,12 @@ def main():
         # two parts of an NC program with a rest of 30 min between them
         places_min = [0, 20.5, 45.5, 90, 110.5, 135.5]
         axis = Axis(model, 0.5)
-        tolerance_um = 1.3 * axis.worst_um(places_min, 150)
+        tolerance_um = 1.05 * axis.worst_um([0, 25, 50], 75)  # the longest work without a place is 25 min
         words = ["shop.yaml", "--job", "part.ngc", "--model", model, "--parts", "2", "--between", "30 min", "--probe-noise", "0.5 um", "--probing-time", "3 min"]
         found, said = plan("part", *words, "--tolerance", f"{tolerance_um:.6f} um")
         rows = found["probings"]
         at_min = [row["at_min"] for row in rows]
-        expect(found["n_places"] == 6 and set(at_min) <= set(places_min), f"places {at_min}")
+        expect(found["n_places"] == 6 and len(rows) > 2 and set(at_min) <= set(places_min), f"places {at_min}")
         expect(all(row["before_um"] <= tolerance_um + 1e-3 for row in rows), "each is before the tolerance is passed")
         lines = {0: None, 20.5: 5, 45.5: 7, 90: None, 110.5: 5, 135.5: 7}
         expect(all(row["line"] == lines[row["at_min"]] for row in rows), "lines of the program")
