@@ -103,14 +103,16 @@ struct PlanTestOptions : CommonOptions, ShardOptions {
 void plan_test(const PlanTestOptions& options);
 
 struct ProbePlanOptions : CommonOptions {
-  std::string job;           ///< a cyclogram of the scenario, a record CSV or an NC program
-  std::string model;         ///< a predictor's file of `validate`
-  std::string tolerance;     ///< such as "10 um"; empty: the study's, else 10 um
-  std::string margin;        ///< share of the tolerance that is kept free, such as "50 %"; empty: none
-  std::string noise, lag;    ///< of the probe; empty: the file's
-  std::string probing_time;  ///< time of a probing, such as "2 min", which is also the default for empty
-  int parts = 1;             ///< number of times that the job is done
-  std::string between;       ///< rest between two of them, such as "2 min"; empty: none
+  std::string job;                               ///< a cyclogram of the scenario, a record CSV or an NC program
+  std::string model;                             ///< a predictor's file of `validate`
+  std::string tolerance;                         ///< such as "10 um"; empty: the study's, else 10 um
+  std::string margin;                            ///< share of the tolerance that is kept free, such as "50 %"; empty: none
+  std::string noise, lag;                        ///< of the probe; empty: the file's
+  std::string probing_time;                      ///< time of a probing, such as "2 min", which is also the default for empty
+  int parts = 1;                                 ///< number of times that the job is done
+  std::string between;                           ///< rest between two of them, such as "2 min"; empty: none
+  std::vector<std::string> points;               ///< record CSVs with errors of points; empty: no choice of points
+  std::vector<std::string> may_probe, counting;  ///< displacements of these records; empty: all
 };
 /// Plans the fewest probings that keep what a correction leaves within a tolerance during a job.
 void probe_plan(const ProbePlanOptions& options);
