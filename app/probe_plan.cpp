@@ -5,6 +5,7 @@
 
 #include "app/job_program.hpp"
 #include "app/results.hpp"
+#include "base/mapped_record.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/probe_plan_document.hpp"
 #include "output/predictor_file.hpp"
@@ -26,7 +27,7 @@ double fastest_rpm(const NcProgram& program) {
   return most;
 }
 
-/// A job, and what the predictor's file says against using it there; "" for nothing.
+/// A job, and its highest speed.
 struct ReadJob {
   studies::ProbeJob job;
   double most_rpm = 0.0;
@@ -68,12 +69,21 @@ void probe_plan(const ProbePlanOptions& options) {
   if (read.job.places.size() > kMostPlaces)
     throw InputError(fmt::format("--job '{}' with --parts {}: there are {} places for a probing; at most {} are allowed",
                                  options.job, options.parts, read.job.places.size(), kMostPlaces));
+  std::optional<studies::PointChoice> points;
+  if (!options.points.empty()) {
+    std::vector<Record> records;
+    for (const std::string& path : options.points) records.push_back(read_record(path, scenario.columns).record);
+    constexpr std::size_t kMostPoints = 8;
+    points = studies::choose_points(studies::point_errors(records), options.may_probe, options.counting, kMostPoints,
+                                    probe.noise_um);
+  }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   studies::ProbePlan plan = studies::plan_probings(std::move(read.job), studies::probed_axis(predictor, probe, probing_s),
                                                    tolerance_um, kept_free);
   plan.predictor = predictor.name;
   plan.target = predictor.target;
+  plan.points = std::move(points);
   std::vector<std::string> warnings;
   if (file.covered && read.most_rpm > file.covered->most_rpm)
     warnings.push_back(

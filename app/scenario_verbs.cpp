@@ -220,6 +220,20 @@ void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--between", options.between, "time at rest between two parts, such as '2 min' [none]");
+  CLI::Option* points =
+      verb->add_option(
+              "--points", options.points,
+              "record CSV with errors of several points (rings, spheres, the spindle nose) as displacements in um, of "
+              "`simulate` or measured; also says which of the points to probe; may be repeated")
+          ->allow_extra_args(false);
+  verb->add_option("--may-probe", options.may_probe,
+                   "displacement of these records that can be probed; may be repeated [all that they share]")
+      ->needs(points)
+      ->allow_extra_args(false);
+  verb->add_option("--counts", options.counting,
+                   "displacement of these records whose error must be known; may be repeated [all that they share]")
+      ->needs(points)
+      ->allow_extra_args(false);
   verb->callback([&] { app::probe_plan(options); });
 }
 

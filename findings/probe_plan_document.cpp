@@ -170,6 +170,39 @@ Plot curve_plot(const ProbePlan& plan) {
   return plot;
 }
 
+Table points_table(const studies::PointChoice& choice) {
+  Table table{
+      .key = "points",
+      .title = "What to probe",
+      .caption = fmt::format(
+          "Left: root mean square of the standard deviations of the errors of {} points, of {} rows, after a probing of "
+          "these points with a noise of {:.3g} µm each. Least mean: A-optimal. Most information: D-optimal.",
+          choice.counting.size(), choice.errors.n_rows, choice.noise_um),
+      .columns = {{.key = "n", .title = "points"},
+                  {.key = "least_mean", .title = "least mean"},
+                  um_column("left_um", "left", 2),
+                  um_column("worst_um", "worst point", 2),
+                  {.key = "worst", .title = "which"},
+                  {.key = "most_information", .title = "most information"},
+                  um_column("information_left_um", "left", 2),
+                  {.key = "nats", .title = "information", .unit = "nats", .digits = output::decimals(1)}}};
+  const auto names = [&](const studies::PointSet& set) {
+    std::vector<std::string> list;
+    for (std::size_t k : set.points) list.push_back(choice.errors.names[k]);
+    return list;
+  };
+  const studies::PointSet& none = choice.without;
+  table.rows.push_back(
+      {0, names(none), none.left_um, none.worst_um, choice.errors.names[none.worst], names(none), none.left_um, none.nats});
+  for (std::size_t n = 0; n < choice.by_variance.size(); ++n) {
+    const studies::PointSet& a = choice.by_variance[n];
+    const studies::PointSet& d = choice.by_determinant[n];
+    table.rows.push_back(
+        {n + 1, names(a), a.left_um, a.worst_um, choice.errors.names[a.worst], names(d), d.left_um, d.nats});
+  }
+  return table;
+}
+
 std::vector<std::string> what_next(const ProbePlan& plan) {
   std::vector<std::string> sentences;
   if (!plan.best || plan.best->probings.empty()) return sentences;
@@ -236,6 +269,7 @@ output::Document document_of(const ProbePlan& plan, const scenarios::Scenario& s
                      .datum = plan.axis.is_known_at_start});
   add(numbers, probings_table(plan));
   add(numbers, curve_table(plan));
+  if (plan.points) add(numbers, points_table(*plan.points));
   add(numbers, curve_plot(plan));
   if (!warnings.empty()) add(numbers, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});
   body.sections.push_back(std::move(numbers));

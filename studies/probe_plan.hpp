@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "compensation/predictors/deployed_predictor.hpp"
+#include "studies/probe_points.hpp"
 
 namespace driftwright::studies {
 
@@ -132,6 +133,7 @@ struct ProbePlan {
   std::optional<ProbeSequence> best = {};
   /// For 0, 1, 2 ... probings, as far as more help; every so many for more than 40.
   std::vector<ProbeCurveRow> curve = {};
+  std::optional<PointChoice> points = {};  ///< what to probe, where records with errors of points were given
 
   [[nodiscard]] double allowed_um() const { return tolerance_um * (1.0 - kept_free); }
   /// Probings at equal intervals, as many as in `best`; null without it.

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`driftwright probe-plan`: the plan of an NC program and of a cyclogram, computed again by closed forms, against every other plan; files, and messages about wrong input.
+"""`driftwright validate --probe` with several intervals. `driftwright probe-plan`: the plan of an NC program and of a cyclogram, computed again by closed forms, against every other plan; files, and messages about wrong input.
 
     probe_plan_verb_test.py PROGRAM
 """
@@ -87,9 +87,26 @@ def main():
         (folder / "shop.yaml").write_text(SHOP + SCHEDULE)
         (folder / "plain.yaml").write_text(SHOP)
         (folder / "part.ngc").write_text(PART)
-        done = call("validate", "shop.yaml", "--target", "nose_z", "--train", "a.csv", "--train", "b.csv", "--test", "c.csv", "-o", "fit")
+        done = call("validate", "shop.yaml", "--target", "nose_z", "--train", "a.csv", "--train", "b.csv", "--test", "c.csv", "--probe", "30 min, 2 h", "--probing-time", "3 min", "-o", "fit")
         expect(done.returncode == 0, f"validate: {done.stderr.strip()[-300:]}")
         model = folder / "fit/models/no_correction.json"
+        judged = json.loads((folder / "fit/summary.json").read_text())["validation"]
+        matrix = {(row["name"], row["every_min"]): row for row in judged["probing_matrix"]}
+        none = [matrix["no correction", every] for every in (None, 120, 30)]
+        expect(none[0]["rms_um"] > none[1]["rms_um"] > none[2]["rms_um"], f"the last probing alone: {[row['rms_um'] for row in none]} um without, each 2 h, each 30 min")
+        expect([row["lost_min_per_h"] for row in none] == [0, 1.5, 6], "minutes lost")
+        first = {row["name"]: row for row in judged["probing"]}
+        expect(all(abs(matrix[name, 30]["rms_um"] - row["probed_rms_um"]) < 1e-5 * row["probed_rms_um"] for name, row in first.items()), "both tables agree at the first interval")
+        members = [row["rms_um"] for (name, every), row in matrix.items() if every == 30 and name not in ("no correction", "blend", "weights by probings") and "training runs" not in name]
+        weighted = matrix["weights by probings", 30]
+        expect(weighted["rms_um"] < sorted(members)[len(members) // 2] * 1.05, f"weights leave {weighted['rms_um']} um, members {sorted(members)}")
+        expect(weighted["failed_rms_um"] is not None and weighted["judged"] > 1, "weights with failed sensors")
+        faults = {row["name"]: row for row in judged["probe_faults"]}
+        ridge = faults["ridge, all sensors"]
+        expect(ridge["biased_peak_um"] > ridge["good_peak_um"] and ridge["bound_um"] > 4, f"a biased probe: {ridge}")
+        for words, says in [(["--probe", "60 min,"], "--probe"), (["--probe", "60 min, 0 min"], "--probe"), (["--probe", "60 min", "--probing-time", "2"], "--probing-time")]:
+            done = call("validate", "shop.yaml", "--target", "nose_z", "--train", "a.csv", "--test", "c.csv", *words, "-o", "refused")
+            expect(done.returncode == 2 and says in done.stderr, f"{words}: exit {done.returncode}, {done.stderr.strip()[:160]}")
 
         # two parts of an NC program with a rest of 30 min between them
         places_min = [0, 20.5, 45.5, 90, 110.5, 135.5]
@@ -133,12 +150,23 @@ def main():
         expect("No number of probings" in said and found["probings"] == [], said[:200])
         expect((folder / "never/report.html").stat().st_size > 1000 and list((folder / "part/figures").glob("*.svg")), "report and figures")
 
+        # a table whose rings shift and grow: its ends tell most
+        (folder / "rings.csv").write_text("time_s,ring_1_um,ring_2_um,ring_3_um\n" + "".join(
+            f"{60 * i},{5 * a - 10 * b:.4f},{5 * a:.4f},{5 * a + 10 * b:.4f}\n" for i, (a, b) in enumerate((draw.gauss(0, 1), draw.gauss(0, 1)) for _ in range(500))))
+        found, said = plan("points", "plain.yaml", "--job", "shift", "--model", model, "--tolerance", "9 um", "--points", "rings.csv", "--probe-noise", "0.5 um")
+        sets = {row["n"]: row for row in found["points"]}
+        expect(sets[2]["least_mean"] == ["ring_1", "ring_3"] == sets[2]["most_information"] and sets[2]["left_um"] < 0.6 < sets[1]["left_um"] < sets[0]["left_um"], f"points {sets}")
+        found, said = plan("inner", "plain.yaml", "--job", "shift", "--model", model, "--tolerance", "9 um", "--points", "rings.csv", "--may-probe", "ring_2", "--counts", "ring_2")
+        expect([row["n"] for row in found["points"]] == [0, 1] and found["points"][1]["left_um"] < 1.0, f"{found['points']}")
+
         broken = json.loads(model.read_text())
         broken["probing"] = None
         (folder / "broken.json").write_text(json.dumps(broken))
         for words, says in [(["plain.yaml", "--job", "part.ngc", "--model", model], "schedule"), (["plain.yaml", "--job", "shift"], "--model"), (["plain.yaml", "--model", model], "--job"),
                             (["plain.yaml", "--job", "nothing", "--model", model], "nothing"), (["plain.yaml", "--job", "still", "--model", model], "still"),
                             (["plain.yaml", "--job", "shift", "--model", "plain.yaml"], "plain.yaml"), (["plain.yaml", "--job", "shift", "--model", "broken.json"], "hash"),
+                            (["plain.yaml", "--job", "shift", "--model", model, "--points", "rings.csv", "--counts", "ring_9"], "ring_9"), (["plain.yaml", "--job", "shift", "--model", model, "--points", "a.csv"], "two displacements"),
+                            (["plain.yaml", "--job", "shift", "--model", model, "--counts", "ring_1"], "--points"),
                             *[(["plain.yaml", "--job", "shift", "--model", model, option, value], option) for option, value in
                               (("--tolerance", "0 um"), ("--tolerance", "5"), ("--margin", "99 %"), ("--probe-noise", "0 um"), ("--probe-lag", "-1 s"), ("--probing-time", "2 h"), ("--parts", "0"), ("--between", "x"))]]:
             done = call("probe-plan", *words, "-o", "refused")
