@@ -72,7 +72,7 @@ Verdict verdict_of(const ProbePlan& plan) {
       .kind = Verdict::Kind::kGood,
       .title = fmt::format("{} {} the tolerance", counted(plan.best->probings.size()),
                            plan.best->probings.size() == 1 ? "keeps" : "keep"),
-      .text = fmt::format("They cost {:.1f} min. The half width of the 95 % interval of {} stays within {:.1f} µm at each "
+      .text = fmt::format("{:.1f} min are lost. The half width of the 95 % interval of {} stays within {:.1f} µm at each "
                           "moment of the work; allowed are {}. Without a probing it reaches {:.1f} µm.{}",
                           plan.best->lost_s / 60.0, plan.target, plan.best->worst_um, allowed,
                           plan.curve.front().best.worst_um, beside_equal(plan))};
