@@ -106,18 +106,18 @@ TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
   EXPECT_FALSE(probed_run(alone, m.time_s, how).noticed_at);
 }
 
-// A stuck probe goes on reading the same: the filter takes it for an error that stays, and corrects again and again.
+// A stuck probe goes on reading 2 µm: the filter takes it for an error that stays, and moves the axis by 2 µm at each of 14
+// probings. An hour of this process has a deviation of 0.7 µm, so four deviations are more than that, and none is refused.
 TEST(ProbedRun, AStuckProbeMovesTheAxisEachTime) {
-  const ResidualProcess p{5.0, 360000.0};
-  Machine m = drawn(p, 900, 5);
-  for (std::size_t i = 0; i < m.left_um.size(); ++i) m.left_um[i] = 2.0;
-  const DeployedPredictor d = with_process(p, 0.01);
+  Machine m = drawn({16.0, 3.6e6}, 900, 5);
+  for (double& um : m.left_um) um = 2.0;
+  const DeployedPredictor d = with_process({16.0, 3.6e6}, 0.01);
   const std::vector<ProbedMember> alone = {{&d, m.left_um}};
-  // it has its fault from the second probing on; the first one read 2 µm
   const ProbedRun run =
       probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0, .fault = ProbeFault::kStuck, .fails_at_s = 7000.0});
-  EXPECT_GT(run.left.peak_abs, 3.9);
-  EXPECT_TRUE(run.noticed_at);  // jumps of 2 µm each are far from what is expected
+  EXPECT_EQ(run.n_probings, 14);
+  EXPECT_FALSE(run.noticed_at);
+  EXPECT_NEAR(run.left.peak_abs, 26.0, 0.5);
 }
 
 }  // namespace
