@@ -20,7 +20,7 @@ using studies::ProbePlace;
 using studies::ProbePlan;
 using studies::ProbeSequence;
 
-std::string counted(std::size_t n) {
+std::string probings_words(std::size_t n) {
   return n == 1 ? "1 probing" : fmt::format("{} probings", n);
 }
 
@@ -58,7 +58,7 @@ Verdict verdict_of(const ProbePlan& plan) {
             "Allowed are {}. With {} the half width of the 95 % interval is still {:.1f} µm, {:.0f} min from the start of "
             "the job{}. Allow a probing in between (a tool change, M0, or a pause between parts), a larger tolerance, or "
             "use a predictor that leaves less.",
-            allowed, counted(most.probings.size()), most.worst_um, most.worst_s / 60.0,
+            allowed, probings_words(most.probings.size()), most.worst_um, most.worst_s / 60.0,
             most.probings.empty() ? "" : "; a place for a probing is missing before, or the probe is too noisy")};
   }
   if (plan.best->probings.empty())
@@ -70,7 +70,7 @@ Verdict verdict_of(const ProbePlan& plan) {
                             plan.target, plan.best->worst_um, allowed)};
   return {
       .kind = Verdict::Kind::kGood,
-      .title = fmt::format("{} {} the tolerance", counted(plan.best->probings.size()),
+      .title = fmt::format("{} {} the tolerance", probings_words(plan.best->probings.size()),
                            plan.best->probings.size() == 1 ? "keeps" : "keep"),
       .text = fmt::format("{:.1f} min are lost. The half width of the 95 % interval of {} stays within {:.1f} µm at each "
                           "moment of the work; allowed are {}. Without a probing it reaches {:.1f} µm.{}",
@@ -104,7 +104,7 @@ Table probings_table(const ProbePlan& plan) {
   return table;
 }
 
-Table curve_table(const ProbePlan& plan) {
+Table probe_curve_table(const ProbePlan& plan) {
   Table table{.key = "curve",
               .title = "Minutes against micrometres",
               .caption =
@@ -141,7 +141,7 @@ Plot widths_plot(const ProbePlan& plan) {
             .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
             .marks = {}};
   const ProbeSequence& shown = plan.best ? *plan.best : plan.curve.back().best;
-  plot.series.push_back(width_series(plan, shown, fmt::format("planned, {}", counted(shown.probings.size()))));
+  plot.series.push_back(width_series(plan, shown, fmt::format("planned, {}", probings_words(shown.probings.size()))));
   if (const ProbeSequence* equal = plan.equal(); equal && !equal->probings.empty())
     plot.series.push_back(width_series(plan, *equal, "as many at equal intervals", Series::Style::kDashed));
   Series places{.label = "places for a probing", .style = Series::Style::kPoints};
@@ -153,7 +153,7 @@ Plot widths_plot(const ProbePlan& plan) {
   return plot;
 }
 
-Plot curve_plot(const ProbePlan& plan) {
+Plot probe_curve_plot(const ProbePlan& plan) {
   Plot plot{.title = "Minutes against micrometres",
             .x_label = "time of all probings [min]",
             .y_label = "largest half width of the 95 % interval [µm]",
@@ -268,9 +268,9 @@ output::Document document_of(const ProbePlan& plan, const scenarios::Scenario& s
                      .words = "the drift counts from the start of the job",
                      .datum = plan.axis.is_known_at_start});
   add(numbers, probings_table(plan));
-  add(numbers, curve_table(plan));
+  add(numbers, probe_curve_table(plan));
   if (plan.points) add(numbers, points_table(*plan.points));
-  add(numbers, curve_plot(plan));
+  add(numbers, probe_curve_plot(plan));
   if (!warnings.empty()) add(numbers, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});
   body.sections.push_back(std::move(numbers));
   return document;
