@@ -134,6 +134,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::WarmUpVerbOptions warmup;
   app::PlaceOptions place;
   app::PlanTestOptions plan_test;
+  app::ProbePlanOptions probe_plan;
   app::ScheduleVerbOptions schedule;
   app::InjectOptions inject;
   app::RecordOptions select, validate;
@@ -154,6 +155,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::add_warmup(cli, warmup);
   app::add_place(cli, place);
   app::add_plan_test(cli, plan_test);
+  app::add_probe_plan(cli, probe_plan);
   app::add_schedule(cli, schedule);
   app::add_inject(cli, inject);
   app::add_select(cli, select);

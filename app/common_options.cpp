@@ -51,10 +51,14 @@ void add_records(CLI::App* verb, RecordOptions& options, bool judges) {
       ->allow_extra_args(false);
   verb->add_option("--target", options.target,
                    "displacement (a column of the records) to predict; only needed if the scenario has no block `study`");
-  CLI::Option* probe = verb->add_option("--probe", options.probe,
-                                        "time between two probings of the corrected axis, such as '60 min'; shows what each "
-                                        "strategy then leaves [not probed]");
+  CLI::Option* probe =
+      verb->add_option("--probe", options.probe,
+                       "time between two probings of the corrected axis, such as '60 min', or several, such "
+                       "as '30 min, 60 min, 4 h'; shows what each strategy then leaves [not probed]");
   verb->add_option("--probe-noise", options.probe_noise, "noise of one probing, 1 sigma")
+      ->needs(probe)
+      ->capture_default_str();
+  verb->add_option("--probing-time", options.probing_time, "time that one probing takes; the table of intervals counts it")
       ->needs(probe)
       ->capture_default_str();
 }

@@ -188,6 +188,55 @@ void add_plan_test(CLI::App& cli, PlanTestOptions& options) {
   verb->callback([&] { app::plan_test(options); });
 }
 
+void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
+  CLI::App* verb =
+      add_verb(cli, "probe-plan",
+               "plans the fewest probings that keep a corrected axis within its tolerance during a job, at tool "
+               "changes, halts, rests and between parts (docs/how-to/probing.md)",
+               "probe-plan scenarios/fp3_spindle.yaml --job scenarios/parts/fp3_part.ngc --parts 4 --between '5 "
+               "min' --model results/probed/models/no_correction.json --tolerance '12 um' -o results/probe_plan",
+               options);
+  verb->add_option("--job", options.job,
+                   "the job: a cyclogram of the scenario, a record CSV with the column speed_rpm, or an NC program")
+      ->required();
+  verb->add_option(
+          "--model", options.model,
+          "predictor that corrects the axis: a file models/NAME.json written by `validate`; no_correction.json: the "
+          "last probing alone corrects it")
+      ->required();
+  verb->add_option("--tolerance", options.tolerance,
+                   "what the corrected axis may be off at each moment of the work with 95 %, such as '10 um' [the study's "
+                   "tolerance, else 10 um]");
+  verb->add_option(
+      "--margin", options.margin,
+      "share of the tolerance that is kept free for all that is not thermal, such as '50 %'; `follow` asks for a "
+      "probing at 50 % [none]");
+  verb->add_option("--probe-noise", options.noise,
+                   "standard deviation of a probing, such as '1 um' [that of the model's file]");
+  verb->add_option("--probe-lag", options.lag,
+                   "time from the touch until the correction has its value, such as '20 s' [that of the model's file]");
+  verb->add_option("--probing-time", options.probing_time, "time that a probing takes, such as '90 s' [2 min]");
+  verb->add_option("--parts", options.parts, "number of parts that are made one after another")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--between", options.between, "time at rest between two parts, such as '2 min' [none]");
+  CLI::Option* points =
+      verb->add_option(
+              "--points", options.points,
+              "record CSV with errors of several points (rings, spheres, the spindle nose) as displacements in um, of "
+              "`simulate` or measured; also says which of the points to probe; may be repeated")
+          ->allow_extra_args(false);
+  verb->add_option("--may-probe", options.may_probe,
+                   "displacement of these records that can be probed; may be repeated [all that they share]")
+      ->needs(points)
+      ->allow_extra_args(false);
+  verb->add_option("--counts", options.counting,
+                   "displacement of these records whose error must be known; may be repeated [all that they share]")
+      ->needs(points)
+      ->allow_extra_args(false);
+  verb->callback([&] { app::probe_plan(options); });
+}
+
 void add_schedule(CLI::App& cli, ScheduleVerbOptions& options) {
   CLI::App* verb = add_verb(
       cli, "schedule",

@@ -22,9 +22,15 @@ void write_strategies(const compensation::StrategyMatrix& matrix, output::Result
 
 std::optional<compensation::Probing> probing_of(const RecordOptions& options) {
   if (options.probe.empty()) return std::nullopt;
-  const compensation::Probing p{option_quantity("--probe", options.probe, "s"),
-                                option_quantity("--probe-noise", options.probe_noise, "um")};
-  if (!(p.every_s > 0.0) || !(p.noise_um > 0.0))
+  compensation::Probing p{.every_s = {},
+                          .noise_um = option_quantity("--probe-noise", options.probe_noise, "um"),
+                          .takes_s = option_quantity("--probing-time", options.probing_time, "s", 0.0, 3600.0)};
+  for (std::size_t from = 0; from <= options.probe.size();) {  // between commas
+    const std::size_t comma = std::min(options.probe.find(',', from), options.probe.size());
+    p.every_s.push_back(option_quantity("--probe", options.probe.substr(from, comma - from), "s"));
+    from = comma + 1;
+  }
+  if (!(p.noise_um > 0.0) || std::any_of(p.every_s.begin(), p.every_s.end(), [](double s) { return !(s > 0.0); }))
     throw InputError(fmt::format("--probe '{}' and --probe-noise '{}' must be above 0", options.probe, options.probe_noise));
   return p;
 }

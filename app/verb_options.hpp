@@ -21,6 +21,7 @@ void add_predict(CLI::App& cli, PredictOptions& options);
 void add_warmup(CLI::App& cli, WarmUpVerbOptions& options);
 void add_place(CLI::App& cli, PlaceOptions& options);
 void add_plan_test(CLI::App& cli, PlanTestOptions& options);
+void add_probe_plan(CLI::App& cli, ProbePlanOptions& options);
 void add_schedule(CLI::App& cli, ScheduleVerbOptions& options);
 void add_sweep(CLI::App& cli, SweepOptions& options);
 void add_select(CLI::App& cli, RecordOptions& options);

@@ -102,6 +102,21 @@ struct PlanTestOptions : CommonOptions, ShardOptions {
 /// Plans the test programme after which a diagnosis would name most effects, before anything is measured.
 void plan_test(const PlanTestOptions& options);
 
+struct ProbePlanOptions : CommonOptions {
+  std::string job;                               ///< a cyclogram of the scenario, a record CSV or an NC program
+  std::string model;                             ///< a predictor's file of `validate`
+  std::string tolerance;                         ///< such as "10 um"; empty: the study's, else 10 um
+  std::string margin;                            ///< share of the tolerance that is kept free, such as "50 %"; empty: none
+  std::string noise, lag;                        ///< of the probe; empty: the file's
+  std::string probing_time;                      ///< time of a probing, such as "2 min", which is also the default for empty
+  int parts = 1;                                 ///< number of times that the job is done
+  std::string between;                           ///< rest between two of them, such as "2 min"; empty: none
+  std::vector<std::string> points;               ///< record CSVs with errors of points; empty: no choice of points
+  std::vector<std::string> may_probe, counting;  ///< displacements of these records; empty: all
+};
+/// Plans the fewest probings that keep what a correction leaves within a tolerance during a job.
+void probe_plan(const ProbePlanOptions& options);
+
 struct ScheduleVerbOptions : CommonOptions {
   std::string program;  ///< NC program
   std::string policy;   ///< empty: the scenario's
@@ -140,8 +155,10 @@ void inject(const InjectOptions& options);
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
 
 struct RecordOptions : CommonOptions, studies::RecordPaths {
-  std::string target;                       ///< displacement of the records; empty: that of the scenario's `study`
-  std::string probe, probe_noise = "1 um";  ///< time between two probings, "60 min"; empty: the axis is not probed
+  std::string target;                  ///< displacement of the records; empty: that of the scenario's `study`
+  std::string probe;                   ///< times between two probings, "60 min, 4 h"; empty: the axis is not probed
+  std::string probe_noise = "1 um";    ///< of a probing, 1 sigma
+  std::string probing_time = "2 min";  ///< that a probing takes
 };
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "app/job_program.hpp"
 #include "app/results.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/plausibility.hpp"
@@ -15,19 +16,10 @@ namespace {
 
 /// A cyclogram of the scenario, a record CSV, or an NC program as the scenario's schedule reads it.
 Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
-  const std::filesystem::path path(then);
-  const bool is_known =
-      std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(), [&](const auto& c) { return c.name == then; });
-  if (is_known || path.extension() == ".csv" || !std::filesystem::is_regular_file(path))
-    return studies::named_cyclogram(scenario, then);
-  if (!scenario.schedule)
-    throw InputError(
-        fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
-                    "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
-                    then));
-  const scenarios::ScheduleSettings& settings = *scenario.schedule;
-  Cyclogram job = scenarios::cyclogram_of(read_nc_program(then, settings.nc), path.stem().string(), settings.resolution_s,
-                                          settings.cutting_power_W);
+  if (!names_nc_program(scenario, then)) return studies::named_cyclogram(scenario, then);
+  const NcProgram program = read_job_program(scenario, then);
+  Cyclogram job = scenarios::cyclogram_of(program, std::filesystem::path(then).stem().string(),
+                                          scenario.schedule->resolution_s, scenario.schedule->cutting_power_W);
   if (job.sections.empty()) throw InputError(fmt::format("{}: the program takes no time; it warms nothing", then));
   scenarios::check_cyclogram(scenario, job);
   return job;

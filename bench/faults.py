@@ -81,6 +81,7 @@ def verbs(small, first, drawn, sweep, record, others):
         "select": ["select", "STUDY", "--train", shift, "--train", climb, "-o", "OUT"],
         "validate": ["validate", "STUDY", "--train", shift, "--train", climb, "--test", other, "-o", "OUT"],
         "compensate": ["compensate", "STUDY", "--model", "MODEL", "--through", "none", "--measured", other, "-o", "OUT"],
+        "probe-plan": ["probe-plan", small, "--job", "other", "--model", "MODEL", "-o", "OUT"],
         "calibrate": ["calibrate", first, "--measured", shift, "-o", "OUT"],
         "diagnose": ["diagnose", first, "--measured", shift, "-o", "OUT"],
         "sweep": ["sweep", sweep, "-o", "OUT"],

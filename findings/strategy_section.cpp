@@ -207,7 +207,9 @@ Section strategy_numbers(const StrategyMatrix& m, const JudgedStrategy* chosen) 
   if (const std::string axis = axis_text(m); !axis.empty()) add(section, output::Text{axis});
   if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
   add(section, short_table(m));
-  if (Table probing = probing_table(m); !probing.rows.empty()) add(section, std::move(probing));
+  for (Table probing : {probing_table(m), probing_matrix(m), probe_faults_table(m)}) {
+    if (!probing.rows.empty()) add(section, std::move(probing));
+  }
   if (const LinearisedModel* linearised = linearised_of(m))
     add(section, output::Text{fmt::format(
                      "Films or heat of this machine follow temperatures. Strategies with physics use a model that is {}, "

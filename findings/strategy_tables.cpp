@@ -240,11 +240,43 @@ Table strategies_table(const StrategyMatrix& m) {
   return table;
 }
 
+namespace {
+
+constexpr const char* kWeighted = "weights by probings";
+
+/// RMS over all rows, and the largest peak, of several runs.
+struct LeftOverRuns {
+  double squares = 0.0, n = 0.0, peak_um = 0.0;
+  void add(const Score& s) {
+    if (s.n == 0) return;
+    squares += s.n * s.rmse * s.rmse;
+    n += s.n;
+    peak_um = std::max(peak_um, s.peak_abs);
+  }
+  [[nodiscard]] double rms_um() const { return std::sqrt(squares / n); }
+};
+
+bool is_weighted_intact(const WeightedCase& c) {
+  return c.failed.empty();
+}
+
+template <class Counts>
+LeftOverRuns left_of_weighted(const StrategyMatrix& m, std::size_t interval, const Counts& counts) {
+  LeftOverRuns left;
+  for (const WeightedCase& c : m.weighted) {
+    if (counts(c)) left.add(c.probed[interval].left);
+  }
+  return left;
+}
+
+}  // namespace
+
 Table probing_table(const StrategyMatrix& m) {
   Table table{.key = "probing"};
   const std::optional<Probing>& probing = m.settings.strategies.probing;
   if (!probing) return table;
-  table.title = fmt::format("With a probing every {:.4g} min, noise {:.3g} µm", probing->every_s / 60.0, probing->noise_um);
+  table.title =
+      fmt::format("With a probing every {:.4g} min, noise {:.3g} µm", probing->every_s.front() / 60.0, probing->noise_um);
   table.caption =
       "Sensors intact, rows of all judged runs. The residual is taken for a random process that fades; its deviation and "
       "time constant are those of the parts of the training runs that were left out. 'no correction' is the last probing "
@@ -257,16 +289,104 @@ Table probing_table(const StrategyMatrix& m) {
       um_column("residual_deviation_um", "deviation", 2),
       {.key = "residual_time_constant_min", .title = "time constant", .unit = "min", .digits = output::significant(3)}};
   for (const JudgedStrategy& s : m.strategies) {
-    double squares = 0.0, n = 0.0, peak_um = 0.0;
+    LeftOverRuns left;
     for (const Case& c : s.cases) {
-      if (!c.failed.empty() || !c.probed) continue;
-      squares += c.probed->n * c.probed->rmse * c.probed->rmse;
-      n += c.probed->n;
-      peak_um = std::max(peak_um, c.probed->peak_abs);
+      if (is_intact(c) && !c.probed.empty()) left.add(c.probed.front().left);
     }
-    if (n == 0.0) continue;
-    table.rows.push_back({s.fitted.name, overall_rms(s), std::sqrt(squares / n), peak_um, s.fitted.residual->deviation_um,
+    if (left.n == 0.0) continue;
+    table.rows.push_back({s.fitted.name, overall_rms(s), left.rms_um(), left.peak_um, s.fitted.residual->deviation_um,
                           s.fitted.residual->time_constant_s / 60.0});
+  }
+  if (const LeftOverRuns w = left_of_weighted(m, 0, is_weighted_intact); w.n > 0.0)
+    table.rows.push_back({kWeighted, Datum(), w.rms_um(), w.peak_um, Datum(), Datum()});
+  return table;
+}
+
+Table probing_matrix(const StrategyMatrix& m) {
+  Table table{.key = "probing_matrix",
+              .title = "Probing interval, strategy, failed sensor",
+              .caption =
+                  "Lost: time of the probings. Worse: judged runs, with and without failed sensors, on which more is left "
+                  "(RMS) than without probings. 'weights by probings': all strategies but the baselines and the blend; "
+                  "at each probing those that expected it gain weight (fixed share).",
+              .columns = {{.key = "name", .title = "strategy"},
+                          {.key = "every_min", .title = "every", .unit = "min", .digits = output::significant(4)},
+                          {.key = "lost_min_per_h", .title = "lost per hour", .unit = "min", .digits = output::decimals(1)},
+                          um_column("rms_um", "RMS", 2),
+                          um_column("peak_um", "peak"),
+                          um_column("failed_rms_um", "RMS, sensor failed", 2),
+                          um_column("failed_peak_um", "peak, sensor failed"),
+                          {.key = "worse", .title = "worse"},
+                          {.key = "judged", .title = "of"}},
+              .detail = true};
+  const std::optional<Probing>& probing = m.settings.strategies.probing;
+  if (!probing) return table;
+  const auto or_none = [](const LeftOverRuns& left, double um) { return left.n > 0.0 ? Datum(um) : Datum(); };
+  for (const JudgedStrategy& s : m.strategies) {
+    LeftOverRuns intact, failed;
+    for (const Case& c : s.cases) (is_intact(c) ? intact : failed).add(c.after);
+    table.rows.push_back({s.fitted.name, Datum(), 0.0, or_none(intact, intact.rms_um()), or_none(intact, intact.peak_um),
+                          or_none(failed, failed.rms_um()), or_none(failed, failed.peak_um), Datum(), Datum()});
+    if (!s.fitted.residual) continue;
+    for (std::size_t k = 0; k < probing->every_s.size(); ++k) {
+      intact = failed = {};
+      int n_worse = 0;
+      for (const Case& c : s.cases) {
+        (is_intact(c) ? intact : failed).add(c.probed[k].left);
+        n_worse += c.probed[k].left.rmse > c.after.rmse;
+      }
+      table.rows.push_back({s.fitted.name, probing->every_s[k] / 60.0, 60.0 * probing->takes_s / probing->every_s[k],
+                            or_none(intact, intact.rms_um()), or_none(intact, intact.peak_um),
+                            or_none(failed, failed.rms_um()), or_none(failed, failed.peak_um), n_worse, s.cases.size()});
+    }
+  }
+  for (std::size_t k = 0; k < probing->every_s.size() && !m.weighted.empty(); ++k) {
+    const LeftOverRuns intact = left_of_weighted(m, k, is_weighted_intact);
+    const LeftOverRuns failed = left_of_weighted(m, k, [](const WeightedCase& c) { return !is_weighted_intact(c); });
+    table.rows.push_back({kWeighted, probing->every_s[k] / 60.0, 60.0 * probing->takes_s / probing->every_s[k],
+                          intact.rms_um(), intact.peak_um, or_none(failed, failed.rms_um()), or_none(failed, failed.peak_um),
+                          Datum(), m.weighted.size()});
+  }
+  return table;
+}
+
+Table probe_faults_table(const StrategyMatrix& m) {
+  Table table{
+      .key = "probe_faults",
+      .title = "With a probe that fails half-way",
+      .caption =
+          "At the first interval, sensors intact, worst run. Stuck: it reads what it read last. Biased: it reads the "
+          "tolerance too much. Noticed: number of the probing that is refused or taken as a jump, on the run "
+          "where it takes longest; '-': on some run no probing is. An error below the bound of refusal cannot "
+          "be noticed by probings: the axis is then wrong by it.",
+      .columns = {{.key = "name", .title = "strategy"},
+                  um_column("good_peak_um", "peak, good probe"),
+                  um_column("stuck_peak_um", "peak, stuck"),
+                  {.key = "stuck_noticed_at", .title = "noticed at"},
+                  um_column("biased_peak_um", "peak, biased"),
+                  {.key = "biased_noticed_at", .title = "noticed at"},
+                  um_column("bound_um", "bound of refusal")},
+      .detail = true};
+  for (const JudgedStrategy& s : m.strategies) {
+    LeftOverRuns good, stuck, biased;
+    std::optional<int> stuck_at = 0, biased_at = 0;
+    const auto later = [](std::optional<int>& at, const std::optional<int>& of_run) {
+      at = at && of_run ? std::optional<int>(std::max(*at, *of_run)) : std::nullopt;
+    };
+    for (const Case& c : s.cases) {
+      if (!c.stuck_probe || !c.biased_probe) continue;
+      good.add(c.probed.front().left);
+      stuck.add(c.stuck_probe->left);
+      biased.add(c.biased_probe->left);
+      later(stuck_at, c.stuck_probe->noticed_at);
+      later(biased_at, c.biased_probe->noticed_at);
+    }
+    if (good.n == 0.0) continue;
+    const auto shown = [](const std::optional<int>& at) { return at ? Datum(*at) : Datum(); };
+    // of the first probing: four deviations of a residual of which nothing is known
+    const double bound_um = PROBE_REFUSED * std::hypot(s.fitted.residual->deviation_um, s.fitted.probe.noise_um);
+    table.rows.push_back(
+        {s.fitted.name, good.peak_um, stuck.peak_um, shown(stuck_at), biased.peak_um, shown(biased_at), bound_um});
   }
   return table;
 }

@@ -20,5 +20,10 @@ namespace driftwright::findings {
 [[nodiscard]] output::Table strategies_table(const compensation::StrategyMatrix& matrix);
 /// What is left with probings beside each correction; without rows where nothing was probed.
 [[nodiscard]] output::Table probing_table(const compensation::StrategyMatrix& matrix);
+/// The same for each interval between probings, with all sensors intact and one failed; without rows where nothing was
+/// probed.
+[[nodiscard]] output::Table probing_matrix(const compensation::StrategyMatrix& matrix);
+/// What is left with a probe that has failed, and whether its probings show it; without rows where nothing was probed.
+[[nodiscard]] output::Table probe_faults_table(const compensation::StrategyMatrix& matrix);
 
 }  // namespace driftwright::findings

@@ -97,6 +97,7 @@ void NcRun::change_tool(const std::string& word) {
 }
 
 void NcRun::halt(const std::string& word) {
+  step().halts = true;
   note(word, "a halt counts as no time; all that comes later is timed as if nobody waited");
 }
 

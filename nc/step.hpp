@@ -51,6 +51,7 @@ struct NcStep {
   bool compensated = false;        ///< G41, G42 in force after it
   bool unit_word = false;          ///< G20, G21
   bool tool_change = false;        ///< M6
+  bool halts = false;              ///< M0, M1, M60, STOP: waits for the operator
   std::string feed_word = {};      ///< its F as written; empty without F
   std::optional<int> system = {};  ///< G54 ... G59.3 if the block names one, times ten
   bool ends_program = false;       ///< M2, M30, the last '%'

@@ -32,8 +32,9 @@ struct Physics {
 
 /// The corrected axis is probed again and again, and the correction takes up what is found (residual_process.hpp).
 struct Probing {
-  double every_s = 3600.0;
-  double noise_um = 1.0;  ///< of a probing, 1 sigma
+  std::vector<double> every_s = {3600.0};  ///< intervals to judge, each > 0, at least one
+  double noise_um = 1.0;                   ///< of a probing, 1 sigma
+  double takes_s = 120.0;                  ///< time that a probing takes
 };
 
 /// Settings of all strategies.

@@ -10,7 +10,6 @@
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
-#include "base/random.hpp"
 #include "base/record_channel.hpp"
 #include "compensation/judging/iso230_3.hpp"
 #include "compensation/predictors/drift_model.hpp"
@@ -357,24 +356,69 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
 
 namespace {
 
-/// What remains if the axis is probed again and again while a judged correction is in force. A probing counts from the row
-/// after it.
-std::optional<Score> probed(const Judgement& judged, const DeployedPredictor& strategy,
-                            const std::optional<Probing>& probing, const ObservedRun& run, std::uint64_t seed) {
-  if (!probing || !strategy.residual) return std::nullopt;
-  ProbeFeedback feedback(*strategy.residual, strategy.probe, strategy.from_start);
-  Random random(seed, 31);
+/// Sets what remains of a case if the axis is probed again and again while its correction is in force.
+void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, const ObservedRun& run, std::uint64_t seed,
+           const Judgement& judged, Case& c) {
+  const std::optional<Probing>& probing = settings.strategies.probing;
+  if (!probing || !strategy.residual) return;
   const std::vector<double>& t_s = run.readings.time_s;
-  std::vector<double> left_um;
-  double next_s = t_s.front() + probing->every_s;
-  for (std::size_t i = 0; i < judged.left_um.size(); ++i) {
-    feedback.row(0.0, 0.0, i > 0 ? t_s[i] - t_s[i - 1] : 0.0);
-    left_um.push_back(judged.left_um[i] - feedback.estimate_um());
-    if (t_s[i] < next_s || !std::isfinite(judged.left_um[i])) continue;
-    (void)feedback.probe_drift_um(judged.left_um[i] + probing->noise_um * random.normal());
-    next_s += probing->every_s * (1.0 + std::floor((t_s[i] - next_s) / probing->every_s));
+  const std::vector<ProbedMember> alone = {{&strategy, judged.left_um}};
+  RunProbing how{.noise_um = probing->noise_um, .seed = seed};
+  for (double every_s : probing->every_s) {
+    how.every_s = every_s;
+    c.probed.push_back(probed_run(alone, t_s, how));
   }
-  return score(left_um);
+  if (!c.failed.empty()) return;
+  const double start_s = t_s[run.n_before];
+  how.every_s = probing->every_s.front();
+  how.fails_at_s = start_s + settings.fails_at.value_or(0.5) * (t_s.back() - start_s);
+  how.error_um = settings.tolerance_um;
+  how.fault = ProbeFault::kStuck;
+  c.stuck_probe = probed_run(alone, t_s, how);
+  how.fault = ProbeFault::kBiased;
+  c.biased_probe = probed_run(alone, t_s, how);
+}
+
+/// What a correction leaves in each case of a strategy on a run, in the order of the cases.
+using LeftOfCases = std::vector<std::vector<double>>;
+
+/// Judges the strategies with weights by probings. A failed sensor changes the strategies that read it.
+void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>& strategies,
+                    const std::vector<std::vector<Case>>& cases, const std::vector<LeftOfCases>& left_um) {
+  const std::optional<Probing>& probing = matrix.settings.strategies.probing;
+  if (!probing) return;
+  std::vector<std::size_t> members;
+  for (std::size_t s = 0; s < strategies.size(); ++s) {
+    if (!strategies[s].is_baseline && strategies[s].residual && strategies[s].name != kBlend) members.push_back(s);
+  }
+  if (members.size() < 2) return;
+  for (std::size_t s : members) matrix.weighted_members.push_back(strategies[s].name);
+  const std::size_t n_runs = matrix.runs.size();
+  for (std::size_t r = 0; r < n_runs; ++r) {
+    std::vector<std::string> failures = {""};
+    for (std::size_t s : members) {
+      for (const Case& c : cases[s * n_runs + r]) {
+        if (std::find(failures.begin(), failures.end(), c.failed) == failures.end()) failures.push_back(c.failed);
+      }
+    }
+    for (std::string& failed : failures) matrix.weighted.push_back({.run = r, .failed = std::move(failed)});
+  }
+  parallel_for(matrix.weighted.size(), [&](std::size_t k) {
+    WeightedCase& weighted = matrix.weighted[k];
+    std::vector<ProbedMember> with;
+    for (std::size_t s : members) {
+      const std::vector<Case>& own = cases[s * n_runs + weighted.run];
+      const auto at = std::find_if(own.begin(), own.end(), [&](const Case& c) { return c.failed == weighted.failed; });
+      const std::size_t index = at == own.end() ? 0 : static_cast<std::size_t>(at - own.begin());  // the first is intact
+      with.push_back({&strategies[s], left_um[s * n_runs + weighted.run][index]});
+    }
+    for (double every_s : probing->every_s) {
+      const bool is_first = weighted.probed.empty();
+      weighted.probed.push_back(probed_run(with, matrix.runs[weighted.run].run.readings.time_s,
+                                           {.every_s = every_s, .noise_um = probing->noise_um, .seed = weighted.run},
+                                           is_first ? &weighted.mean_weights : nullptr));
+    }
+  });
 }
 
 /// Sets what models of the machine leave on the training runs with failed sensors; the choice among them depends on it.
@@ -442,17 +486,20 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   }
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
   std::vector<std::vector<Case>> cases(n_jobs);
+  std::vector<LeftOfCases> left_um(n_jobs);  // for weights by probings
   parallel_for(n_jobs, [&](std::size_t job) {
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
     for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-      const Judgement judged = judge(strategy, run, drift_um[r]);
+      Judgement judged = judge(strategy, run, drift_um[r]);
       cases[job].push_back(judged.scores);
-      cases[job].back().probed = probed(judged, strategy, settings.strategies.probing, run, r);
       cases[job].back().run = r;
       cases[job].back().failed = failed;
+      probe(settings, strategy, run, r, judged, cases[job].back());
+      if (settings.strategies.probing && !strategy.is_baseline) left_um[job].push_back(std::move(judged.left_um));
     }
   });
+  judge_weighted(matrix, fitted.strategies, cases, left_um);
   for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
     JudgedStrategy judged;
     judged.fitted = std::move(fitted.strategies[s]);

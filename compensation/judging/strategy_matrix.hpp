@@ -3,6 +3,7 @@
 // machine.
 
 #include "compensation/judging/choice.hpp"
+#include "compensation/judging/probed_run.hpp"
 #include "compensation/judging/strategies.hpp"
 #include "compensation/predictors/score.hpp"
 #include "compensation/sensors/thermometers.hpp"
@@ -37,7 +38,10 @@ struct Case {
   /// Share of the rows with a prediction interval in force whose drift is inside it; NaN without such rows.
   double covered = 0.0;
   std::vector<std::string> events;  ///< of the fail-safe
-  std::optional<Score> probed;      ///< of what remains if the axis is probed, too
+  std::vector<ProbedRun> probed;    ///< what remains if the axis is probed, too: for each interval; empty: not judged
+  /// The same at the first interval with a probe that fails where sensors do (half-way by default): stuck, and with an error
+  /// of the tolerance. Only with all sensors intact.
+  std::optional<ProbedRun> stuck_probe = {}, biased_probe = {};
 
   [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
 };
@@ -73,12 +77,23 @@ struct JudgedStrategy {
   KeptCells cells = {};
 };
 
+/// All strategies with weights that move with their losses at probings, on one run with all sensors intact or one failed.
+struct WeightedCase {
+  std::size_t run = 0;
+  std::string failed = {};
+  std::vector<ProbedRun> probed = {};  ///< for each interval
+  std::vector<double> mean_weights =
+      {};  ///< at the first interval, over the rows, one for each of StrategyMatrix::weighted_members
+};
+
 /// The results of all strategies.
 struct StrategyMatrix {
   std::vector<ObservedRun> training;
   std::vector<JudgedRunOfMachine> runs;
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
+  std::vector<std::string> weighted_members = {};  ///< names; empty: without probings, or fewer than two members
+  std::vector<WeightedCase> weighted = {};
   MatrixSettings settings;
   std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
   Choice choice = {};                      ///< of the strategy to deploy, from training runs alone

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/job_program.hpp"
+#include "app/results.hpp"
+#include "base/mapped_record.hpp"
+#include "base/option_quantity.hpp"
+#include "findings/probe_plan_document.hpp"
+#include "output/predictor_file.hpp"
+#include "studies/prediction.hpp"
+#include "studies/probe_job.hpp"
+
+namespace driftwright::app {
+namespace {
+
+double fastest_rpm(const Cyclogram& cyclogram) {
+  double most = 0.0;
+  for (const Cyclogram::Section& s : cyclogram.sections) most = std::max(most, s.drive.speed_rpm);
+  return most;
+}
+
+double fastest_rpm(const NcProgram& program) {
+  double most = 0.0;
+  for (const NcMove& m : program.moves) most = std::max(most, m.speed_rpm);
+  return most;
+}
+
+/// A job, and its highest speed.
+struct ReadJob {
+  studies::ProbeJob job;
+  double most_rpm = 0.0;
+};
+
+ReadJob read_job(const scenarios::Scenario& scenario, const std::string& text, const studies::ProbeJobOrder& order) {
+  if (names_nc_program(scenario, text)) {
+    const NcProgram program = read_job_program(scenario, text);
+    return {studies::probe_job_of(program, std::filesystem::path(text).stem().string(), order), fastest_rpm(program)};
+  }
+  const Cyclogram cyclogram = studies::named_cyclogram(scenario, text);
+  return {studies::probe_job_of(cyclogram, order), fastest_rpm(cyclogram)};
+}
+
+}  // namespace
+
+void probe_plan(const ProbePlanOptions& options) {
+  const scenarios::Scenario scenario = read_scenario(options);
+  (void)scenarios::require_machine(scenario, "probe-plan");
+  const output::PredictorFile file = output::read_predictor(options.model);
+  const compensation::DeployedPredictor& predictor = file.predictor;
+  if (!predictor.residual)
+    throw InputError(fmt::format(
+        "{}: the file does not say what '{}' leaves (key `probing` is null or missing), so nothing says when a probing is "
+        "due; `validate` writes it where parts of the training runs could be left out",
+        options.model, predictor.name));
+  double tolerance_um = scenario.study ? scenario.study->tolerance_um : 10.0;
+  if (!options.tolerance.empty()) tolerance_um = option_quantity("--tolerance", options.tolerance, "um", 1e-3, 1e4);
+  const double kept_free = options.margin.empty() ? 0.0 : option_quantity("--margin", options.margin, "1", 0.0, 0.95);
+  compensation::Probe probe = predictor.probe;
+  if (!options.noise.empty()) probe.noise_um = option_quantity("--probe-noise", options.noise, "um", 1e-3, 1e3);
+  if (!options.lag.empty()) probe.lag_s = option_quantity("--probe-lag", options.lag, "s", 0.0, 3600.0);
+  const double probing_s =
+      options.probing_time.empty() ? 120.0 : option_quantity("--probing-time", options.probing_time, "s", 0.0, 3600.0);
+  studies::ProbeJobOrder order{.n_parts = options.parts};
+  if (!options.between.empty()) order.between_s = option_quantity("--between", options.between, "s", 0.0, 86400.0);
+  ReadJob read = read_job(scenario, options.job, order);
+  constexpr std::size_t kMostPlaces = 5000;
+  if (read.job.places.size() > kMostPlaces)
+    throw InputError(fmt::format("--job '{}' with --parts {}: there are {} places for a probing; at most {} are allowed",
+                                 options.job, options.parts, read.job.places.size(), kMostPlaces));
+  std::optional<studies::PointChoice> points;
+  if (!options.points.empty()) {
+    std::vector<Record> records;
+    for (const std::string& path : options.points) records.push_back(read_record(path, scenario.columns).record);
+    constexpr std::size_t kMostPoints = 8;
+    points = studies::choose_points(studies::point_errors(records), options.may_probe, options.counting, kMostPoints,
+                                    probe.noise_um);
+  }
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  studies::ProbePlan plan = studies::plan_probings(std::move(read.job), studies::probed_axis(predictor, probe, probing_s),
+                                                   tolerance_um, kept_free);
+  plan.predictor = predictor.name;
+  plan.target = predictor.target;
+  plan.points = std::move(points);
+  std::vector<std::string> warnings;
+  if (file.covered && read.most_rpm > file.covered->most_rpm)
+    warnings.push_back(
+        fmt::format("The job turns at up to {:.0f} rpm, and '{}' was fitted and judged at up to {:.0f} rpm: its "
+                    "errors may be larger here",
+                    read.most_rpm, predictor.name, file.covered->most_rpm));
+  finish(findings::document_of(plan, scenario, warnings, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,51 @@
+#pragma once
+// What a judged correction leaves of a run in which the axis is probed again and again: by one predictor, or by several
+// with weights that move with their losses at probings; with a good probe, and with one that has failed.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/predictors/score.hpp"
+
+namespace driftwright::compensation {
+
+/// A predictor with what its correction leaves per row [um]; NaN where the drift is unknown. The loan lasts for the call.
+struct ProbedMember {
+  const DeployedPredictor* predictor = nullptr;  ///< with a process of its residual
+  std::span<const double> left_um = {};
+};
+
+enum class ProbeFault {
+  kNone,
+  kStuck,   ///< it reads what it read last
+  kBiased,  ///< it reads a constant error more: a wrong ball radius, a chip that stays
+};
+
+struct RunProbing {
+  double every_s = 3600.0;  ///< > 0
+  double noise_um = 1.0;
+  std::uint64_t seed = 0;  ///< of the noise
+  ProbeFault fault = ProbeFault::kNone;
+  double fails_at_s = 0.0;
+  double error_um = 0.0;  ///< of a biased probe
+};
+
+struct ProbedRun {
+  Score left;  ///< of the axis, which is corrected by predictors and probings
+  int n_probings = 0, n_refused = 0;
+  /// Number of the probing after the fault that was refused or taken as a jump, from one; none: no one notices it.
+  std::optional<int> noticed_at = {};
+};
+
+/// Probings at the first row after each interval. Each counts from the row after it. With one member it is corrected as
+/// `follow` does. With several, each has a filter of its own, and the correction is the mean of theirs with its residual by
+/// MemberWeights (member_weights.hpp), whose losses are probing_loss().
+/// @param time_s  of the rows
+/// @param weights  null, or the mean weights over the rows
+[[nodiscard]] ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const double> time_s,
+                                   const RunProbing& how, std::vector<double>* weights = nullptr);
+
+}  // namespace driftwright::compensation

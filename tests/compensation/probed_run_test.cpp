@@ -1,0 +1,124 @@
+// Runs of a probed axis: one predictor against the filter alone, several with moving weights, probes that fail.
+
+#include "compensation/judging/probed_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "base/random.hpp"
+
+namespace driftwright::compensation::probed_run_test {
+namespace {
+
+struct Machine {
+  std::vector<double> time_s;
+  std::vector<double> left_um;
+};
+
+/// What a correction leaves: a draw of the process, each minute.
+Machine drawn(const ResidualProcess& p, std::size_t n_rows, std::uint64_t seed) {
+  Random random(seed, 3);
+  Machine m;
+  const double kept = std::exp(-60.0 / p.time_constant_s);
+  double um = 0.0;
+  for (std::size_t i = 0; i < n_rows; ++i) {
+    m.time_s.push_back(60.0 * static_cast<double>(i));
+    m.left_um.push_back(um);
+    um = kept * um + p.deviation_um * std::sqrt(1.0 - kept * kept) * random.normal();
+  }
+  return m;
+}
+
+DeployedPredictor with_process(const ResidualProcess& p, double noise_um) {
+  DeployedPredictor d;
+  d.from_start = true;
+  d.residual = p;
+  d.probe.noise_um = noise_um;
+  return d;
+}
+
+// One member is the filter of `follow` between rows; before the first probing nothing changes.
+TEST(ProbedRun, OfOnePredictorIsItsFilter) {
+  const ResidualProcess p{3.0, 7200.0};
+  const Machine m = drawn(p, 600, 4);
+  const DeployedPredictor d = with_process(p, 1e-6);
+  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  const ProbedRun run = probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0});
+  EXPECT_EQ(run.n_probings, 9);
+  EXPECT_EQ(run.n_refused, 0);
+  // an exact probing each hour: the error is that of the last probing, faded
+  double square = 0.0;
+  for (std::size_t i = 0; i < 600; ++i) {
+    const std::size_t last = i == 0 ? 0 : (i - 1) / 60 * 60;  // it counts from the row after it
+    const double expected_um = m.left_um[last] * std::exp(-60.0 * static_cast<double>(i - last) / 7200.0);
+    square += std::pow(m.left_um[i] - expected_um, 2);
+  }
+  EXPECT_NEAR(run.left.rmse, std::sqrt(square / 600.0), 1e-5);
+}
+
+// Two members: one is right in the first half and then 30 µm off, the other one the reverse. With weights less is left than by
+// either with its own probings; of two equal members the weights stay equal.
+TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
+  const ResidualProcess p{2.0, 7200.0};
+  Machine good = drawn(p, 2880, 6), bad = good;
+  Random random(8, 1);
+  const auto is_first_half = [](std::size_t i) { return i < 1440; };
+  for (std::size_t i = 0; i < 2880; ++i) {
+    const double off_um = 30.0 * std::sin(0.05 * static_cast<double>(i));  // too fast for probings each half hour
+    (is_first_half(i) ? bad : good).left_um[i] += off_um;
+  }
+  const DeployedPredictor d = with_process(p, 0.5);
+  const std::vector<ProbedMember> both = {{&d, good.left_um}, {&d, bad.left_um}};
+  const RunProbing how{.every_s = 1800.0, .noise_um = 0.5, .seed = 3};
+  std::vector<double> weights;
+  const ProbedRun weighted = probed_run(both, good.time_s, how, &weights);
+  for (const ProbedMember& m : both) {
+    const std::vector<ProbedMember> alone = {m};
+    EXPECT_LT(weighted.left.rmse, 0.6 * probed_run(alone, good.time_s, how).left.rmse);
+  }
+  EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(weights[0], 0.5, 0.15);  // each leads in a half
+  const std::vector<ProbedMember> twins = {{&d, good.left_um}, {&d, good.left_um}};
+  const std::vector<ProbedMember> one = {{&d, good.left_um}};
+  EXPECT_NEAR(probed_run(twins, good.time_s, how).left.rmse, probed_run(one, good.time_s, how).left.rmse, 1e-9);
+}
+
+// A probe that reads a constant too much from 5 h on: beyond the bound of refusal it is noticed at the first probing, and the
+// second one is taken for a jump, so the axis goes wrong by the constant. Far below the bound no one notices it.
+TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
+  const ResidualProcess p{1.0, 7200.0};
+  const Machine m = drawn(p, 900, 5);
+  const DeployedPredictor d = with_process(p, 0.3);
+  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  RunProbing how{.every_s = 3600.0, .noise_um = 0.3, .seed = 2, .fault = ProbeFault::kBiased, .fails_at_s = 18000.0};
+  how.error_um = 12.0;
+  const ProbedRun large = probed_run(alone, m.time_s, how);
+  EXPECT_EQ(large.noticed_at, 1);
+  EXPECT_EQ(large.n_refused, 1);
+  EXPECT_NEAR(large.left.peak_abs, 12.0, 3.0);
+  how.error_um = 0.5;
+  const ProbedRun small = probed_run(alone, m.time_s, how);
+  EXPECT_FALSE(small.noticed_at);
+  EXPECT_LT(small.left.rmse, 1.0);
+  how.fault = ProbeFault::kNone;
+  EXPECT_FALSE(probed_run(alone, m.time_s, how).noticed_at);
+}
+
+// A stuck probe goes on reading 2 µm: the filter takes it for an error that stays, and moves the axis by 2 µm at each of 14
+// probings. An hour of this process has a deviation of 0.7 µm, so four deviations are more than that, and none is refused.
+TEST(ProbedRun, AStuckProbeMovesTheAxisEachTime) {
+  Machine m = drawn({16.0, 3.6e6}, 900, 5);
+  for (double& um : m.left_um) um = 2.0;
+  const DeployedPredictor d = with_process({16.0, 3.6e6}, 0.01);
+  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  const ProbedRun run =
+      probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0, .fault = ProbeFault::kStuck, .fails_at_s = 7000.0});
+  EXPECT_EQ(run.n_probings, 14);
+  EXPECT_FALSE(run.noticed_at);
+  EXPECT_NEAR(run.left.peak_abs, 26.0, 0.5);
+}
+
+}  // namespace
+}  // namespace driftwright::compensation::probed_run_test
