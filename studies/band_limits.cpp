@@ -10,7 +10,8 @@
 namespace driftwright::studies {
 namespace {
 
-/// The value among `values` whose rank is that of `limit` among `linear`, between two draws linearly.
+/// The value among `values` whose rank is that of `limit` among `linear`, between two draws linearly, and beyond the last of
+/// them as the linear part goes on.
 double at_rank_of(double limit, const Eigen::VectorXd& linear, Eigen::VectorXd values) {
   double below = -std::numeric_limits<double>::infinity(), above = std::numeric_limits<double>::infinity();
   std::ptrdiff_t n_below = 0;
@@ -23,10 +24,10 @@ double at_rank_of(double limit, const Eigen::VectorXd& linear, Eigen::VectorXd v
     }
   }
   const auto first = values.begin(), last = values.end();
-  if (n_below == 0) return *std::min_element(first, last);
+  if (n_below == 0) return *std::min_element(first, last) - (above - limit);
   const auto before = first + (n_below - 1);
   std::nth_element(first, before, last);
-  if (n_below == values.size()) return *before;
+  if (n_below == values.size()) return *before + (limit - below);
   const double after = *std::min_element(before + 1, last);
   return *before + (limit - below) / (above - below) * (after - *before);
 }
