@@ -41,7 +41,7 @@ std::vector<std::size_t> band_rows(std::size_t n_rows) {
 }
 
 /// The run as the twin takes it, at some rows of the record.
-diagnosis::MeasuredRun run_of(const BandedRun& run, const std::vector<std::size_t>& rows) {
+diagnosis::MeasuredRun banded_run_of(const BandedRun& run, const std::vector<std::size_t>& rows) {
   diagnosis::MeasuredRun asked;
   asked.name = run.cyclogram.name;
   asked.cyclogram = run.cyclogram;
@@ -70,7 +70,8 @@ std::string known_words(const std::vector<Knob>& knobs) {
       std::minmax_element(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) { return a.prior_sd < b.prior_sd; });
   const auto word = [](double sd) { return sd == effects::kGuess ? "a factor of 2" : fmt::format("{:.3g} %", 100.0 * sd); };
   if (least->prior_sd == most->prior_sd) return word(least->prior_sd);
-  return fmt::format("{} to {}", word(least->prior_sd), word(most->prior_sd));
+  if (most->prior_sd == effects::kGuess) return word(least->prior_sd) + " to " + word(most->prior_sd);
+  return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
 }
 
 std::string words_of_band(const std::vector<Knob>& knobs) {
@@ -108,8 +109,8 @@ std::vector<Readings> drawn_differences(const Twin& twin, const std::vector<Knob
 }
 
 /// Differences at some rows, linearly at all of them, added to the values.
-std::vector<double> added(const Channel& channel, const std::vector<double>& time_s, const std::vector<std::size_t>& rows,
-                          const Eigen::VectorXd& difference, double scale) {
+std::vector<double> with_differences(const Channel& channel, const std::vector<double>& time_s,
+                                     const std::vector<std::size_t>& rows, const Eigen::VectorXd& difference, double scale) {
   std::vector<double> values = channel.values;
   for (std::size_t i = 0, after = 0; i < values.size(); ++i) {
     while (rows[after] < i) ++after;
@@ -145,7 +146,7 @@ std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const 
   const int n_draws = n_draws_of(twin.machine().system, knobs.size());
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
-  const std::vector<Readings> drawn = drawn_differences(twin, knobs, scores, run_of(run, rows), listener);
+  const std::vector<Readings> drawn = drawn_differences(twin, knobs, scores, banded_run_of(run, rows), listener);
 
   RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}},
                   .words = words_of_band(knobs)};
@@ -159,7 +160,7 @@ std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const 
     const double scale = outputs.unit[o] == "K" ? 1.0 : 1e6;  // channels are in um and urad
     for (const auto& [end, difference] : {std::pair("_low", &limits.low), std::pair("_high", &limits.high)})
       band.limits.channels.push_back(
-          {channel->name + end, channel->unit, added(*channel, run.record.time_s, rows, *difference, scale)});
+          {channel->name + end, channel->unit, with_differences(*channel, run.record.time_s, rows, *difference, scale)});
   }
   return band;
 }

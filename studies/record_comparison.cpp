@@ -64,8 +64,8 @@ std::optional<RecordBand> band_at(const std::optional<RecordBand>& band, const s
 }
 
 /// Share of the rows with a value in which it is within the band of a channel; none without rows or without a band of it.
-std::optional<double> share_within(const std::optional<RecordBand>& band, const std::string& channel,
-                                   const std::vector<double>& values) {
+std::optional<double> share_in_band(const std::optional<RecordBand>& band, const std::string& channel,
+                                    const std::vector<double>& values) {
   const Channel* low = band ? band->low(channel) : nullptr;
   if (!low) return std::nullopt;
   const std::vector<double>& high = band->high(channel)->values;
@@ -99,8 +99,8 @@ RecordComparison compare_records(const Record& first, const Record& second, cons
     Channel at_rows{channel.name, channel.unit, values_at(second, *other, first.time_s)};
     c.channels.push_back(difference(first.time_s, channel, at_rows.values));
     std::optional<double>& within = c.channels.back().within_band;
-    within = share_within(c.first_band, channel.name, at_rows.values);
-    if (!within) within = share_within(c.second_band, channel.name, channel.values);
+    within = share_in_band(c.first_band, channel.name, at_rows.values);
+    if (!within) within = share_in_band(c.second_band, channel.name, channel.values);
     c.second_at_rows.channels.push_back(std::move(at_rows));
   }
   for (const Channel& channel : second.channels) {

@@ -44,8 +44,8 @@ double low(const Prediction& p, const std::string& channel, std::size_t row) {
 }
 
 TEST(KnownBand, OfSmallUncertaintiesIsThatOfLinearTheory) {
-  const double sd_capacity = 0.01, sd_power = 0.02, sd_conductance = 0.015;
-  const Prediction p = predicted(body(", known_to: 1 %", ", known_to: 2 %", ", known_to: 1.5 %"));
+  const double sd_capacity = 0.001, sd_power = 0.002, sd_conductance = 0.0015;
+  const Prediction p = predicted(body(", known_to: 0.1 %", ", known_to: 0.2 %", ", known_to: 0.15 %"));
   ASSERT_TRUE(p.band);
   for (const std::size_t row : {std::size_t{5}, std::size_t{30}, std::size_t{60}, std::size_t{120}}) {
     const double t_s = p.record.time_s[row], steady_K = kPower_W / kConductance_W_K;
@@ -53,8 +53,8 @@ TEST(KnownBand, OfSmallUncertaintiesIsThatOfLinearTheory) {
     const double by_power = rise_K, by_conductance = -rise_K + steady_K * x * decay, by_capacity = -steady_K * x * decay;
     const double sd_K = std::hypot(sd_power * by_power, sd_conductance * by_conductance, sd_capacity * by_capacity);
     const double half = 0.5 * (high(p, "z", row) - low(p, "z", row));
-    EXPECT_NEAR(half / (1.96 * kSensitivity_um_K * sd_K), 1.0, 2e-3) << row;  // the next term is 1.96² 0.02² = 1.5e-3
-    EXPECT_NEAR(0.5 * (high(p, "t_body", row) - low(p, "t_body", row)) / (1.96 * sd_K), 1.0, 2e-3) << row;
+    EXPECT_NEAR(half / (1.96 * kSensitivity_um_K * sd_K), 1.0, 1e-3) << row;  // ten times as wide, it is 4e-3 away
+    EXPECT_NEAR(0.5 * (high(p, "t_body", row) - low(p, "t_body", row)) / (1.96 * sd_K), 1.0, 1e-3) << row;
   }
   EXPECT_EQ(high(p, "z", 0), 0.0) << "the start is known";
 }
