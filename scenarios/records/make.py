@@ -11,6 +11,9 @@ DAYS = {  # minutes, rpm
     "tuesday": [(60, 2000), (30, 600), (60, 1400), (120, 0)],
     "good": [(120, 1800), (90, 0), (60, 1200)],
 }
+FIRST = HERE.parent / "first_machine.yaml"
+LINK = "  - {type: link, node: housing, to: ambient, conductance: 5 W/K}\n"
+FALLEN = "  - {type: sensor_detached, sensor: t_housing, share: 0.8, time: 95 min}\n"
 FILM = "surface: headstock_outer, film: {} W/(m^2 K)"
 
 
@@ -70,6 +73,11 @@ def main():
             if name == "tuesday":
                 (HERE / "logger_file.csv").write_text(as_a_logger(rows), encoding="latin-1", newline="")
             (HERE / f"{name}.csv").write_text(f"# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
+        text = FIRST.read_text()
+        assert text.count(LINK) == 1, "the link of the first machine has changed"
+        other.write_text(text.replace(LINK, LINK + FALLEN))
+        rows = measured(simulated(program, other, [(120, 6000), (30, 0), (90, 3000)], work), 11)
+        (HERE / "fallen.csv").write_text("# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
         rows = [f"{int(i % 4 in (1, 2))} {int(i % 4 in (2, 3))}" for i in range(1000)]
         (HERE / "encoder_rows.txt").write_text("\n".join(rows) + "\n")
         (HERE / "drift.csv").write_text("time_s,drift_um\n0,0\n0.5,6\n1,12\n")
