@@ -121,7 +121,7 @@ std::optional<Tornado> tornado_of(const SweepPlan& plan, const SweepColumns& col
     }
   }
   const Eigen::RowVectorXd mean = x.colwise().mean();
-  Tornado tornado{.mean = y.mean()};
+  Tornado tornado{.mean = y.mean(), .explained = 0.0, .bars = {}};
   x.rowwise() -= mean;
   y.array() -= tornado.mean;
   const Eigen::RowVectorXd size = x.colwise().norm();

@@ -36,7 +36,10 @@ TEST(RankCorrelation, LooksAtOrderAlone) {
 }
 
 scenarios::Variation varied(const std::string& name, scenarios::Spread spread) {
-  scenarios::Variation v{.name = name, .unit = "N", .is_number = true};
+  scenarios::Variation v;
+  v.name = name;
+  v.unit = "N";
+  v.is_number = true;
   v.spread = spread;
   return v;
 }
