@@ -74,27 +74,35 @@ std::string known_words(const std::vector<Knob>& knobs) {
   return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
 }
 
-std::string words_of_band(const std::vector<Knob>& knobs) {
+/// @param n_left_out  of n_draws machines
+std::string words_of_band(const std::vector<Knob>& knobs, std::size_t n_left_out, std::size_t n_draws) {
+  const std::string left_out =
+      n_left_out == 0 ? "" : fmt::format(" {} of {} drawn machines have no solution and are left out.", n_left_out, n_draws);
   return fmt::format(
       "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). They "
       "do "
-      "not contain numbers without `known_to`, nor what the model itself lacks.",
-      knobs.size(), knobs.size() == 1 ? "" : "s", known_words(knobs));
+      "not contain numbers without `known_to`, nor what the model itself lacks.{}",
+      knobs.size(), knobs.size() == 1 ? "" : "s", known_words(knobs), left_out);
 }
 
-/// The reduced states' readings of one machine at the rows, per output.
+RecordBand no_band(const std::string& why) {
+  return {.limits = {}, .words = fmt::format("There are no bands: {}", why.substr(0, why.find('\n')))};
+}
+
+/// Readings of one machine at the rows, n_outputs x n_rows.
 using Readings = Eigen::MatrixXd;
 
-/// Differences of the drawn machines' readings from those of the machine as written, a matrix n_outputs x n_rows for each.
-std::vector<Readings> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs, const Eigen::MatrixXd& scores,
-                                        const diagnosis::MeasuredRun& run, const Listener& listener) {
+/// Differences of the drawn machines' readings from those of the machine as written; none for one without a solution.
+std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs,
+                                                       const Eigen::MatrixXd& scores, const diagnosis::MeasuredRun& run,
+                                                       const Listener& listener) {
   Twin::Workspace own(twin);
   const std::shared_ptr<const solver::KeptRun> kept = twin.kept_run(twin.as_written(), run, own, false);
   const auto readings = [&](const diagnosis::TwinState& state, Twin::Workspace& workspace) -> Readings {
     return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
   };
   const Readings as_written = readings(twin.as_written(), own);
-  std::vector<Readings> drawn(static_cast<std::size_t>(scores.rows()));
+  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(scores.rows()));
   for_each_index(
       drawn.size(), [&] { return Twin::Workspace(twin); },
       [&](std::size_t d, Twin::Workspace& workspace) {
@@ -102,7 +110,11 @@ std::vector<Readings> drawn_differences(const Twin& twin, const std::vector<Knob
         for (std::size_t k = 0; k < knobs.size(); ++k)
           knobs[k].set(
               state, knobs[k].value(knobs[k].prior_sd * scores(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
-        drawn[d] = readings(state, workspace) - as_written;
+        try {
+          drawn[d] = readings(state, workspace) - as_written;
+        } catch (const SolveError&) {
+        } catch (const RangeError&) {  // outside the range of a law
+        }
       },
       listener);
   return drawn;
@@ -123,14 +135,9 @@ std::vector<double> with_differences(const Channel& channel, const std::vector<d
   return values;
 }
 
-}  // namespace
-
-std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+/// The band of a machine that some reduced model follows.
+std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
   const scenarios::MachineModel& machine = *scenario.machine;
-  if (!scenarios::says_known_to(machine)) return std::nullopt;
-  if (!can_be_reduced(machine))
-    return RecordBand{.limits = {},
-                      .words = "There are no bands: a temperature is prescribed over time, which no reduced model follows."};
   std::optional<scenarios::ReducedMachine> made;
   if (!run.model.reduced()) made.emplace(reduced_of(scenario, run, listener));
   const diagnosis::AugmentedModel augmented = diagnosis::without_further_places(machine);
@@ -146,23 +153,47 @@ std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const 
   const int n_draws = n_draws_of(twin.machine().system, knobs.size());
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
-  const std::vector<Readings> drawn = drawn_differences(twin, knobs, scores, banded_run_of(run, rows), listener);
+  const std::vector<std::optional<Readings>> drawn =
+      drawn_differences(twin, knobs, scores, banded_run_of(run, rows), listener);
+  std::vector<Eigen::Index> kept;
+  for (std::size_t d = 0; d < drawn.size(); ++d) {
+    if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));
+  }
+  const std::size_t n_left_out = drawn.size() - kept.size();
+  if (2 * n_left_out > drawn.size() || kept.size() < knobs.size() + 2)
+    return no_band(fmt::format("{} of {} drawn machines have no solution.", n_left_out, drawn.size()));
+  const Eigen::MatrixXd kept_scores = scores(kept, Eigen::all);
 
   RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}},
-                  .words = words_of_band(knobs)};
+                  .words = words_of_band(knobs, n_left_out, drawn.size())};
   const solver::Outputs& outputs = twin.machine().system.outputs;
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const Channel* channel = run.record.find(outputs.name[o]);
     if (!channel) continue;
-    Eigen::MatrixXd values(n_draws, static_cast<Eigen::Index>(rows.size()));
-    for (int d = 0; d < n_draws; ++d) values.row(d) = drawn[static_cast<std::size_t>(d)].row(static_cast<Eigen::Index>(o));
-    const BandLimits limits = band_limits(scores, values);
+    Eigen::MatrixXd values(kept_scores.rows(), static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      values.row(static_cast<Eigen::Index>(k)) = drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
+    if (values.isZero(0.0)) continue;  // a thermometer of the ambient
+    const BandLimits limits = band_limits(kept_scores, values);
     const double scale = outputs.unit[o] == "K" ? 1.0 : 1e6;  // channels are in um and urad
     for (const auto& [end, difference] : {std::pair("_low", &limits.low), std::pair("_high", &limits.high)})
       band.limits.channels.push_back(
           {channel->name + end, channel->unit, with_differences(*channel, run.record.time_s, rows, *difference, scale)});
   }
   return band;
+}
+
+}  // namespace
+
+std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+  if (!scenarios::says_known_to(*scenario.machine)) return std::nullopt;
+  if (!can_be_reduced(*scenario.machine))
+    return no_band("a temperature is prescribed over time, which no reduced model follows.");
+  try {
+    return band_of(scenario, run, listener);
+  } catch (const SolveError& e) {  // the curve itself may be the full model's
+    return no_band(e.what());
+  }
 }
 
 }  // namespace driftwright::studies

@@ -28,9 +28,10 @@ struct BandedRun {
 /// The reduced model runs each machine (of a lumped machine it is exact), and the band holds the middle 95 % of their
 /// differences from the machine as written (band_limits.hpp), added to the record. At most 500 rows are computed; between
 /// them the differences are linear.
-/// @returns none if no number of the scenario has a `known_to`; no intervals, and the reason in words, for a temperature
-///          prescribed over time, which no reduced model follows
-/// @throws SolveError  if a drawn machine has no solution
+/// Drawn machines without a solution, at temperatures beyond a law's range for example, are left out, and the words say so.
+/// @returns none if no number of the scenario has a `known_to`; no intervals, and the reason in words, for a machine that no
+///          reduced model follows (a temperature prescribed over time, a body that cannot lose its heat), and if more than
+///          half of the drawn machines have no solution
 [[nodiscard]] std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run,
                                                    const Listener& listener);
 

@@ -74,6 +74,24 @@ TEST(KnownBand, IsThereOnlyWhereTheScenarioSaysWhatIsKnown) {
   EXPECT_THAT(predicted(scenario).band->words, HasSubstr("2 numbers known to 10 to 30 %"));
 }
 
+TEST(KnownBand, LeavesOutMachinesWithoutASolutionAndSaysSo) {
+  // A law that refuses temperatures far above the oil's range refuses some machines of a power that is a guess.
+  const scenarios::Scenario scenario = scenarios::read_scenario(
+      write_file("oil.yaml",
+                 "name: oil\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {generator: lumped}\neffects:\n"
+                 "  - {type: node, node: body, capacity: 10 kJ/K}\n"
+                 "  - {type: heat_source, node: body, power: 550 W, known_to: guess}\n"
+                 "  - {type: bearing_friction, node: body, f0: 0.4, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, "
+                 "mean_diameter: 90 "
+                 "mm, f1: 0.0006, load: 10 N}\n"
+                 "  - {type: link, node: body, to: ambient, conductance: 5 W/K}\n"
+                 "displacements: [{name: z, sensitivities: [{node: body, sensitivity: 2 um/K}]}]\n"
+                 "cyclograms: {warm: [[120 min, 100 rpm]]}\n"));
+  const Prediction p = predicted(scenario);
+  ASSERT_TRUE(p.band);
+  EXPECT_THAT(p.band->words, HasSubstr("drawn machines have no solution"));
+}
+
 TEST(KnownBand, SaysThatNoReducedModelFollowsAPrescribedCourse) {
   scenarios::Scenario scenario = body("", ", known_to: 10 %", "");
   scenario.machine->effects.push_back(effects::read_effect(ConfigMap::read_file(
