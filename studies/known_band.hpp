@@ -9,7 +9,7 @@
 
 namespace driftwright::studies {
 
-/// Number of machines that a band is made of, where a run takes less than a millisecond; otherwise about twice the number of
+/// Number of machines that a band is made of, where a run takes about a millisecond; otherwise about twice the number of
 /// uncertain numbers, at least 40.
 inline constexpr int kBandDraws = 200;
 
