@@ -43,11 +43,23 @@ Record read(const std::string& path) {
   return record;
 }
 
+/// The band beside the record of a folder of results; none for a folder without one, and for a record CSV.
+std::optional<RecordBand> read_band(const std::string& path) {
+  const std::filesystem::path file = std::filesystem::path(path) / "record_band.csv";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return RecordBand{
+      .limits = read_record_csv(file.string()),
+      .words = fmt::format("The band of {} is what is known of the numbers of its scenario (`known_to`), without "
+                           "what the model itself lacks.",
+                           path)};
+}
+
 }  // namespace
 
 void compare(const CompareOptions& options) {
   if (is_scenario(options.first) || is_scenario(options.second)) say_what_to_run(options);
-  const studies::RecordComparison comparison = studies::compare_records(read(options.first), read(options.second));
+  const studies::RecordComparison comparison = studies::compare_records(read(options.first), read(options.second),
+                                                                        read_band(options.first), read_band(options.second));
   CommonOptions common = options;
   common.scenario = options.first;
   output::ResultsFolder folder = open_results(common, "comparison");

@@ -118,6 +118,10 @@ std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyc
                                          cyclogram));
 }
 
+std::string band_csv(const RecordBand& band, const output::Provenance& made_by) {
+  return record_csv(band.limits, provenance_lines(made_by, band.words));
+}
+
 std::string shown_path(const std::filesystem::path& path) {
   const std::string relative = std::filesystem::relative(path).string();
   return clean_name(relative.starts_with("..") ? path.string() : relative);

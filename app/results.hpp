@@ -5,6 +5,7 @@
 
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
+#include "base/record_band.hpp"
 #include "findings/machine_section.hpp"
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
@@ -47,6 +48,9 @@ void show(const output::Document& document, const CommonOptions& options);
 /// Text of heat_flows.csv of a run.
 [[nodiscard]] std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyclogram,
                                          const output::Provenance& made_by);
+
+/// Text of the CSV of a band: a record whose channels are the limits, `<name>_low` and `<name>_high`.
+[[nodiscard]] std::string band_csv(const RecordBand& band, const output::Provenance& made_by);
 
 /// A path as the user would type it: relative to the current folder if it lies below it.
 [[nodiscard]] std::string shown_path(const std::filesystem::path& path);

@@ -178,8 +178,8 @@ void schedule(const ScheduleVerbOptions& options) {
   CorrectedSeries series{.file = file_name(given.stem().string(), given.extension().string()),
                          .settings = require_schedule(scenario),
                          .split = options.split};
-  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "report.html", "summary.json",
-                                          "figures", "tables", output::kManifestName};
+  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "record_band.csv", "report.html",
+                                          "summary.json", "figures", "tables", output::kManifestName};
       ours.contains(series.file))
     throw InputError(
         fmt::format("{}: `schedule` writes a file or folder of this name of its own; rename the program", options.program));
@@ -204,7 +204,8 @@ void schedule(const ScheduleVerbOptions& options) {
                                          .after_pause = options.after_pause,
                                          .parts = parts,
                                          .between = between(options, settings),
-                                         .model = options.model};
+                                         .model = options.model,
+                                         .with_band = true};
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   series.prediction = studies::predict_drift(scenario, series.cyclogram, asked, progress.listener(), "schedule");
@@ -222,6 +223,8 @@ void schedule(const ScheduleVerbOptions& options) {
                   prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
   for (const CorrectedProgram& program : series.programs) folder.write_text(program.file, program.corrected.text);
   folder.write_text("record.csv", record_csv(prediction.record, provenance_lines(folder.made_by(), what)));
+  if (prediction.band && !prediction.band->limits.channels.empty())
+    folder.write_text("record_band.csv", band_csv(*prediction.band, folder.made_by()));
   const std::string notation = schedule_notation(series);
   folder.write_text("schedule.txt", notation);
   folder.write_text("schedule.csv",

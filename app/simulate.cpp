@@ -7,6 +7,7 @@
 #include "findings/plausibility.hpp"
 #include "findings/simulation_document.hpp"
 #include "machine/reduced_files.hpp"
+#include "studies/known_band.hpp"
 #include "studies/prediction.hpp"
 
 namespace driftwright::app {
@@ -50,6 +51,7 @@ void simulate(const SimulateOptions& options) {
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(
       scenario, machine, cyclograms, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
   if (fields) fields->finish();
+  std::vector<std::optional<RecordBand>> bands;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const scenarios::SimulatedRun& run = runs[i];
     const std::string& name = cyclograms[i]->name;
@@ -58,6 +60,11 @@ void simulate(const SimulateOptions& options) {
                       record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + name)));
     folder.write_text(is_only ? "heat_flows.csv" : "heat_flows/" + file_name(name, ".csv"),
                       heat_flows_csv(run.trajectory, name, folder.made_by()));
+    bands.push_back(studies::known_band(scenario, {machine, *cyclograms[i], scenario.machine->ambient, run.record},
+                                        progress.listener()));
+    if (bands.back() && !bands.back()->limits.channels.empty())
+      folder.write_text(is_only ? "record_band.csv" : "bands/" + file_name(name, ".csv"),
+                        band_csv(*bands.back(), folder.made_by()));
   }
   if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && machine.is_linear()) {
     std::vector<Drive> drives = {Drive{}};
@@ -69,7 +76,7 @@ void simulate(const SimulateOptions& options) {
     scenarios::export_reduced(reduced->system, reduced->start, reduced->error, drives,
                               [&](const std::string& file) { return folder.path("reduced_model/" + file); });
   }
-  output::Document document = findings::document_of(runs, cyclograms, scenario, machine, worst, folder.made_by());
+  output::Document document = findings::document_of(runs, cyclograms, scenario, machine, worst, bands, folder.made_by());
   findings::add_plausibility(document.body, scenario, unusual_results(runs, *scenario.machine));
   finish(document, folder, progress, options,
          fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",

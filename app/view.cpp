@@ -109,8 +109,10 @@ void view(const ViewOptions& options) {
     page.marks = findings::marks_of(machine);
     page.subtitle = fmt::format("Twin of a machine tool: {}.", model.words());
   }
-  const studies::Prediction prediction = studies::predict_drift(scenario, first, {}, progress.listener(), "view");
+  const studies::Prediction prediction =
+      studies::predict_drift(scenario, first, {.with_band = true}, progress.listener(), "view");
   page.check = prediction.record;
+  page.band = prediction.band;
   page.check_by = fmt::format("`driftwright predict` ({})", prediction.predicted_by);
   page.correction = correction_of(scenario, model, progress.listener());
   if (scenario.study) {

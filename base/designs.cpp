@@ -62,4 +62,18 @@ Eigen::MatrixXd latin_hypercube(int n_samples, int n_variables, std::uint64_t se
   return samples;
 }
 
+Eigen::MatrixXd saltelli_design(int n_samples, int n_variables, std::uint64_t seed) {
+  const Eigen::MatrixXd both = latin_hypercube(n_samples, 2 * n_variables, seed);
+  const auto a = both.leftCols(n_variables), b = both.rightCols(n_variables);
+  Eigen::MatrixXd design((n_variables + 2) * n_samples, n_variables);
+  design.topRows(n_samples) = a;
+  design.middleRows(n_samples, n_samples) = b;
+  for (int i = 0; i < n_variables; ++i) {
+    auto mixed = design.middleRows((2 + i) * n_samples, n_samples);
+    mixed = a;
+    mixed.col(i) = b.col(i);
+  }
+  return design;
+}
+
 }  // namespace driftwright

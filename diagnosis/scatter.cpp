@@ -13,17 +13,17 @@ double step_of(double known_to) {
   return std::min(0.25 * known_to, kLargestStep);
 }
 
-/// The prior of a body's heat capacity, conductivity or expansion.
-double known_of_body(const Twin& twin, const std::string& property, const std::string& body) {
+/// The prior of a body's heat capacity, conductivity or expansion. @param unsaid  without `known_to`
+double known_of_body(const Twin& twin, const std::string& property, const std::string& body, double unsaid) {
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
     const effects::Effect& e = twin.as_written()[i];
     if (e.kind->key == "node" && e.place == body && property == "heat_capacity")
-      return effects::known_to(e.known_to, "capacity", effects::kBodyScatter);
+      return effects::known_to(e.known_to, "capacity", unsaid);
   }
   for (const scenarios::MaterialEntry& m : twin.augmented().model.materials) {
-    if (m.region == body) return effects::known_to(m.known_to, property, effects::kBodyScatter);
+    if (m.region == body) return effects::known_to(m.known_to, property, unsaid);
   }
-  return effects::kBodyScatter;
+  return unsaid;
 }
 
 }  // namespace
@@ -47,14 +47,15 @@ std::vector<Knob> ambient_scatter(const std::vector<MeasuredRun>& runs) {
   return knobs;
 }
 
-std::vector<Knob> scatter(const Twin& twin) {
+std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
+  const bool is_exact = unsaid == Unsaid::kExact;
   std::vector<Knob> knobs;
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
     const effects::Effect& e = twin.as_written()[i];
     for (std::size_t p = 0; p < e.kind->parameters.size(); ++p) {
       const effects::Parameter& parameter = e.kind->parameters[p];
       if (parameter.scatter == 0.0 || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
-      const double known_to = effects::known_to(e.known_to, parameter.name, parameter.scatter);
+      const double known_to = effects::known_to(e.known_to, parameter.name, is_exact ? 0.0 : parameter.scatter);
       if (known_to == 0.0) continue;
       knobs.push_back({.effect = parameter.finding,
                        .where = effects::where_of(e),
@@ -75,7 +76,7 @@ std::vector<Knob> scatter(const Twin& twin) {
     for (const effects::Doubt& d : kind.doubts(scene)) {
       if (!d.scatters) continue;
       Knob size = knobs_of(d).front();
-      size.prior_sd = known_of_body(twin, d.finding, d.where);
+      size.prior_sd = known_of_body(twin, d.finding, d.where, is_exact ? 0.0 : effects::kBodyScatter);
       if (size.prior_sd == 0.0) continue;
       size.step = step_of(size.prior_sd);
       knobs.push_back(std::move(size));

@@ -5,9 +5,12 @@
 
 namespace driftwright::diagnosis {
 
+/// What a number counts as where the scenario has no `known_to` for it: known as usual (10 %, exponents 3 %), or exact.
+enum class Unsaid { kUsual, kExact };
+
 /// Numbers of effects, and conductivity, heat capacity and expansion of each region and node. The prior is that of the
-/// scenario (`known_to`), otherwise that of the catalogue (10 %, exponents 3 %). Fixed numbers have no knob.
-[[nodiscard]] std::vector<Knob> scatter(const Twin& twin);
+/// scenario (`known_to`), otherwise as `unsaid` says. Numbers that are fixed or exact have no knob.
+[[nodiscard]] std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid = Unsaid::kUsual);
 /// The offset of each run's ambient from its record [K], with a standard deviation of 0.3 K.
 [[nodiscard]] std::vector<Knob> ambient_scatter(const std::vector<MeasuredRun>& runs);
 

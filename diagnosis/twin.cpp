@@ -125,6 +125,13 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
   return a;
 }
 
+AugmentedModel without_further_places(const scenarios::MachineModel& model) {
+  return {.model = model,
+          .plan = {},
+          .n_own_effects = model.effects.size(),
+          .air = air_of(effects::heat_balance(model.effects))};
+}
+
 Twin::Workspace::Workspace(const Twin& twin) : system_(twin.machine_.system) {}
 
 Twin::Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& machine, solver::TransientOptions tolerances)

@@ -28,6 +28,9 @@ struct AugmentedModel {
 /// @param mesh  the machine's, for the names of its regions and surfaces
 [[nodiscard]] AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& mesh,
                                      const std::vector<MeasuredRun>& runs);
+/// The machine without further places: for other numbers of its own effects and materials alone. Its reduced model is the
+/// one of predictions; conductivity, capacity and expansion can change if that was made with parts (ReductionPlan).
+[[nodiscard]] AugmentedModel without_further_places(const scenarios::MachineModel& model);
 
 /// Predicts readings. Const and shared by threads; each thread needs a Workspace.
 class Twin {

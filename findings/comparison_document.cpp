@@ -44,10 +44,17 @@ output::Document document_of(const studies::RecordComparison& comparison, const 
                                   {.key = "at_end", .title = "at the end", .digits = output::significant(3)},
                                   {.key = "range_of_first", .title = "range of the first", .digits = output::significant(3)},
                                   {.key = "n_rows", .title = "rows"}}};
+  const bool has_band = comparison.first_band || comparison.second_band;
+  if (has_band) table.columns.push_back({.key = "within_band", .title = "within the band", .digits = output::percent(0)});
   const auto list = in_order(comparison);
-  for (const auto* d : list)
+  for (const auto* d : list) {
     table.rows.push_back({d->name, d->unit, d->rms, d->largest, d->largest_at_s / 60.0, d->at_end, d->range, d->n_rows});
+    if (has_band) table.rows.back().emplace_back(d->within_band);
+  }
   add(body, std::move(table));
+  for (const auto* band : {&comparison.first_band, &comparison.second_band}) {
+    if (*band) add(body, output::Text{.words = (*band)->words});
+  }
   add(body, output::Value{.key = "only_in_first", .datum = comparison.only_first});
   add(body, output::Value{.key = "only_in_second", .datum = comparison.only_second});
   std::vector<std::string> notes;
@@ -59,18 +66,19 @@ output::Document document_of(const studies::RecordComparison& comparison, const 
   for (std::size_t i = 0; i < std::min(kMostComparisonPlots, list.size()); ++i) {
     const std::string header = list[i]->name + "_" + list[i]->unit;
     const std::string unit = output::shown_unit(list[i]->unit);
-    add(body, output::Plot{.title = list[i]->name,
-                           .x_label = "time [min]",
-                           .y_label = fmt::format("{} [{}]", list[i]->name, unit),
-                           .series = {{.label = first,
-                                       .x = minutes(comparison.first),
-                                       .y = comparison.first.at(header).values,
-                                       .width = 3.0},
-                                      {.label = second,
-                                       .x = minutes(comparison.second_at_rows),
-                                       .y = comparison.second_at_rows.at(header).values,
-                                       .style = output::Series::Style::kDashed}},
-                           .half_width = true});
+    output::Plot plot{
+        .title = list[i]->name,
+        .x_label = "time [min]",
+        .y_label = fmt::format("{} [{}]", list[i]->name, unit),
+        .series = {{.label = first, .x = minutes(comparison.first), .y = comparison.first.at(header).values, .width = 3.0},
+                   {.label = second,
+                    .x = minutes(comparison.second_at_rows),
+                    .y = comparison.second_at_rows.at(header).values,
+                    .style = output::Series::Style::kDashed}},
+        .half_width = true};
+    add_interval(plot.series[0], comparison.first_band ? &*comparison.first_band : nullptr, list[i]->name);
+    add_interval(plot.series[1], comparison.second_band ? &*comparison.second_band : nullptr, list[i]->name);
+    add(body, std::move(plot));
   }
   return document;
 }

@@ -66,27 +66,36 @@ std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
   return marks;
 }
 
+void add_interval(output::Series& series, const RecordBand* band, const std::string& channel) {
+  if (!band || !band->low(channel)) return;
+  series.low = band->low(channel)->values;
+  series.high = band->high(channel)->values;
+}
+
 Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
-                   const std::vector<std::string>& names, const Cyclogram& cyclogram) {
+                   const std::vector<std::string>& names, const Cyclogram& cyclogram, const RecordBand* band) {
   Plot plot{.title = title,
             .x_label = "time [min]",
             .y_label = y_label,
             .series = {},
             .bands = {},
             .marks = section_marks(cyclogram)};
-  for (const std::string& name : names)
+  for (const std::string& name : names) {
     plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
+    add_interval(plot.series.back(), band, name);
+  }
   return plot;
 }
 
-void add_channel_plots(output::Section& section, const Record& record, const Cyclogram& cyclogram) {
+void add_channel_plots(output::Section& section, const Record& record, const Cyclogram& cyclogram, const RecordBand* band) {
   constexpr std::size_t kPerPlot = 8;
+  if (band) output::add(section, output::Text{.words = band->words, .key = "band"});
   const auto add = [&](const std::string& title, const std::string& label, const std::string& unit) {
     const std::vector<std::string> names = record.names_with_unit(unit);
     for (std::size_t first = 0; first < names.size(); first += kPerPlot) {
       const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
       const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(first + kPerPlot, names.size()));
-      output::add(section, channels_plot(title, label, record, {begin, end}, cyclogram));
+      output::add(section, channels_plot(title, label, record, {begin, end}, cyclogram, band));
     }
   };
   add("Displacements", "displacement [µm]", "um");

@@ -1,6 +1,7 @@
 #pragma once
 // The section about one simulated cyclogram, for every document that contains one.
 
+#include "base/record_band.hpp"
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
 
@@ -12,12 +13,17 @@ namespace driftwright::findings {
 /// The times of speed changes, with the new speed; none if there are more than 40.
 [[nodiscard]] std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram);
 
-/// Channels of a record over time.
-[[nodiscard]] output::Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
-                                         const std::vector<std::string>& names, const Cyclogram& cyclogram);
+/// Gives a series whose y are all values of a channel the interval of the channel, if the band has one.
+void add_interval(output::Series& series, const RecordBand* band, const std::string& channel);
 
-/// Displacements, tilts and temperatures over time, eight per plot.
-void add_channel_plots(output::Section& section, const Record& record, const Cyclogram& cyclogram);
+/// Channels of a record over time. @param band  intervals of them; null: none
+[[nodiscard]] output::Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
+                                         const std::vector<std::string>& names, const Cyclogram& cyclogram,
+                                         const RecordBand* band = nullptr);
+
+/// Displacements, tilts and temperatures over time, eight per plot, and what their band contains.
+void add_channel_plots(output::Section& section, const Record& record, const Cyclogram& cyclogram,
+                       const RecordBand* band = nullptr);
 
 /// Heat sources and sinks: mean power and heat of each flow across the machine's boundary (`heat_flows`) and within it
 /// (`inner_heat_flows`), and the six largest of the former over time.

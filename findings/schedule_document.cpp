@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "compensation/sensors/interpolate.hpp"
 #include "findings/iso230_3_section.hpp"
 #include "findings/prediction_document.hpp"
 #include "findings/run_section.hpp"
@@ -62,6 +63,24 @@ std::string start_words(const CorrectedSeries& series) {
   return series.prediction.started_from.empty() ? "" : " after " + series.prediction.started_from;
 }
 
+/// Gives a drift the interval of its prediction. @param series  its x in min from the first row of the prediction
+void add_drift_interval(Series& series, const studies::Prediction& prediction, const std::string& displacement) {
+  const Channel* low = prediction.band ? prediction.band->low(displacement) : nullptr;
+  if (!low) return;
+  const Channel& drift = prediction.record.at(displacement);  // the course may count from another zero
+  const auto limits = [&](const Channel& limit) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const double t_s = std::clamp(60.0 * series.x[i], prediction.record.time_s.front(), prediction.record.time_s.back());
+      const auto at = [&](const Channel& c) { return compensation::interpolate(prediction.record.time_s, c.values, t_s); };
+      values.push_back(series.y[i] + at(limit) - at(drift));
+    }
+    return values;
+  };
+  series.low = limits(*low);
+  series.high = limits(*prediction.band->high(displacement));
+}
+
 /// The course of one axis over all parts, from the start of the first.
 Plot course_plot(const CorrectedSeries& series, std::size_t a) {
   const scenarios::ScheduleAxis& axis = series.settings.axes[a];
@@ -77,10 +96,12 @@ Plot course_plot(const CorrectedSeries& series, std::size_t a) {
       residual_um.insert(residual_um.end(), course.residual_um.begin(), course.residual_um.end());
     }
   }
+  Series drift{.label = "predicted drift", .x = t_min, .y = drift_um};
+  add_drift_interval(drift, series.prediction, axis.displacement);
   return {.title = fmt::format("Axis {} ({})", kLetters[axis.axis], axis.displacement),
           .x_label = "time [min]",
           .y_label = "error [µm]",
-          .series = {{.label = "predicted drift", .x = t_min, .y = drift_um},
+          .series = {std::move(drift),
                      {.label = "correction", .x = t_min, .y = correction_um, .style = Series::Style::kDashed},
                      {.label = "what is left", .x = t_min, .y = residual_um, .color = 3}},
           .bands = {{.label = "tolerance", .low = -axis.tolerance_um, .high = axis.tolerance_um}},
@@ -337,6 +358,7 @@ output::Document document_of(const CorrectedSeries& series, const std::string& s
   if (series.is_series()) programs.blocks.emplace_back(parts_table(series));
   body.sections.push_back(std::move(programs));
   Section courses;
+  if (prediction.band) add(courses, output::Text{.words = prediction.band->words, .key = "band"});
   for (std::size_t a = 0; a < series.settings.axes.size(); ++a) add(courses, course_plot(series, a));
   body.sections.push_back(std::move(courses));
   body.sections.push_back(iso230_3_section(series.iso));

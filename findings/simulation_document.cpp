@@ -25,7 +25,8 @@ output::Table end_table(const Record& record) {
 
 output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
                              const std::vector<const Cyclogram*>& cyclograms, const scenarios::Scenario& scenario,
-                             const scenarios::Model& model, const WorstMoment& worst, const output::Provenance& made_by) {
+                             const scenarios::Model& model, const WorstMoment& worst,
+                             const std::vector<std::optional<RecordBand>>& bands, const output::Provenance& made_by) {
   output::Document document{.made_by = made_by,
                             .title = scenario.name + ": simulation",
                             .subtitle = fmt::format("{} nodes, {} cells, {} lumped nodes; {}", model.mesh().n_nodes(),
@@ -49,7 +50,7 @@ output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
                                .digits = output::scientific(0)});
     add(section, end_table(runs[i].record));
     add_overshoots(section, run, model);
-    add_channel_plots(section, runs[i].record, cyclogram);
+    add_channel_plots(section, runs[i].record, cyclogram, bands[i] ? &*bands[i] : nullptr);
     add_heat(section, run, cyclogram);
     section.sections.push_back(iso230_3_section(compensation::iso230_3_figures(runs[i].record)));
     section.sections.back().detail = runs.size() > 1;

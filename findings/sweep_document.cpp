@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/csv_row.hpp"
+#include "output/tornado_picture.hpp"
+#include "studies/sobol_indices.hpp"
 #include "studies/sweep_run.hpp"
 
 namespace driftwright::findings {
@@ -16,7 +18,7 @@ using scenarios::SweepPlan;
 using scenarios::Variation;
 using studies::SweepColumns;
 
-constexpr std::size_t kMostSweepPlots = 24, kMostSweepPoints = 2000, kMostFailures = 50;
+constexpr std::size_t kMostSweepPlots = 24, kMostSweepPoints = 2000, kMostFailures = 50, kMostTornados = 6;
 
 std::string axis_label(const Variation& v) {
   if (v.is_number) return v.unit.empty() ? v.name : fmt::format("{} [{}]", v.name, v.unit);
@@ -78,6 +80,77 @@ Table correlation_table(const SweepPlan& plan, const SweepColumns& columns) {
   return table;
 }
 
+Table sobol_table(const SweepPlan& plan, const SweepColumns& columns) {
+  constexpr output::Digits kTwo = output::decimals(2);
+  Table table{.key = "sobol_indices",
+              .title = "Sobol' indices: shares of the variance of each result",
+              .caption =
+                  "First order: what the number makes alone. Total: with all that it makes together with other numbers. "
+                  "Intervals: 95 %, by bootstrap; more `samples` make them narrower. They hold for the distributions of "
+                  "`vary`.",
+              .columns = {{.key = "result", .title = "result"},
+                          {.key = "varied", .title = "varied"},
+                          {.key = "first_order", .title = "first order", .digits = kTwo},
+                          {.key = "first_order_ci95", .title = "95 %", .digits = kTwo},
+                          {.key = "total", .title = "total", .digits = kTwo},
+                          {.key = "total_ci95", .title = "95 %", .digits = kTwo}}};
+  for (std::size_t i = 0; i < plan.collect.size(); ++i) {
+    const auto indices = studies::sobol_indices(columns.results[i], plan.variations.size());
+    if (!indices) continue;
+    for (std::size_t j = 0; j < indices->size(); ++j) {
+      const auto& [first, total] = (*indices)[j];
+      table.rows.push_back({plan.collect[i].header(), plan.variations[j].header(), first.value,
+                            std::vector<double>{first.low, first.high}, total.value,
+                            std::vector<double>{total.low, total.high}});
+    }
+  }
+  return table;
+}
+
+std::string end_text(const Variation& v, double end) {
+  return v.unit.empty() ? fmt::format("{:.3g}", end) : fmt::format("{:.3g} {}", end, output::shown_unit(v.unit));
+}
+
+/// What each number does to each result: a table, and a tornado of the first results.
+void add_tornados(output::Section& section, const SweepPlan& plan, const SweepColumns& columns) {
+  constexpr output::Digits kFive = output::significant(5);
+  Table table{.key = "tornado",
+              .title = "Each result from one end of a varied number to the other",
+              .caption =
+                  "All other numbers at their means, by least squares over the members. The ends of a distribution are the "
+                  "values that 2.5 % and 97.5 % of all lie below. R² says how much of the variance this explains; far "
+                  "below 1 the numbers act together or bend the result.",
+              .columns = {{.key = "result", .title = "result"},
+                          {.key = "varied", .title = "varied"},
+                          {.key = "low", .title = "low end", .digits = kFive},
+                          {.key = "high", .title = "high end", .digits = kFive},
+                          {.key = "at_low", .title = "result at the low end", .digits = kFive},
+                          {.key = "at_high", .title = "at the high end", .digits = kFive},
+                          {.key = "r2", .title = "R²", .digits = output::decimals(2)}},
+              .detail = true};
+  std::size_t n_pictures = 0;
+  for (std::size_t i = 0; i < plan.collect.size(); ++i) {
+    const auto tornado = studies::tornado_of(plan, columns, i);
+    if (!tornado) continue;
+    output::TornadoPicture picture{.unit = plan.collect[i].header(), .middle = tornado->mean};
+    for (const studies::EndToEnd& bar : tornado->bars) {
+      const Variation& v = plan.variations[bar.variation];
+      table.rows.push_back(
+          {plan.collect[i].header(), v.header(), bar.low, bar.high, bar.at_low, bar.at_high, tornado->explained});
+      picture.bars.push_back({.label = v.name,
+                              .at_low = bar.at_low,
+                              .at_high = bar.at_high,
+                              .low = end_text(v, bar.low),
+                              .high = end_text(v, bar.high)});
+    }
+    if (plan.collect[i].scalar == scenarios::Scalar::kTimeOfPeak || n_pictures++ >= kMostTornados) continue;
+    add(section, output::Picture{.title = fmt::format("{} from one end of each number to the other (R² {:.2f})",
+                                                      plan.collect[i].header(), tornado->explained),
+                                 .svg = output::draw_tornado(picture)});
+  }
+  add(section, std::move(table));
+}
+
 const char* words(scenarios::Design design) {
   switch (design) {
     case scenarios::Design::kList:
@@ -86,6 +159,8 @@ const char* words(scenarios::Design design) {
       return "grid";
     case scenarios::Design::kLatinHypercube:
       return "Latin hypercube";
+    case scenarios::Design::kSobol:
+      return "samples for Sobol' indices";
   }
   return "";
 }
@@ -117,6 +192,8 @@ output::Document sweep_document(const SweepPlan& plan, const std::map<std::size_
   }
   output::Section results{.title = "Results"};
   add(results, results_table(plan, columns));
+  if (plan.design == scenarios::Design::kSobol && rows.size() == plan.n_members) add(results, sobol_table(plan, columns));
+  add_tornados(results, plan, columns);
   add(results, correlation_table(plan, columns));
   body.sections.push_back(std::move(results));
   output::Section plots{.title = "Results over what varies"};

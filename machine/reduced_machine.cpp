@@ -131,6 +131,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   }
   plan.tolerance_K = scenario.solver.reduction_tolerance_K;
   plan.with_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  plan.with_parts = says_known_to(model);  // for the bands about its curves
   std::vector<Cyclogram> typical;
   for (const Cyclogram& c : scenario.cyclograms) {
     const bool trains = !scenario.study || std::find(scenario.study->train.begin(), scenario.study->train.end(), c.name) !=

@@ -24,6 +24,9 @@ void check(const Plot& plot) {
       throw std::logic_error(
           fmt::format("plot '{}': series '{}' has {} x and {} y", plot.title, s.label, s.x.size(), s.y.size()));
     }
+    if (s.low.size() != s.high.size() || (!s.low.empty() && s.low.size() != s.y.size()))
+      throw std::logic_error(fmt::format("plot '{}': series '{}' has {} y with {} lower and {} upper limits", plot.title,
+                                         s.label, s.y.size(), s.low.size(), s.high.size()));
     if (!(s.width > 0.0) || std::isinf(s.width))
       throw std::logic_error(
           fmt::format("plot '{}': series '{}' has the width {}; it must be positive", plot.title, s.label, s.width));
@@ -40,14 +43,15 @@ void check(const Plot& plot) {
 
 std::string plot_svg(const Plot& plot) {
   const PlotFrame frame = plot_frame(plot);
-  std::string curves;
+  std::string strips, curves;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) strips += drawn_interval(plot, i, frame.x, frame.y);
   for (std::size_t i = 0; i < plot.series.size(); ++i) curves += drawn_series(plot, i, frame.x, frame.y);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"system-ui, Arial, "
       "sans-serif\" font-size=\"13\" fill=\"#333333\" role=\"img\" aria-label=\"{2}\">\n"
       "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n"
-      "{3}<g class=\"curves\" fill=\"none\" stroke-linejoin=\"round\">\n{4}</g>\n{5}</svg>\n",
-      frame.width, frame.height, escaped_line(plot.title), drawn_under_curves(plot, frame), curves,
+      "{3}{4}<g class=\"curves\" fill=\"none\" stroke-linejoin=\"round\">\n{5}</g>\n{6}</svg>\n",
+      frame.width, frame.height, escaped_line(plot.title), drawn_under_curves(plot, frame), strips, curves,
       drawn_over_curves(plot, frame));
 }
 

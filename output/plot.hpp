@@ -22,6 +22,7 @@ struct Series {
   Style style = Style::kLine;
   double width = 2.0;  ///< width of the line; a point's diameter is twice this [px]
   int color = -1;      ///< index into the palette, to mark the same quantity in several plots; -1: by order in the plot
+  std::vector<double> low = {}, high = {};  ///< interval of each value, drawn as a strip; as long as y, or empty
 };
 
 /// A horizontal strip behind the curves, such as a tolerance; a dashed line when low == high.
@@ -61,7 +62,7 @@ struct Bars {
 
 /// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). They have no ids, so
 /// any number of them fits in a page. The same plots give the same bytes.
-/// @throws std::logic_error  when x and y of a series differ in length, its width is not positive, or a band's limits or the
+/// @throws std::logic_error  when x and y of a series, or its limits, differ in length, its width is not positive, or a band's limits or the
 ///                           place of a mark are not finite (beyond 1e300 counts as infinite)
 [[nodiscard]] std::vector<std::string> draw_svgs(std::span<const Plot> plots);
 

@@ -99,6 +99,21 @@ void append_dots(std::string& path, std::vector<PlotPoint> points) {
   }
 }
 
+/// Appends the strip between two lines of the same x as a closed subpath. @param upper, lower  [px]; y grows downwards
+void append_strip(std::string& path, const std::vector<PlotPoint>& upper, const std::vector<PlotPoint>& lower) {
+  char command = 'M';
+  for (const PlotPoint& p : upper) {
+    path += command;
+    append_point(path, p);
+    command = 'L';
+  }
+  for (auto p = lower.rbegin(); p != lower.rend(); ++p) {
+    path += 'L';
+    append_point(path, *p);
+  }
+  if (!upper.empty()) path += 'Z';
+}
+
 std::string stroked(const std::string& path, const std::string& color, double width, const char* more) {
   if (path.empty()) return "";
   return fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"{:.4g}\"{}/>\n", path, color, width, more);
@@ -124,6 +139,32 @@ std::string drawn_series(const Plot& plot, std::size_t series, const AxisScale& 
   return fmt::format("<g class=\"curve\"><title>{}</title>\n{}{}</g>\n", escaped_line(s.label),
                      stroked(line, color, s.width, style == Series::Style::kDashed ? " stroke-dasharray=\"7 5\"" : ""),
                      stroked(points, color, 2.0 * s.width, " stroke-linecap=\"round\""));
+}
+
+std::string drawn_interval(const Plot& plot, std::size_t series, const AxisScale& x, const AxisScale& y) {
+  const Series& s = plot.series[series];
+  std::string path;
+  std::vector<PlotPoint> upper, lower;
+  for (std::size_t i = 0; i < s.low.size(); ++i) {
+    if (!has_place(s.x[i]) || !has_place(s.y[i]) || !has_place(s.low[i]) || !has_place(s.high[i])) {
+      append_strip(path, upper, lower);
+      upper.clear();
+      lower.clear();
+      continue;
+    }
+    const PlotPoint up{x(s.x[i]), y(s.high[i])}, down{up.x, y(s.low[i])};
+    if (!upper.empty() && column_of(up) == column_of(upper.back())) {
+      upper.back().y = std::min(upper.back().y, up.y);
+      lower.back().y = std::max(lower.back().y, down.y);
+    } else {
+      upper.push_back(up);
+      lower.push_back(down);
+    }
+  }
+  append_strip(path, upper, lower);
+  if (path.empty()) return "";
+  return fmt::format("<path class=\"interval\" fill=\"{}\" fill-opacity=\"0.18\" d=\"{}\"/>\n", series_color(plot, series),
+                     path);
 }
 
 }  // namespace driftwright::output

@@ -19,4 +19,9 @@ namespace driftwright::output {
 /// (2014) 797-808.
 [[nodiscard]] std::string drawn_series(const Plot& plot, std::size_t series, const AxisScale& x, const AxisScale& y);
 
+/// The strip between the limits of a series as one path, in its colour and translucent, so that strips of several curves
+/// show through each other. Each unbroken part is one subpath: along the upper limits, back along the lower ones. Of samples
+/// in one column of half a pixel the widest limits remain. "" for a series without limits.
+[[nodiscard]] std::string drawn_interval(const Plot& plot, std::size_t series, const AxisScale& x, const AxisScale& y);
+
 }  // namespace driftwright::output

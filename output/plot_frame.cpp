@@ -83,6 +83,9 @@ PlotFrame plot_frame(const Plot& plot) {
       if (!has_place(s.x[i]) || !has_place(s.y[i])) continue;
       x.include(s.x[i]);
       y.include(s.y[i]);
+      if (s.low.empty() || !has_place(s.low[i]) || !has_place(s.high[i])) continue;
+      y.include(s.low[i]);
+      y.include(s.high[i]);
     }
   }
   PlotFrame frame{.width = plot.half_width ? kHalfPlotWidth : kPlotWidth, .is_empty = x.is_empty()};

@@ -15,6 +15,7 @@
 #include "machine/machine_key.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
+#include "studies/known_band.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -120,15 +121,17 @@ Record from_row(const Record& record, std::size_t first) {
 
 }  // namespace
 
+bool can_be_reduced(const scenarios::MachineModel& machine) {
+  const effects::HeatBalance balance = effects::heat_balance(machine.effects);
+  return std::none_of(balance.fixed.begin(), balance.fixed.end(),
+                      [](const auto& fixed) { return !fixed.follows_ambient && fixed.temperature_K.value.size() > 1; });
+}
+
 scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
   const scenarios::MachineModel& machine = *scenario.machine;
   if (scenario.solver.model == scenarios::ModelKind::kReduced) return scenarios::ModelKind::kReduced;
   if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) return scenarios::ModelKind::kFull;
-  const effects::HeatBalance balance = effects::heat_balance(machine.effects);
-  const bool follows_time = std::any_of(balance.fixed.begin(), balance.fixed.end(), [](const auto& fixed) {
-    return !fixed.follows_ambient && fixed.temperature_K.value.size() > 1;
-  });
-  return follows_time ? scenarios::ModelKind::kFull : scenarios::ModelKind::kReduced;
+  return can_be_reduced(machine) ? scenarios::ModelKind::kReduced : scenarios::ModelKind::kFull;
 }
 
 struct PredictingModels::Known {
@@ -208,11 +211,19 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
     rows.first -= first;
     rows.last -= first;
   }
-  return {.record = from_row(run.record, first),
-          .parts = std::move(series.parts),
-          .predicted_by = ahead.model->words(),
-          .started_from = std::move(ahead.started_from),
-          .start_checks = ahead.before ? start_checks(*ahead.before, run.record) : std::vector<StartCheck>{}};
+  Prediction prediction{.record = from_row(run.record, first),
+                        .parts = std::move(series.parts),
+                        .predicted_by = ahead.model->words(),
+                        .started_from = std::move(ahead.started_from),
+                        .start_checks = ahead.before ? start_checks(*ahead.before, run.record) : std::vector<StartCheck>{}};
+  if (options.with_band) {
+    scenarios::Scenario in_series = scenario;
+    in_series.machine = ahead.machine;
+    prediction.band = known_band(
+        in_series, {*ahead.model, series.cyclogram, ahead.machine.ambient, prediction.record, run.record.time_s[first]},
+        listener);
+  }
+  return prediction;
 }
 
 compensation::Iso230Figures iso_figures(const Prediction& prediction) {

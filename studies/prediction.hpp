@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/record_band.hpp"
 #include "compensation/judging/iso230_3.hpp"
 #include "machine/job_series.hpp"
 #include "machine/simulated_run.hpp"
@@ -18,6 +19,7 @@ struct PredictionOptions {
   int parts = 1;                 ///< number of times that the job is done
   std::string between = {};      ///< pause between two of them, such as "2 min"; empty: none
   std::string model = {};        ///< "reduced", "full" or empty: predicting_model()
+  bool with_band = false;        ///< also computes Prediction::band
 };
 
 /// The change of a displacement or tilt over the run before, from its first reading to its last.
@@ -33,7 +35,11 @@ struct Prediction {
   std::string predicted_by;                ///< the model, in words, for terminal and report
   std::string started_from;                ///< the run before, in words; empty: the scenario's start
   std::vector<StartCheck> start_checks;    ///< for a record with displacements or tilts of the machine
+  std::optional<RecordBand> band = {};     ///< of the record (known_band.hpp), if asked for
 };
+
+/// False if a temperature is prescribed over time, which no reduced model can follow.
+[[nodiscard]] bool can_be_reduced(const scenarios::MachineModel& machine);
 
 /// The default model of predictions: the reduced model, even if the scenario says full, since a prediction must be ready
 /// before its job. It is the full model if the scenario says so and has lumped nodes only, or has a temperature that is

@@ -45,26 +45,62 @@ ChannelDifference difference(const std::vector<double>& time_s, const Channel& f
   return d;
 }
 
+/// The values of a channel at other times; NaN beyond its own.
+std::vector<double> values_at(const Record& record, const Channel& channel, const std::vector<double>& time_s) {
+  std::vector<double> values;
+  for (double t_s : time_s) {
+    const bool reached = t_s >= record.time_s.front() && t_s <= record.time_s.back();
+    values.push_back(reached ? compensation::interpolate(record.time_s, channel.values, t_s) : kNone);
+  }
+  return values;
+}
+
+std::optional<RecordBand> band_at(const std::optional<RecordBand>& band, const std::vector<double>& time_s) {
+  if (!band) return std::nullopt;
+  RecordBand at{.limits = {.source = band->limits.source, .time_s = time_s, .channels = {}}, .words = band->words};
+  for (const Channel& limit : band->limits.channels)
+    at.limits.channels.push_back({limit.name, limit.unit, values_at(band->limits, limit, time_s)});
+  return at;
+}
+
+/// Share of the rows with a value in which it is within the band of a channel; none without rows or without a band of it.
+std::optional<double> share_in_band(const std::optional<RecordBand>& band, const std::string& channel,
+                                    const std::vector<double>& values) {
+  const Channel* low = band ? band->low(channel) : nullptr;
+  if (!low) return std::nullopt;
+  const std::vector<double>& high = band->high(channel)->values;
+  int n_rows = 0, n_within = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i] + low->values[i] + high[i])) continue;
+    ++n_rows;
+    n_within += values[i] >= low->values[i] && values[i] <= high[i] ? 1 : 0;
+  }
+  if (n_rows == 0) return std::nullopt;
+  return static_cast<double>(n_within) / n_rows;
+}
+
 }  // namespace
 
-RecordComparison compare_records(const Record& first, const Record& second) {
+RecordComparison compare_records(const Record& first, const Record& second, const std::optional<RecordBand>& first_band,
+                                 const std::optional<RecordBand>& second_band) {
   RecordComparison c{.first = first, .second_at_rows = {.source = second.source, .time_s = first.time_s, .channels = {}}};
   if (first.time_s.back() < second.time_s.front() || second.time_s.back() < first.time_s.front())
     throw InputError(fmt::format("{} is from {:g} to {:g} s, {} from {:g} to {:g} s; they share no stretch of time",
                                  first.source, first.time_s.front(), first.time_s.back(), second.source,
                                  second.time_s.front(), second.time_s.back()));
+  c.first_band = band_at(first_band, first.time_s);
+  c.second_band = band_at(second_band, first.time_s);
   for (const Channel& channel : first.channels) {
     const Channel* other = partner(second, channel);
     if (!other) {
       c.only_first.push_back(channel.header());
       continue;
     }
-    Channel at_rows{channel.name, channel.unit, {}};
-    for (double t_s : first.time_s) {
-      const bool reached = t_s >= second.time_s.front() && t_s <= second.time_s.back();
-      at_rows.values.push_back(reached ? compensation::interpolate(second.time_s, other->values, t_s) : kNone);
-    }
+    Channel at_rows{channel.name, channel.unit, values_at(second, *other, first.time_s)};
     c.channels.push_back(difference(first.time_s, channel, at_rows.values));
+    std::optional<double>& within = c.channels.back().within_band;
+    within = share_in_band(c.first_band, channel.name, at_rows.values);
+    if (!within) within = share_in_band(c.second_band, channel.name, channel.values);
     c.second_at_rows.channels.push_back(std::move(at_rows));
   }
   for (const Channel& channel : second.channels) {

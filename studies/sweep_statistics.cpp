@@ -1,5 +1,6 @@
 #include "studies/sweep_statistics.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -79,6 +80,67 @@ std::optional<Spread> spread_of(const std::vector<double>& values) {
   if (kept.empty()) return std::nullopt;
   std::sort(kept.begin(), kept.end());
   return Spread{kept.front(), 0.5 * (kept[(kept.size() - 1) / 2] + kept[kept.size() / 2]), kept.back()};
+}
+
+namespace {
+
+bool is_log(const Variation& v) {
+  return v.spread && v.spread->kind == scenarios::Spread::Kind::kLogUniform;
+}
+
+/// The ends of a varied number. @param values  of the members
+std::pair<double, double> ends_of(const Variation& v, const std::vector<double>& values) {
+  if (v.spread) return {v.spread->at(0.025), v.spread->at(0.975)};
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  return {*least, *greatest};
+}
+
+}  // namespace
+
+std::optional<Tornado> tornado_of(const SweepPlan& plan, const SweepColumns& columns, std::size_t result) {
+  std::vector<std::size_t> numbers, members;
+  for (std::size_t v = 0; v < plan.variations.size(); ++v) {
+    if (plan.variations[v].is_number) numbers.push_back(v);
+  }
+  const std::vector<double>& all = columns.results[result];
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    if (!std::isnan(all[m])) members.push_back(m);
+  }
+  if (numbers.empty() || members.size() < 2 * numbers.size() + 2) return std::nullopt;
+
+  const auto n = static_cast<Eigen::Index>(members.size()), n_numbers = static_cast<Eigen::Index>(numbers.size());
+  const auto scaled = [&](std::size_t v, double number) { return is_log(plan.variations[v]) ? std::log(number) : number; };
+  Eigen::MatrixXd x(n, n_numbers);
+  Eigen::VectorXd y(n);
+  for (Eigen::Index m = 0; m < n; ++m) {
+    const std::size_t member = members[static_cast<std::size_t>(m)];
+    y[m] = all[member];
+    for (Eigen::Index i = 0; i < n_numbers; ++i) {
+      const std::size_t v = numbers[static_cast<std::size_t>(i)];
+      x(m, i) = scaled(v, columns.varied[v][member]);
+    }
+  }
+  const Eigen::RowVectorXd mean = x.colwise().mean();
+  Tornado tornado{.mean = y.mean(), .explained = 0.0, .bars = {}};
+  x.rowwise() -= mean;
+  y.array() -= tornado.mean;
+  const Eigen::RowVectorXd size = x.colwise().norm();
+  if (!(y.squaredNorm() > 0.0) || !(size.minCoeff() > 0.0)) return std::nullopt;
+  x.array().rowwise() /= size.array();  // numbers of all magnitudes count alike for the rank
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(x);
+  if (fit.rank() < n_numbers) return std::nullopt;
+  const Eigen::VectorXd slope = fit.solve(y);
+  tornado.explained = 1.0 - (y - x * slope).squaredNorm() / y.squaredNorm();
+  for (Eigen::Index i = 0; i < n_numbers; ++i) {
+    const std::size_t v = numbers[static_cast<std::size_t>(i)];
+    const auto [low, high] = ends_of(plan.variations[v], columns.varied[v]);
+    const auto at = [&](double number) { return tornado.mean + slope[i] * (scaled(v, number) - mean[i]) / size[i]; };
+    tornado.bars.push_back({.variation = v, .low = low, .high = high, .at_low = at(low), .at_high = at(high)});
+  }
+  std::stable_sort(tornado.bars.begin(), tornado.bars.end(), [](const EndToEnd& a, const EndToEnd& b) {
+    return std::abs(a.at_high - a.at_low) > std::abs(b.at_high - b.at_low);
+  });
+  return tornado;
 }
 
 }  // namespace driftwright::studies

@@ -160,12 +160,31 @@ Json json_of(const TwinCorrection& correction, const std::vector<std::string>& n
           {"period_um", correction.period_um}};
 }
 
-Json check_json(const TwinPage& page, const std::vector<std::string>& names) {
+/// Values of channels row by row; NaN where a record lacks one.
+std::vector<double> row_by_row(const Record& record, const std::vector<std::string>& names) {
+  std::vector<const Channel*> channels;
+  for (const std::string& name : names) channels.push_back(record.find(name));
   std::vector<double> values;
-  for (std::size_t row = 0; row < page.check.n_samples(); ++row) {
-    for (const std::string& name : names) values.push_back(page.check.at(name).values[row]);
+  for (std::size_t row = 0; row < record.n_samples(); ++row) {
+    for (const Channel* c : channels) values.push_back(c ? c->values[row] : std::nan(""));
   }
-  return {{"cyclogram", page.first}, {"by", page.check_by}, {"values", text_of(values)}};
+  return values;
+}
+
+Json check_json(const TwinPage& page, const std::vector<std::string>& names) {
+  for (const std::string& name : names) (void)page.check.at(name);
+  Json check = {{"cyclogram", page.first}, {"by", page.check_by}, {"values", text_of(row_by_row(page.check, names))}};
+  if (!page.band || page.band->limits.channels.empty()) return check;
+  std::vector<std::string> low, high;
+  for (const std::string& name : names) {
+    low.push_back(name + "_low");
+    high.push_back(name + "_high");
+  }
+  check["band"] = {{"time_s", text_of(page.check.time_s)},
+                   {"low", text_of(row_by_row(page.band->limits, low))},
+                   {"high", text_of(row_by_row(page.band->limits, high))},
+                   {"words", page.band->words}};
+  return check;
 }
 
 Json cyclograms_json(const TwinPage& page) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/record.hpp"
+#include "base/record_band.hpp"
 #include "compensation/predictors/regression.hpp"
 #include "output/provenance.hpp"
 #include "output/twin/page_parts.hpp"
@@ -25,10 +25,11 @@ struct TwinPage {
   std::string name = {}, subtitle = {};
   TwinModel model = {};
   std::vector<Cyclogram> cyclograms = {};
-  std::string first = {};     ///< name of the cyclogram that the page begins with
-  double interval_s = 60.0;   ///< of rows
-  Record check = {};          ///< result of `predict` for `first`, at those rows
-  std::string check_by = {};  ///< who made it, in words
+  std::string first = {};               ///< name of the cyclogram that the page begins with
+  double interval_s = 60.0;             ///< of rows
+  Record check = {};                    ///< result of `predict` for `first`, at those rows
+  std::string check_by = {};            ///< who made it, in words
+  std::optional<RecordBand> band = {};  ///< of it
   std::optional<TwinSurface> surface = {};
   std::vector<PictureMark> marks = {};
   TwinNetwork network = {};  ///< of a machine without a surface

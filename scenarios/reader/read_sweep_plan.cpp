@@ -160,9 +160,10 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
     read_range(in, kind, v);
   }
   if (v.spread) v.is_number = true;
-  if (v.spread && design != Design::kLatinHypercube)
-    in.fail(kind, fmt::format("a distribution requires `design: latin_hypercube`; a list or grid requires `values`, or "
-                              "`from`, `to` and `steps`"));
+  if (v.spread && design != Design::kLatinHypercube && design != Design::kSobol)
+    in.fail(kind,
+            fmt::format("a distribution requires `design: latin_hypercube` or `sobol`; a list or grid requires `values`, or "
+                        "`from`, `to` and `steps`"));
   in.reject_unknown_keys();
   return v;
 }
@@ -207,6 +208,17 @@ void count_members(const ConfigMap& in, SweepPlan& plan) {
           in.fail("design", fmt::format("the grid has more than {} members", kMostMembers));
       }
       break;
+    case Design::kSobol: {
+      const int n = in.integer("samples"), n_variables = static_cast<int>(sizes.size());
+      if (n > kMostMembers / (n_variables + 2))
+        in.fail("samples",
+                fmt::format("Sobol' indices of {} entries of `vary` take {} members a sample; at most {} members, "
+                            "{} samples, are allowed",
+                            n_variables, n_variables + 2, kMostMembers, kMostMembers / (n_variables + 2)));
+      plan.samples = saltelli_design(n, n_variables, static_cast<std::uint64_t>(in.integer("seed")));
+      plan.n_members = static_cast<std::size_t>(plan.samples.rows());
+      break;
+    }
     case Design::kLatinHypercube: {
       const int n = in.integer("samples");
       const int seed = in.integer("seed");
@@ -294,7 +306,8 @@ schema::Map variation_schema() {
                    schema::optional("to", number, "last of them"),
                    schema::optional("steps", integer(2, kMostMembers), "how many"),
                    schema::optional("spacing", choice({"linear", "log"}), "linear", "of steps"),
-                   schema::optional("uniform", row({number, number}), "or, of a Latin hypercube: between two values"),
+                   schema::optional("uniform", row({number, number}),
+                                    "or, of a Latin hypercube or for Sobol' indices: between two values"),
                    schema::optional("log_uniform", row({number, number}), "the same for its logarithm"),
                    schema::optional("normal", schema::map(normal), "or: about a mean")},
           .groups = {{Group::Rule::kExactlyOne, kKinds,
@@ -367,9 +380,9 @@ const std::vector<schema::Map>& sweep_schemas() {
         .name = "study",
         .keys = {compulsory("name", schema::name(), "of the study; names the folder of results"),
                  compulsory("scenario", text(), "its scenario, relative to the study"),
-                 compulsory(
-                     "design", choice({"list", "grid", "latin_hypercube"}),
-                     "`list`: values side by side, member by member; `grid`: each with each; `latin_hypercube`: samples"),
+                 compulsory("design", choice({"list", "grid", "latin_hypercube", "sobol"}),
+                            "`list`: values side by side, member by member; `grid`: each with each; `latin_hypercube`: "
+                            "samples; `sobol`: samples for Sobol' indices"),
                  compulsory("vary", list(schema::map(variation_schema()), 1), "what varies"),
                  schema::optional("cyclograms", list(text(), 1), Said{"all of the scenario"},
                                   "that are simulated for each member"),
@@ -377,14 +390,19 @@ const std::vector<schema::Map>& sweep_schemas() {
                                   "channels (for peak, time_of_peak and end) or `channel.scalar`")},
         .when_key = "design",
         .about = "Many variants of one scenario (docs/how-to/sweep.md)."};
-    schema::Map list = common, grid = common, hypercube = common;
+    schema::Map list = common, grid = common, hypercube = common, sobol = common;
     list.when_word = "list";
     grid.when_word = "grid";
     hypercube.when_word = "latin_hypercube";
     hypercube.name = "study (latin_hypercube)";
     hypercube.keys.push_back(compulsory("samples", integer(1, kMostMembers), "how many members"));
     hypercube.keys.push_back(schema::optional("seed", integer(0, 2147483647), 1, "of the samples"));
-    return std::vector{list, grid, hypercube};
+    sobol.when_word = "sobol";
+    sobol.name = "study (sobol)";
+    sobol.keys.push_back(compulsory("samples", integer(8, kMostMembers),
+                                    "base samples; there are (entries of `vary` + 2) times as many members"));
+    sobol.keys.push_back(schema::optional("seed", integer(0, 2147483647), 1, "of the samples"));
+    return std::vector{list, grid, hypercube, sobol};
   }();
   return all;
 }
@@ -405,8 +423,10 @@ SweepPlan read_sweep_plan(const std::string& path) {
   if (!std::filesystem::is_regular_file(scenario_path))
     in.fail("scenario", fmt::format("there is no file '{}' (paths are relative to the study)", scenario_path.string()));
   plan.scenario = effects::read_scenario_tree(scenario_path.string());
-  const std::map<std::string, Design> designs = {
-      {"list", Design::kList}, {"grid", Design::kGrid}, {"latin_hypercube", Design::kLatinHypercube}};
+  const std::map<std::string, Design> designs = {{"list", Design::kList},
+                                                 {"grid", Design::kGrid},
+                                                 {"latin_hypercube", Design::kLatinHypercube},
+                                                 {"sobol", Design::kSobol}};
   plan.design = designs.at(in.choice("design"));
 
   const std::vector<ConfigMap> entries = in.maps("vary");

@@ -512,6 +512,14 @@ Scenario read_scenario(const ConfigMap& top) {
   return scenario;
 }
 
+bool says_known_to(const MachineModel& model) {
+  const auto says = [](const auto& entry) {
+    return std::any_of(entry.known_to.begin(), entry.known_to.end(), [](const auto& said) { return said.second > 0.0; });
+  };
+  return std::any_of(model.effects.begin(), model.effects.end(), says) ||
+         std::any_of(model.materials.begin(), model.materials.end(), says);
+}
+
 const MachineModel& require_machine(const Scenario& scenario, const std::string& verb) {
   if (scenario.machine) return *scenario.machine;
   throw InputError(

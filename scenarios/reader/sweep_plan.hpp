@@ -66,7 +66,7 @@ struct CollectedScalar {
   [[nodiscard]] std::string header() const;
 };
 
-enum class Design { kList, kGrid, kLatinHypercube };
+enum class Design { kList, kGrid, kLatinHypercube, kSobol };
 
 struct SweepPlan {
   std::string path;
@@ -76,7 +76,7 @@ struct SweepPlan {
   Design design = Design::kList;
   std::vector<Variation> variations;
   std::size_t n_members = 0;
-  Eigen::MatrixXd samples;  ///< of a Latin hypercube: n_members x variations, in (0, 1)
+  Eigen::MatrixXd samples;  ///< of a Latin hypercube or for Sobol' indices: n_members x variations, in (0, 1)
   std::vector<CollectedScalar> collect;
 
   /// The value of a variation in a member (from 0).

@@ -14,6 +14,9 @@ DAYS = {  # minutes, rpm
 OWN_LAW = HERE.parent / "own_law.yaml"
 SHIFT = [(120, 6000), (30, 0), (90, 3000)]  # its cyclogram
 PRELOAD = "k: {} 1/K"
+FIRST = HERE.parent / "first_machine.yaml"
+LINK = "  - {type: link, node: housing, to: ambient, conductance: 5 W/K}\n"
+FALLEN = "  - {type: sensor_detached, sensor: t_housing, share: 0.8, time: 95 min}\n"
 FILM = "surface: headstock_outer, film: {} W/(m^2 K)"
 
 
@@ -78,6 +81,11 @@ def main():
         other.write_text(text.replace(PRELOAD.format(0.01), PRELOAD.format(0.04)))
         rows = measured(simulated(program, other, SHIFT, work), len(DAYS))
         (HERE / "own_law.csv").write_text("# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
+        text = FIRST.read_text()
+        assert text.count(LINK) == 1, "the link of the first machine has changed"
+        other.write_text(text.replace(LINK, LINK + FALLEN))
+        rows = measured(simulated(program, other, SHIFT, work), 11)
+        (HERE / "fallen.csv").write_text("# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
         rows = [f"{int(i % 4 in (1, 2))} {int(i % 4 in (2, 3))}" for i in range(1000)]
         (HERE / "encoder_rows.txt").write_text("\n".join(rows) + "\n")
         (HERE / "drift.csv").write_text("time_s,drift_um\n0,0\n0.5,6\n1,12\n")

@@ -101,6 +101,36 @@ TEST(PredictVerb, RunsTheModelThatSimulateRuns) {
   }
 }
 
+TEST(PredictVerb, HasTheBandOfWhatIsKnownAndSoHaveTheOthers) {
+  // The drift is proportional to the power, which alone is uncertain: its limits are those of the power.
+  const std::string known = write_file("known.yaml", with(kHead, "exponent: 1}", "exponent: 1, known_to: {power: 10 %}}"));
+  const auto predicted = run_verb("band_p", "predict " + known + " --cyclogram morning");
+  const Record record = record_in(predicted), band = read_record_csv((predicted / "record_band.csv").string());
+  ASSERT_EQ(band.time_s, record.time_s);
+  for (const std::size_t row : {std::size_t{10}, record.n_samples() - 1}) {
+    const double drift_um = record.at("nose_z").values[row];
+    EXPECT_NEAR(band.at("nose_z_low").values[row] / drift_um, std::exp(-0.196), 1e-3);
+    EXPECT_NEAR(band.at("nose_z_high").values[row] / drift_um, std::exp(0.196), 1e-3);
+  }
+  const Json summary = Json::parse(read_text(predicted / "summary.json"));
+  EXPECT_THAT(summary["band"].get<std::string>(),
+              AllOf(HasSubstr("1 number known to 10 %"), HasSubstr("nor what the model itself lacks")));
+  EXPECT_NEAR(summary["channels"][0]["at_end_ci95"][1].get<double>(), band.at("nose_z_high").values.back(), 1e-3);
+  EXPECT_THAT(read_text(predicted / "report.html"), HasSubstr("class=\"interval\""));
+
+  const auto simulated = run_verb("band_s", "simulate " + known + " --cyclogram morning");
+  EXPECT_EQ(rows_of(simulated / "record_band.csv"), rows_of(predicted / "record_band.csv"));
+  const auto compared = run_verb("band_c", "compare " + simulated.string() + " " + predicted.string());
+  EXPECT_EQ(Json::parse(read_text(compared / "summary.json"))["channels"][0]["within_band"], 1.0);
+  const auto both = run_verb("band_both", "simulate " + known + " --cyclogram morning --cyclogram afternoon");
+  EXPECT_EQ(rows_of(both / "bands/morning.csv"), rows_of(simulated / "record_band.csv"));
+
+  const auto without = run_verb("band_none", "predict " + write_file("head.yaml", kHead) + " --cyclogram morning");
+  EXPECT_FALSE(std::filesystem::exists(without / "record_band.csv"));
+  EXPECT_FALSE(Json::parse(read_text(without / "summary.json")).contains("band"));
+  EXPECT_EQ(rows_of(without / "record.csv"), rows_of(predicted / "record.csv")) << "the curve itself is the same";
+}
+
 TEST(PredictVerb, SaysWhatPredicted) {
   const std::string scenario = write_file("head.yaml", kHead);
   const auto out = fresh_folder("words") / "out";

@@ -210,6 +210,35 @@ collect: [t_body.end]
               0.01);
 }
 
+TEST(Sweep, SaysByIndicesAndATornadoWhichNumberDecides) {
+  const fs::path folder = fresh_folder("sobol");
+  const std::string study = write_study(folder, fs::absolute("scenarios/first_machine.yaml").string(), R"(design: sobol
+samples: 32
+vary:
+  - {name: power, key: "effects[heat_source].power", uniform: [100 W, 200 W]}
+  - {name: capacity, key: "effects[node@housing].capacity", uniform: [18.9 kJ/K, 19.1 kJ/K]}
+collect: [nose_z.end]
+)");
+  const CommandOutcome outcome = run_program("sweep " + study + " -o " + (folder / "out").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(read_table(folder / "out" / "sweep.csv").size(), 1u + 4u * 32u);
+  const Table indices = read_table(folder / "out" / "tables" / "sobol_indices.csv");
+  ASSERT_EQ(indices.size(), 3u);
+  EXPECT_EQ(cell(indices, 1, "varied"), "power_W");
+  EXPECT_NEAR(std::stod(cell(indices, 1, "total")), 1.0, 0.25) << "32 samples";
+  EXPECT_LT(std::stod(cell(indices, 2, "total")), 1e-3);
+  const Table tornado = read_table(folder / "out" / "tables" / "tornado.csv");
+  EXPECT_EQ(cell(tornado, 1, "varied"), "power_W") << "the longest bar first";
+  EXPECT_NEAR(std::stod(cell(tornado, 1, "at_high")) / std::stod(cell(tornado, 1, "at_low")), 197.5 / 102.5, 1e-3)
+      << "the drift is proportional to the power";
+  const CommandOutcome too_many = run_program("sweep " + write_study(folder, lumped(), R"(design: sobol
+samples: 400000
+vary: [{key: "effects[coolant].flow", uniform: [3 L/min, 9 L/min]}]
+)"));
+  EXPECT_EQ(too_many.exit_code, 2);
+  EXPECT_THAT(too_many.output, HasSubstr("take 3 members a sample; at most 1000000 members, 333333 samples, are allowed"));
+}
+
 TEST(Sweep, GivesTheSameBytesOnOneAndTwoThreads) {
   const fs::path folder = fresh_folder("threads");
   const std::string study = write_study(folder, lumped(), kHypercube);

@@ -73,5 +73,19 @@ TEST(Grid, TakesEachCombinationOnceTheFirstSlowest) {
   EXPECT_EQ(grid_point(23, {2, 3, 4}), (std::vector<std::size_t>{1, 2, 3}));
 }
 
+TEST(SaltelliDesign, ExchangesOneColumnABlock) {
+  const Eigen::MatrixXd design = saltelli_design(50, 3, 9);
+  ASSERT_EQ(design.rows(), 5 * 50);
+  ASSERT_EQ(design.cols(), 3);
+  const Eigen::MatrixXd a = design.topRows(50), b = design.middleRows(50, 50);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::MatrixXd mixed = design.middleRows((2 + i) * 50, 50);
+    for (int column = 0; column < 3; ++column) EXPECT_EQ(mixed.col(column), (column == i ? b : a).col(column)) << i;
+  }
+  EXPECT_NE(a, b);
+  EXPECT_GT(design.minCoeff(), 0.0);
+  EXPECT_LT(design.maxCoeff(), 1.0);
+}
+
 }  // namespace
 }  // namespace driftwright::designs_test

@@ -262,6 +262,35 @@ TEST(Plot, BandsAreWithinTheFrameWhereverTheCurvesAre) {
   }
 }
 
+TEST(Plot, AnIntervalIsAStripBetweenItsLimitsWithinTheFrame) {
+  Plot plot = of_series(
+      {{.label = "drift", .x = {0, 1, 2, 3, 4}, .y = {0, 4, 3, NAN, 2}}, {.label = "other", .x = {0, 4}, .y = {1, 1}}});
+  plot.series[0].low = {0, 2, -9, 1, 1};
+  plot.series[0].high = {0, 5, 12, 3, 3};
+  const Drawn d = drawn(plot);
+  std::vector<SvgElement> strips;
+  for (const SvgElement& e : d.picture) {
+    if (e.name == "path" && e.attributes.contains("class") && e.attributes.at("class") == "interval") strips.push_back(e);
+  }
+  ASSERT_EQ(strips.size(), 1u) << "only the curve that has one";
+  EXPECT_EQ(strips[0].attributes.at("fill"), series_color(plot, 0));
+  std::vector<At> read;
+  for (const PathCommand& c : path_of(strips[0].attributes.at("d"))) {
+    if (c.letter != 'Z') read.push_back({d.x(c.numbers.at(0)), d.y(c.numbers.at(1))});
+  }
+  // Along the upper limits, back along the lower ones; a gap where the value is missing; then a single row.
+  const std::vector<At> expected = {{0, 0}, {1, 5}, {2, 12}, {2, -9}, {1, 2}, {0, 0}, {4, 3}, {4, 1}};
+  ASSERT_EQ(read.size(), expected.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_NEAR((read[i].x - expected[i].x) / d.x.per_px, 0.0, 2.0 * kRounding) << i;
+    EXPECT_NEAR((read[i].y - expected[i].y) / d.y.per_px, 0.0, 2.0 * kRounding) << i;
+  }
+  const Sides frame = frame_of(d.picture);
+  EXPECT_GT(frame.bottom, path_of(strips[0].attributes.at("d")).at(3).numbers.at(1)) << "the axis reaches the lowest limit";
+  plot.series[0].high.pop_back();
+  EXPECT_THROW((void)draw_svgs(std::vector{plot}), std::logic_error);
+}
+
 TEST(Plot, MarksAreLinesWithLabelsAboveTheFrame) {
   Plot plot = ramp();
   plot.marks.push_back({3.0, "after the last sample"});

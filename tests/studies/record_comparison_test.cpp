@@ -38,6 +38,22 @@ TEST(CompareRecords, SaysHowFarEachChannelIsApart) {
   EXPECT_TRUE(std::isnan(c.second_at_rows.channels[0].values[3]));
 }
 
+TEST(CompareRecords, SayInHowManyRowsOneIsWithinTheBandOfTheOther) {
+  const Record simulated = record("model", {0, 60, 120, 180}, {{"z", "um", {0, 2, 4, 6}}, {"t", "degC", {20, 20, 20, 20}}});
+  const Record measured =
+      record("machine", {0, 60, 120, 180}, {{"z", "um", {0, 2.4, 4.9, 5.8}}, {"t", "degC", {20, 21, 22, 23}}});
+  // At rows of its own: the limits of z are linear between them, 0.25 per minute to either side.
+  const RecordBand band{.limits = record("model", {0, 180}, {{"z_low", "um", {0, 5.25}}, {"z_high", "um", {0, 6.75}}}),
+                        .words = "what is known"};
+  const RecordComparison c = compare_records(simulated, measured, band);
+  EXPECT_DOUBLE_EQ(c.channels[0].within_band.value(), 0.5) << "0 and 5.8; 2.4 and 4.9 are above 2.25 and 4.5";
+  EXPECT_FALSE(c.channels[1].within_band) << "t has no band";
+  EXPECT_DOUBLE_EQ(c.first_band->high("z")->values[2], 4.5);
+  EXPECT_FALSE(c.second_band);
+  const RecordComparison turned = compare_records(measured, simulated, std::nullopt, band);
+  EXPECT_DOUBLE_EQ(turned.channels[0].within_band.value(), 0.5);
+}
+
 TEST(CompareRecords, ThatShareNothingAreRefused) {
   const Record a = record("a", {0, 60}, {{"z", "um", {0, 1}}});
   EXPECT_THAT(

@@ -38,7 +38,7 @@ class Chart {
   }
   markAt(time_s) { this.mark.style.transform = `translateX(${this.x(time_s)}px)`; }
 
-  // @param curves  [{time_s, values, colour, isStepped, width}]
+  // @param curves  [{time_s, values, colour, isStepped, width, strip}]; strip: {time_s, low, high}, drawn under all curves
   // @param range   [low, high], or null: the range of the curves
   // NaN leaves a gap.
   draw(curves, end_s, range = null, band = null, begin_s = 0) {
@@ -55,6 +55,16 @@ class Chart {
       pen.fillRect(this.x(begin_s), this.y(band), this.x(end_s) - this.x(begin_s), this.y(-band) - this.y(band));
       pen.globalAlpha = 1;
     }
+    pen.globalAlpha = 0.18;
+    for (const {strip, colour} of curves) {
+      if (!strip) continue;
+      pen.fillStyle = colour;
+      pen.beginPath();
+      for (let i = 0; i < strip.high.length; ++i) pen.lineTo(this.x(strip.time_s[i]), this.y(strip.high[i]));
+      for (let i = strip.low.length - 1; i >= 0; --i) pen.lineTo(this.x(strip.time_s[i]), this.y(strip.low[i]));
+      pen.fill();
+    }
+    pen.globalAlpha = 1;
     for (const curve of curves) {
       pen.lineWidth = curve.width ?? 2;
       pen.strokeStyle = curve.colour;
@@ -71,7 +81,7 @@ class Chart {
 
   reach(curves, band) {
     let low = band ? -1.1 * band : Infinity, high = band ? 1.1 * band : -Infinity;
-    for (const {values} of curves) for (const v of values) {
+    for (const {values, strip} of curves) for (const list of [values, ...(strip ? [strip.low, strip.high] : [])]) for (const v of list) {
       if (v < low) low = v;
       if (v > high) high = v;
     }

@@ -238,17 +238,18 @@ class Page {
       const output = Number(byId("channel").value), {drift, left} = corrected(run, output, data.correction);
       const unit = UNIT[this.outputs[output].unit], isDrift = unit === "µm";
       charts.drift.unit = `${this.outputs[output].name} [${unit}]`;
-      charts.drift.draw([{time_s, values: drift, colour: styleOf("--drift")}, ...(isDrift ? [{time_s, values: left, colour: styleOf("--left")}] : [])],
+      const strip = twin.strip(output);
+      charts.drift.draw([{time_s, values: drift, colour: styleOf("--drift"), strip}, ...(isDrift ? [{time_s, values: left, colour: styleOf("--left")}] : [])],
                         run.end_s, null, isDrift && data.tolerance_um > 0 ? data.tolerance_um : null);
       const most = list => list.reduce((m, v) => Math.max(m, Math.abs(v)), 0).toFixed(1);
       byId("worst").textContent = `At most ${most(drift)} ${unit}` + (isDrift ? `, ${most(left)} µm with the correction` : "") +
-          (isDrift && data.tolerance_um > 0 ? `; tolerance ${data.tolerance_um} µm.` : ".");
+          (isDrift && data.tolerance_um > 0 ? `; tolerance ${data.tolerance_um} µm.` : ".") + (strip ? " " + data.check.band.words : "");
     }
     if (this.dirty.plan && run.isDone) {
       byId("text").value = planText(run.plan);
       this.dirty.plan = false;
     }
-    charts.warm.draw(this.thermometers.map(i => ({time_s, values: run.column(i), colour: this.colourOf(i)})), run.end_s);
+    charts.warm.draw(this.thermometers.map(i => ({time_s, values: run.column(i), colour: this.colourOf(i), strip: twin.strip(i)})), run.end_s);
     this.charted_ms = performance.now();
     if (run.isDone) this.dirty.charts = false;
   }

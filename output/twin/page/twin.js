@@ -72,6 +72,21 @@ class Twin {
   stateNow() { return this.run.stateAt(this.time_s, this.state); }
   ambientNow_K() { return ambientAt(this.machine.ambient, this.time_s); }
 
+  // The 95 % band of an output from what is known of the machine's numbers; null without one, and for another plan than the
+  // cyclogram that it was computed for.
+  strip(output) {
+    const {check, drive} = this.data, band = check.band;
+    if (!band) return null;
+    const plan = this.cyclogram(check.cyclogram), now = this.run.plan;
+    const isSame = now.length === plan.length && now.every((section, i) => section.duration_s === plan[i].duration_s &&
+        drive.every((_, d) => section.drive[d] === plan[i].drive[d]));
+    if (!isSame) return null;
+    this.limits ??= {time_s: doubles(band.time_s), low: doubles(band.low), high: doubles(band.high)};
+    const {time_s, low, high} = this.limits, n = this.machine.outputs_told.length;
+    const column = list => Float64Array.from(time_s, (_, row) => list[row * n + output]);
+    return {time_s, low: column(low), high: column(high)};
+  }
+
   // Compares the page with `driftwright predict`: the largest differences over the embedded rows.
   check() {
     const {check} = this.data, values = doubles(check.values);

@@ -1,0 +1,200 @@
+#include "studies/known_band.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/designs.hpp"
+#include "base/normal.hpp"
+#include "base/parallel.hpp"
+#include "diagnosis/scatter.hpp"
+#include "studies/band_limits.hpp"
+#include "studies/prediction.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+using diagnosis::Knob;
+using diagnosis::Twin;
+
+constexpr std::size_t kMostBandRows = 500;  // of a longer record the band is linear between this many of its rows
+constexpr std::uint64_t kBandSeed = 1;
+constexpr Eigen::Index kFewStates = 60;
+constexpr int kFewestDraws = 40;
+
+/// Number of machines that are drawn: as many as `predict` takes at most twice its time for (0.3 to 0.4 s of processor time).
+/// A machine whose laws depend on the drive alone takes 0.05 ms (two bodies) to 1.4 ms (49 states) a draw, so kBandDraws of
+/// them fit; the time grows with the cube of the states. Laws of temperatures need steps in time, 3 ms a draw for six bodies
+/// with a thermostat. The number of draws then follows that of the scenario's numbers: the limits of a linear function are
+/// exact from any number of draws above n_numbers + 1 (band_limits.hpp), and twice as many show how a function bends.
+int n_draws_of(const solver::ReducedSystem& system, std::size_t n_knobs) {
+  const bool is_quick = system.is_linear() && system.size() <= kFewStates;
+  return std::max(2 * (static_cast<int>(n_knobs) + 1), is_quick ? kBandDraws : kFewestDraws);
+}
+
+/// Rows of the record at which the band is computed.
+std::vector<std::size_t> band_rows(std::size_t n_rows) {
+  const std::size_t n = std::min(n_rows, kMostBandRows);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < n; ++i) rows.push_back(n == 1 ? 0 : i * (n_rows - 1) / (n - 1));
+  return rows;
+}
+
+/// The run as the twin takes it, at some rows of the record.
+diagnosis::MeasuredRun banded_run_of(const BandedRun& run, const std::vector<std::size_t>& rows) {
+  diagnosis::MeasuredRun asked;
+  asked.name = run.cyclogram.name;
+  asked.cyclogram = run.cyclogram;
+  asked.ambient = run.ambient;
+  for (const std::size_t row : rows) {
+    asked.row_in_grid.push_back(static_cast<Eigen::Index>(asked.grid_s.size()));
+    asked.grid_s.push_back(run.first_row_s + run.record.time_s[row]);
+  }
+  asked.time_s = asked.grid_s;
+  return asked;
+}
+
+/// The reduced model that the draws are run on.
+scenarios::ReducedMachine reduced_of(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+  scenarios::ReductionPlan plan = scenarios::reduction_plan(scenario, {&run.cyclogram});
+  plan.n_modes = 0;
+  plan.with_fields = false;
+  if (const scenarios::Machine* full = run.model.full(); full && run.model.mesh().n_nodes() == 0)
+    return scenarios::reduce(*scenario.machine, *full, plan);
+  return scenarios::open_reduced(*scenario.machine, plan, listener);
+}
+
+/// "10 to 30 %", "a factor of 2": one sigma of the numbers.
+std::string known_words(const std::vector<Knob>& knobs) {
+  const auto [least, most] =
+      std::minmax_element(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) { return a.prior_sd < b.prior_sd; });
+  const auto word = [](double sd) { return sd == effects::kGuess ? "a factor of 2" : fmt::format("{:.3g} %", 100.0 * sd); };
+  if (least->prior_sd == most->prior_sd) return word(least->prior_sd);
+  if (most->prior_sd == effects::kGuess) return word(least->prior_sd) + " to " + word(most->prior_sd);
+  return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
+}
+
+/// @param n_left_out  of n_draws machines
+std::string words_of_band(const std::vector<Knob>& knobs, std::size_t n_left_out, std::size_t n_draws) {
+  const std::string left_out =
+      n_left_out == 0 ? "" : fmt::format(" {} of {} drawn machines have no solution and are left out.", n_left_out, n_draws);
+  return fmt::format(
+      "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). They "
+      "do "
+      "not contain numbers without `known_to`, nor what the model itself lacks.{}",
+      knobs.size(), knobs.size() == 1 ? "" : "s", known_words(knobs), left_out);
+}
+
+RecordBand no_band(const std::string& why) {
+  return {.limits = {}, .words = fmt::format("There are no bands: {}", why.substr(0, why.find('\n')))};
+}
+
+/// Readings of one machine at the rows, n_outputs x n_rows.
+using Readings = Eigen::MatrixXd;
+
+/// Differences of the drawn machines' readings from those of the machine as written; none for one without a solution.
+std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs,
+                                                       const Eigen::MatrixXd& scores, const diagnosis::MeasuredRun& run,
+                                                       const Listener& listener) {
+  Twin::Workspace own(twin);
+  const std::shared_ptr<const solver::KeptRun> kept = twin.kept_run(twin.as_written(), run, own, false);
+  const auto readings = [&](const diagnosis::TwinState& state, Twin::Workspace& workspace) -> Readings {
+    return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
+  };
+  const Readings as_written = readings(twin.as_written(), own);
+  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(scores.rows()));
+  for_each_index(
+      drawn.size(), [&] { return Twin::Workspace(twin); },
+      [&](std::size_t d, Twin::Workspace& workspace) {
+        diagnosis::TwinState state = twin.as_written();
+        for (std::size_t k = 0; k < knobs.size(); ++k)
+          knobs[k].set(
+              state, knobs[k].value(knobs[k].prior_sd * scores(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
+        try {
+          drawn[d] = readings(state, workspace) - as_written;
+        } catch (const SolveError&) {
+        } catch (const RangeError&) {  // outside the range of a law
+        }
+      },
+      listener);
+  return drawn;
+}
+
+/// Differences at some rows, linearly at all of them, added to the values.
+std::vector<double> with_differences(const Channel& channel, const std::vector<double>& time_s,
+                                     const std::vector<std::size_t>& rows, const Eigen::VectorXd& difference, double scale) {
+  std::vector<double> values = channel.values;
+  for (std::size_t i = 0, after = 0; i < values.size(); ++i) {
+    while (rows[after] < i) ++after;
+    const std::size_t before = rows[after] == i ? after : after - 1;
+    const double from_s = time_s[rows[before]], to_s = time_s[rows[after]];
+    const double share = before == after ? 1.0 : (time_s[i] - from_s) / (to_s - from_s);
+    values[i] += scale * ((1.0 - share) * difference[static_cast<Eigen::Index>(before)] +
+                          share * difference[static_cast<Eigen::Index>(after)]);
+  }
+  return values;
+}
+
+/// The band of a machine that some reduced model follows.
+std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  std::optional<scenarios::ReducedMachine> made;
+  if (!run.model.reduced()) made.emplace(reduced_of(scenario, run, listener));
+  const diagnosis::AugmentedModel augmented = diagnosis::without_further_places(machine);
+  solver::TransientOptions tolerances = scenario.solver.transient;  // far below the width of any band
+  tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
+  tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
+  const Twin twin(augmented, made ? *made : *run.model.reduced(), tolerances);
+  const std::vector<Knob> knobs = diagnosis::scatter(twin, diagnosis::Unsaid::kExact);
+  if (knobs.empty()) return std::nullopt;
+  listener.begin(fmt::format("computing the band of {} numbers", knobs.size()));
+
+  const std::vector<std::size_t> rows = band_rows(run.record.n_samples());
+  const int n_draws = n_draws_of(twin.machine().system, knobs.size());
+  Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
+  for (double& u : scores.reshaped()) u = normal_quantile(u);
+  const std::vector<std::optional<Readings>> drawn =
+      drawn_differences(twin, knobs, scores, banded_run_of(run, rows), listener);
+  std::vector<Eigen::Index> kept;
+  for (std::size_t d = 0; d < drawn.size(); ++d) {
+    if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));
+  }
+  const std::size_t n_left_out = drawn.size() - kept.size();
+  if (2 * n_left_out > drawn.size() || kept.size() < knobs.size() + 2)
+    return no_band(fmt::format("{} of {} drawn machines have no solution.", n_left_out, drawn.size()));
+  const Eigen::MatrixXd kept_scores = scores(kept, Eigen::all);
+
+  RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}},
+                  .words = words_of_band(knobs, n_left_out, drawn.size())};
+  const solver::Outputs& outputs = twin.machine().system.outputs;
+  for (std::size_t o = 0; o < outputs.name.size(); ++o) {
+    const Channel* channel = run.record.find(outputs.name[o]);
+    if (!channel) continue;
+    Eigen::MatrixXd values(kept_scores.rows(), static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      values.row(static_cast<Eigen::Index>(k)) = drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
+    if (values.isZero(0.0)) continue;  // a thermometer of the ambient
+    const BandLimits limits = band_limits(kept_scores, values);
+    const double scale = outputs.unit[o] == "K" ? 1.0 : 1e6;  // channels are in um and urad
+    for (const auto& [end, difference] : {std::pair("_low", &limits.low), std::pair("_high", &limits.high)})
+      band.limits.channels.push_back(
+          {channel->name + end, channel->unit, with_differences(*channel, run.record.time_s, rows, *difference, scale)});
+  }
+  return band;
+}
+
+}  // namespace
+
+std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+  if (!scenarios::says_known_to(*scenario.machine)) return std::nullopt;
+  if (!can_be_reduced(*scenario.machine))
+    return no_band("a temperature is prescribed over time, which no reduced model follows.");
+  try {
+    return band_of(scenario, run, listener);
+  } catch (const SolveError& e) {  // the curve itself may be the full model's
+    return no_band(e.what());
+  }
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,107 @@
+// The band about a curve by what is known of the numbers: one body, whose course and sensitivities have a closed form.
+
+#include "studies/known_band.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studies/prediction.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::studies::known_band_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kPower_W = 100.0, kConductance_W_K = 5.0, kCapacity_J_K = 10e3, kSensitivity_um_K = 2.0;
+
+/// One body in constant heat. @param capacity, power, conductance  further keys of each
+scenarios::Scenario body(const std::string& capacity, const std::string& power, const std::string& conductance) {
+  return scenarios::read_scenario(write_file(
+      "body.yaml",
+      fmt::format("name: body\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {{generator: lumped}}\neffects:\n"
+                  "  - {{type: node, node: body, capacity: 10 kJ/K{}}}\n"
+                  "  - {{type: heat_source, node: body, power: 100 W{}}}\n"
+                  "  - {{type: link, node: body, to: ambient, conductance: 5 W/K{}}}\n"
+                  "sensors: [{{name: t_body, node: body}}]\n"
+                  "displacements: [{{name: z, sensitivities: [{{node: body, sensitivity: 2 um/K}}]}}]\n"
+                  "cyclograms: {{warm: [[120 min, 1000 rpm]]}}\n",
+                  capacity, power, conductance)));
+}
+
+Prediction predicted(const scenarios::Scenario& scenario) {
+  return predict_drift(scenario, scenario.cyclogram("warm"), {.with_band = true}, {}, "test");
+}
+
+double high(const Prediction& p, const std::string& channel, std::size_t row) {
+  return p.band->high(channel)->values[row] - p.record.at(channel).values[row];
+}
+double low(const Prediction& p, const std::string& channel, std::size_t row) {
+  return p.band->low(channel)->values[row] - p.record.at(channel).values[row];
+}
+
+TEST(KnownBand, OfSmallUncertaintiesIsThatOfLinearTheory) {
+  const double sd_capacity = 0.001, sd_power = 0.002, sd_conductance = 0.0015;
+  const Prediction p = predicted(body(", known_to: 0.1 %", ", known_to: 0.2 %", ", known_to: 0.15 %"));
+  ASSERT_TRUE(p.band);
+  for (const std::size_t row : {std::size_t{5}, std::size_t{30}, std::size_t{60}, std::size_t{120}}) {
+    const double t_s = p.record.time_s[row], steady_K = kPower_W / kConductance_W_K;
+    const double x = kConductance_W_K * t_s / kCapacity_J_K, decay = std::exp(-x), rise_K = steady_K * (1.0 - decay);
+    const double by_power = rise_K, by_conductance = -rise_K + steady_K * x * decay, by_capacity = -steady_K * x * decay;
+    const double sd_K = std::hypot(sd_power * by_power, sd_conductance * by_conductance, sd_capacity * by_capacity);
+    const double half = 0.5 * (high(p, "z", row) - low(p, "z", row));
+    EXPECT_NEAR(half / (1.96 * kSensitivity_um_K * sd_K), 1.0, 1e-3) << row;  // ten times as wide, it is 4e-3 away
+    EXPECT_NEAR(0.5 * (high(p, "t_body", row) - low(p, "t_body", row)) / (1.96 * sd_K), 1.0, 1e-3) << row;
+  }
+  EXPECT_EQ(high(p, "z", 0), 0.0) << "the start is known";
+}
+
+TEST(KnownBand, OfAGuessIsSkewedAsTheNumberIs) {
+  const Prediction p = predicted(body("", ", known_to: guess", ""));
+  const double drift_um = p.record.at("z").values.back();
+  EXPECT_NEAR((drift_um + high(p, "z", 120)) / drift_um, std::pow(2.0, 1.96), 0.02 * std::pow(2.0, 1.96));
+  EXPECT_NEAR((drift_um + low(p, "z", 120)) / drift_um, std::pow(2.0, -1.96), 0.02 * std::pow(2.0, -1.96));
+}
+
+TEST(KnownBand, IsThereOnlyWhereTheScenarioSaysWhatIsKnown) {
+  EXPECT_FALSE(predicted(body("", "", "")).band);
+  EXPECT_FALSE(predicted(body("", ", known_to: fixed", "")).band);
+  const scenarios::Scenario scenario = body("", ", known_to: 10 %", ", known_to: 30 %");
+  EXPECT_FALSE(predict_drift(scenario, scenario.cyclogram("warm"), {}, {}, "test").band) << "nobody asked";
+  EXPECT_THAT(predicted(scenario).band->words, HasSubstr("2 numbers known to 10 to 30 %"));
+}
+
+TEST(KnownBand, LeavesOutMachinesWithoutASolutionAndSaysSo) {
+  // A law that refuses temperatures far above the oil's range refuses some machines of a power that is a guess.
+  const scenarios::Scenario scenario = scenarios::read_scenario(
+      write_file("oil.yaml",
+                 "name: oil\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {generator: lumped}\neffects:\n"
+                 "  - {type: node, node: body, capacity: 10 kJ/K}\n"
+                 "  - {type: heat_source, node: body, power: 550 W, known_to: guess}\n"
+                 "  - {type: bearing_friction, node: body, f0: 0.4, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, "
+                 "mean_diameter: 90 "
+                 "mm, f1: 0.0006, load: 10 N}\n"
+                 "  - {type: link, node: body, to: ambient, conductance: 5 W/K}\n"
+                 "displacements: [{name: z, sensitivities: [{node: body, sensitivity: 2 um/K}]}]\n"
+                 "cyclograms: {warm: [[120 min, 100 rpm]]}\n"));
+  const Prediction p = predicted(scenario);
+  ASSERT_TRUE(p.band);
+  EXPECT_THAT(p.band->words, HasSubstr("drawn machines have no solution"));
+}
+
+TEST(KnownBand, SaysThatNoReducedModelFollowsAPrescribedCourse) {
+  scenarios::Scenario scenario = body("", ", known_to: 10 %", "");
+  scenario.machine->effects.push_back(effects::read_effect(ConfigMap::read_file(
+      write_file("held.yaml", "{type: fixed_temperature, surface: s, temperature: [[0 s, 20 degC], [60 s, 30 degC]]}"))));
+  const scenarios::Model none{};
+  const auto band = known_band(scenario, {none, scenario.cyclogram("warm"), scenario.machine->ambient, {}}, {});
+  ASSERT_TRUE(band);
+  EXPECT_TRUE(band->limits.channels.empty());
+  EXPECT_THAT(band->words, HasSubstr("prescribed over time"));
+}
+
+}  // namespace
+}  // namespace driftwright::studies::known_band_test
