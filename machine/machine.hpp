@@ -40,7 +40,8 @@ struct Machine {
   PlacedMachine placed;
   /// None without a mesh, if nothing needs it, or when built with known influences.
   std::optional<solver::Elasticity> elasticity;
-  /// Elastic responses K⁻¹l of the displacements and tilts with points, 3 n_nodes each; empty for a machine without elasticity.
+  /// Elastic responses K⁻¹l of the displacements and tilts with points, 3 n_nodes each; empty for a machine without
+  /// elasticity.
   std::vector<Eigen::VectorXd> responses;
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };

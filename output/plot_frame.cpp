@@ -20,7 +20,8 @@ constexpr double kTickLength = 5.0, kTickGap = 4.0;    // of ticks, and from the
 constexpr double kYLabelRoom = 30.0;                   // left of the tick labels [px]
 constexpr double kPerXTick = 100.0, kPerYTick = 45.0;  // room that a tick should have [px]
 constexpr double kYMargin = 0.05;                      // of the y range, above and below the curves
-// Tables of results have seven digits; differences that they do not show fill no plot. Times are shown to the last digit that ticks can have.
+// Tables of results have seven digits; differences that they do not show fill no plot. Times are shown to the last digit
+// that ticks can have.
 constexpr double kLeastYDifference = 1e-6, kLeastXDifference = 1e-12;
 
 /// Room for the widest of some labels [px].
