@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/lists.hpp"
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
 
@@ -16,8 +17,7 @@ constexpr double kAtBound = 1e-6;  // share of a step
 constexpr double kTail = 4.0;      // degrees of freedom of a claim's prior
 
 bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_number);
 }
 
 bool acts_alike(const effects::Effect& a, const effects::Effect& b) {

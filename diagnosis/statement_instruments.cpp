@@ -14,6 +14,12 @@ namespace {
 constexpr double kDriveLags_s[] = {0.0, 120.0, 600.0, 1800.0, 5400.0};
 constexpr double kReadingLags_s[] = {30.0, 120.0, 360.0, 1200.0, 3600.0};
 
+/// A channel's row of a matrix with one row a channel of the run; empty for a channel that the run has not.
+Eigen::RowVectorXd row_of(const MeasuredRun& run, const std::string& channel, const Eigen::MatrixXd& rows) {
+  const MeasuredChannel* found = run.find(channel);
+  return found ? Eigen::RowVectorXd(rows.row(found - run.channels.data())) : Eigen::RowVectorXd();
+}
+
 }  // namespace
 
 double StatementBuilder::swing(const std::string& name) const {
@@ -32,10 +38,7 @@ double StatementBuilder::swing(const std::string& name) const {
 }
 
 StatementBuilder::Row StatementBuilder::predicted(std::size_t r, const std::string& name) const {
-  for (std::size_t c = 0; c < runs_[r].channels.size(); ++c) {
-    if (runs_[r].channels[c].name == name) return machine_[r].predicted().row(static_cast<Eigen::Index>(c));
-  }
-  return {};
+  return row_of(runs_[r], name, machine_[r].predicted());
 }
 
 Statement StatementBuilder::about(const Channel& c) {
@@ -172,13 +175,7 @@ void StatementBuilder::expansions() {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     std::vector<Acting> acts;
     for (const Channel& c : channels_) {
-      const auto of = by_run([&](std::size_t r) -> Row {
-        const Eigen::MatrixXd all = machine_[r].expansion(p);
-        for (std::size_t i = 0; i < runs_[r].channels.size(); ++i) {
-          if (runs_[r].channels[i].name == c.name) return all.row(static_cast<Eigen::Index>(i));
-        }
-        return {};
-      });
+      const auto of = by_run([&](std::size_t r) -> Row { return row_of(runs_[r], c.name, machine_[r].expansion(p)); });
       if (std::any_of(of.begin(), of.end(), [](const Row& row) { return row.squaredNorm() > 0.0; }))
         acts.push_back(alone(c.name, of));
     }

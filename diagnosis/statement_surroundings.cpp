@@ -155,9 +155,7 @@ std::vector<Acting> StatementBuilder::exactly(const TwinState& with, double size
   std::vector<Eigen::MatrixXd> difference;
   const bool is_solved = has_solution([&] {
     for (const MeasuredRun& run : runs_) {
-      difference.push_back((twin.read(with, run, twin.respond(with, run, workspace)) -
-                            twin.read(state_, run, twin.respond(state_, run, workspace))) /
-                           size);
+      difference.push_back((twin.readings(with, run, workspace) - twin.readings(state_, run, workspace)) / size);
     }
   });
   if (!is_solved) return {};

@@ -185,9 +185,8 @@ void add_fading(const DoubtScene& s, const Body& body, const Doubt& while_turnin
   }
 }
 
-/// Heat from a time on, in one record; `since` takes those that last into later records.
-void add_later(const DoubtScene& s, const Body& body, const Doubt& while_turning, std::vector<Doubt>& list,
-               std::vector<Doubt>& since) {
+/// Heat from a time on: in one record, or into the later ones.
+void add_later(const DoubtScene& s, const Body& body, const Doubt& while_turning, std::vector<Doubt>& list) {
   for (std::size_t run = 0; run < s.runs.size(); ++run) {
     for (const bool with_speed : {false, true}) {
       Doubt later = while_turning;
@@ -202,7 +201,7 @@ void add_later(const DoubtScene& s, const Body& body, const Doubt& while_turning
       if (with_speed) later.numbers[0].low = 0.0;  // otherwise a blower that was switched on, a heater that failed
       later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
       later.grid = time_grid(s.runs[run].length_s, 8);
-      add_with_lasting(s, run, later, since);
+      add_with_lasting(s, run, later, list);
     }
   }
 }
@@ -234,7 +233,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     list.push_back(while_turning);
     if (s.starts_and_stops) add_of_stops(s, body, while_turning, list);
     if (s.turns) add_fading(s, body, while_turning, list);
-    add_later(s, body, while_turning, list, since);
+    add_later(s, body, while_turning, since);
     list.push_back(of_wave(s, body));
   }
   list.insert(list.end(), since.begin(), since.end());

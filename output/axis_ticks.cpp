@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/characters.hpp"
+
 namespace driftwright::output {
 namespace {
 
@@ -71,13 +73,9 @@ std::string with_exponent(const DecimalNumber& number) {
 
 /// In characters.
 std::size_t longest_of(const std::vector<std::string>& labels) {
-  std::ptrdiff_t longest = 0;
-  for (const std::string& label : labels) {
-    longest = std::max(longest, std::count_if(label.begin(), label.end(), [](char c) {
-                         return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // other bytes continue a character
-                       }));
-  }
-  return static_cast<std::size_t>(longest);
+  std::size_t longest = 0;
+  for (const std::string& label : labels) longest = std::max(longest, n_characters(label));
+  return longest;
 }
 
 /// 5, 2 and 1 times powers of ten, the largest first. @param unit  that they are multiples of

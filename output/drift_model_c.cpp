@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/characters.hpp"
 #include "compensation/predictors/control_tables.hpp"
 
 namespace driftwright::output {
@@ -98,11 +99,6 @@ std::string quoted(std::string text) {
   }
   for (std::size_t at = 0; (at = text.find("*/")) != std::string::npos;) text.replace(at, 2, "* /");
   for (std::size_t at = 0; (at = text.find("/*")) != std::string::npos;) text.replace(at, 2, "/ *");
-  return text;
-}
-
-std::string upper(std::string text) {
-  for (char& ch : text) ch = static_cast<char>(std::toupper(static_cast<unsigned char>(ch)));
   return text;
 }
 
@@ -248,7 +244,7 @@ std::string probed_function(const DeployedModel& d, const std::string& name, con
 }  // namespace
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
-  const std::string name = c_name(d.model.target), capitals = upper(name);
+  const std::string name = c_name(d.model.target), capitals = upper_case(name);
   const std::vector<std::string> readings = reading_names(d.safe);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;

@@ -124,7 +124,7 @@ Eigen::MatrixXd by_twin(const Bench& b, const Change& change) {
   TwinState state = twin.as_written();
   change(state);
   Twin::Workspace workspace(twin);
-  Eigen::MatrixXd readings = twin.read(state, b.runs[0], twin.respond(state, b.runs[0], workspace));
+  Eigen::MatrixXd readings = twin.readings(state, b.runs[0], workspace);
   for (Eigen::Index o = 0; o < readings.rows(); ++o) {
     if (twin.outputs().unit[static_cast<std::size_t>(o)] == "m") readings.row(o) *= 1e6;
   }
