@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "machine/run_record.hpp"
 #include "blind/case.hpp"
 #include "solver/transient.hpp"
 

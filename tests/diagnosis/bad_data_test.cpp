@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "machine/run_record.hpp"
 #include "base/foreign_temperature.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/happening.hpp"

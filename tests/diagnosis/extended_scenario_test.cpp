@@ -1,6 +1,7 @@
 // Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same
 // changes.
 
+#include "machine/run_record.hpp"
 #include "diagnosis/extended_scenario.hpp"
 
 #include <gmock/gmock.h>

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "machine/run_record.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/extended_scenario.hpp"

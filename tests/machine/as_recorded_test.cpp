@@ -1,5 +1,6 @@
 // Machines whose record, instruments or materials are wrong: from YAML to records known by hand.
 
+#include "machine/run_record.hpp"
 #include "machine/as_recorded.hpp"
 
 #include <gmock/gmock.h>

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "machine/run_record.hpp"
 #include "base/errors.hpp"
 #include "machine/heat_flow_record.hpp"
 #include "machine/machine.hpp"

@@ -1,5 +1,6 @@
 // Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
 
+#include "machine/run_record.hpp"
 #include "machine/machine_store.hpp"
 
 #include <gmock/gmock.h>

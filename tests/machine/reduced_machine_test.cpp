@@ -1,5 +1,6 @@
 // A machine made small against the machine itself.
 
+#include "machine/run_record.hpp"
 #include "machine/reduced_machine.hpp"
 
 #include <gmock/gmock.h>

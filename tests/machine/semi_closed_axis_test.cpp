@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/run_record.hpp"
 #include "base/errors.hpp"
 #include "machine/body_parts.hpp"
 #include "machine/reduced_machine.hpp"

@@ -1,3 +1,4 @@
+#include "machine/run_record.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 #include <gmock/gmock.h>

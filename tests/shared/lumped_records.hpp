@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "machine/run_record.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/extended_scenario.hpp"
