@@ -10,6 +10,7 @@
 #include <chrono>
 #include <random>
 
+#include "machine/run_record.hpp"
 #include "machine/reduced_machine.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"

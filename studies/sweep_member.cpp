@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "machine/run_record.hpp"
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/run_record.hpp"
 #include "compensation/frames/even_growth.hpp"
 #include "compensation/sensors/interpolate.hpp"
 #include "machine/as_recorded.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "machine/run_record.hpp"
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "machine/run_record.hpp"
 #include "effects/reading_chain.hpp"
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
