@@ -10,8 +10,8 @@
 #include <chrono>
 #include <random>
 
-#include "machine/run_record.hpp"
 #include "machine/reduced_machine.hpp"
+#include "machine/run_record.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 
-#include "machine/run_record.hpp"
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/propagator.hpp"

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "machine/run_record.hpp"
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"
 #include "base/record_channel.hpp"
 #include "compensation/sensors/thermometers.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "studies/linear_physics.hpp"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "machine/run_record.hpp"
 #include "effects/reading_chain.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::studies {

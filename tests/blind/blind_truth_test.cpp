@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "machine/run_record.hpp"
 #include "blind/case.hpp"
+#include "machine/run_record.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::blind::blind_truth_test {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "machine/run_record.hpp"
 #include "base/foreign_temperature.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/happening.hpp"
@@ -13,6 +12,7 @@
 #include "diagnosis/unseen_drive.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::bad_data_test {

@@ -1,7 +1,6 @@
 // Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same
 // changes.
 
-#include "machine/run_record.hpp"
 #include "diagnosis/extended_scenario.hpp"
 
 #include <gmock/gmock.h>
@@ -14,6 +13,7 @@
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/column_and_head.hpp"

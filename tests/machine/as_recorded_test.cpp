@@ -1,6 +1,5 @@
 // Machines whose record, instruments or materials are wrong: from YAML to records known by hand.
 
-#include "machine/run_record.hpp"
 #include "machine/as_recorded.hpp"
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 #include <cmath>
 
 #include "machine/reduced_machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/shared/column_and_head.hpp"

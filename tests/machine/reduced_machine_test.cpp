@@ -1,6 +1,5 @@
 // A machine made small against the machine itself.
 
-#include "machine/run_record.hpp"
 #include "machine/reduced_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "machine/run_record.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"

@@ -1,4 +1,3 @@
-#include "machine/run_record.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 #include <gmock/gmock.h>
@@ -8,6 +7,7 @@
 #include <numbers>
 
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "nc/program.hpp"
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/recorded_run.hpp"

@@ -5,13 +5,13 @@
 
 #include <optional>
 
-#include "machine/run_record.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/temporary_file.hpp"
