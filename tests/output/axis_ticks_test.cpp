@@ -101,7 +101,7 @@ TEST(AxisTicks, OfTimesAreThoseOfAClock) {
 }
 
 TEST(AxisTicks, OfTimesAreFourToNineWhateverTheRange) {
-  for (const Axis& axis : drawn_axes(30000)) {
+  for (const Axis& axis : drawn_axes(3000)) {
     for (TickSteps steps : {TickSteps::kMinutes, TickSteps::kHours}) {
       const AxisTicks ticks = axis_ticks(axis.low, axis.high, axis.preferred, steps);
       ASSERT_GE(ticks.values.size(), 4u) << axis.low << " to " << axis.high;
