@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <optional>
 
 #include "app/diagnosis_files.hpp"
 #include "app/end_request.hpp"
@@ -19,17 +18,17 @@ void diagnose(const DiagnoseOptions& options) {
   const studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", options.measured, progress.listener());
   Listener listener = progress.listener();
   listener.wants_end_now = EndRequest::is_made;
-  std::optional<EndRequest> end_request(std::in_place);
+  const EndRequest end_request;  // until all results are written: Ctrl-C cuts no file short
   const auto [d, written] = studies::diagnose(
       m, {.without = options.without, .causes_only = options.causes_only, .file = folder.target() / "extended.yaml"},
       listener);
-  end_request.reset();
   write_scenario("extended", written, folder);
   write_missing_heat(m.mesh, d.statements, folder);
   finish(findings::diagnosis_document({m, d, written.extended, written.difference, "extended.yaml"}, folder.made_by()),
          folder, progress, options, "", "diagnosis.json");
   std::fflush(stdout);
   if (!d.ended_at.empty()) throw EndedEarly(fmt::format("ended at \"{}\": the diagnosis is incomplete", d.ended_at));
+  if (EndRequest::is_made()) fmt::print(stderr, "the diagnosis was complete; all of its results are written\n");
 }
 
 }  // namespace driftwright::app

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -147,15 +146,7 @@ void export_model(const ExportOptions& options) {
   }
   order.model.duration_s = cyclogram.duration_s();
   const std::vector<output::FmuEntry> entries = output::fmu_entries(order, made_by);
-  const fs::path partial = target.string() + fmt::format(".partial-{}", getpid());
-  try {
-    output::write_zip(partial, entries);
-    fs::rename(partial, target);
-  } catch (const std::exception& e) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("-o '{}' cannot be written: {}", target.string(), e.what()));
-  }
+  write_whole(target, [&](const fs::path& partial) { output::write_zip(partial, entries); });
   progress.end();
   fmt::print("{}: FMI {}.0, {}, {}\n{}\n", shown_path(fs::absolute(target)), options.fmi,
              options.type == "both" ? "model exchange and co-simulation"

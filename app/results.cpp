@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <exception>
@@ -104,6 +105,18 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
   show(document, options);
   if (!options.quiet && !options.json)
     fmt::print("{}results in {}: {}\n", also, shown_path(folder.target()), contents(folder));
+}
+
+void write_whole(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write) {
+  const std::filesystem::path partial = target.string() + fmt::format(".partial-{}", getpid());
+  try {
+    write(partial);
+    std::filesystem::rename(partial, target);
+  } catch (const std::exception& e) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw InputError(fmt::format("-o '{}' cannot be written: {}", target.string(), e.what()));
+  }
 }
 
 std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what) {

@@ -1,6 +1,7 @@
 #pragma once
 // Steps that several verbs share: reading the scenario, opening the folder of results, writing and showing the document.
 
+#include <functional>
 #include <string>
 
 #include "app/progress.hpp"
@@ -38,6 +39,10 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
 
 /// @throws InputError  for a document that warns of what no machine has or does
 void refuse_implausible(const std::string& scenario_path, const output::Document& document);
+
+/// Writes one file beside its place, then puts it there: it is whole or not there. @param write  to the path that it gets
+/// @throws InputError  naming -o, if that fails
+void write_whole(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);
 
 /// Prints a document as the options say.
 void show(const output::Document& document, const CommonOptions& options);

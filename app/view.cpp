@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -68,18 +67,6 @@ output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::
           .period_um = study.encoder_period_um};
 }
 
-void write_whole(const fs::path& target, const std::string& text) {
-  const fs::path partial = target.string() + fmt::format(".partial-{}", getpid());
-  try {
-    write_bytes(partial, text);
-    fs::rename(partial, target);
-  } catch (const std::exception& e) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    throw InputError(fmt::format("-o '{}' cannot be written: {}", target.string(), e.what()));
-  }
-}
-
 }  // namespace
 
 void view(const ViewOptions& options) {
@@ -121,7 +108,7 @@ void view(const ViewOptions& options) {
   }
   progress.listener().begin("writing the page");
   const std::string text = output::twin_html(page, {kVersion, clean_name(options.scenario)});
-  write_whole(target, text);
+  write_whole(target, [&](const fs::path& partial) { write_bytes(partial, text); });
   progress.end();
   fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)),
              1e-6 * static_cast<double>(text.size()), page.subtitle);

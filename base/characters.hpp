@@ -1,9 +1,11 @@
 #pragma once
-// Kinds of characters; texts in lower case, without blanks at their ends, in quotes.
+// Kinds of characters; texts in lower and upper case, without blanks at their ends, in quotes.
 
+#include <algorithm>
 #include <cctype>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace driftwright {
 
@@ -15,6 +17,24 @@ namespace driftwright {
 [[nodiscard]] inline std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+[[nodiscard]] inline std::string upper_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Number of characters of a UTF-8 text.
+[[nodiscard]] inline std::size_t n_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // other bytes continue a character
+  }));
+}
+
+/// Whether one of the words, which are in lower case, is in the text, whatever its case.
+[[nodiscard]] inline bool has_word(const std::string& text, const std::vector<const char*>& words) {
+  const std::string low = lower_case(text);
+  return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
 }
 
 /// Without blanks at either end. @param blanks  characters that count as blank

@@ -19,11 +19,6 @@
 namespace driftwright {
 namespace {
 
-bool has_word(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower_case(name);
-  return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
-}
-
 bool is_word(const std::string& name, const std::vector<const char*>& words) {
   const std::string low = lower_case(trimmed(name));
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return low == word; });

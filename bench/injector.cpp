@@ -1,6 +1,7 @@
 // Edges per second through the pulse injector: bench/injector.sh builds and runs this.
 //
-//   injector_bench   one line a way to use it: millions of edges per second (best of several), on one thread; every row is an edge
+//   injector_bench   one line a way to use it: millions of edges per second (best of several), on one thread; every row is
+//                    an edge
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,6 +1,7 @@
 // What a cyclogram costs on reduced models: bench/reduced.sh builds and runs this.
 //
-//   reduced_bench SCENARIO CYCLOGRAM   one line per row of the table: the time of a run (least of many), states, decompositions
+//   reduced_bench SCENARIO CYCLOGRAM   one line per row of the table: the time of a run (least of many), states,
+//                                      decompositions
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -10,6 +11,7 @@
 #include <random>
 
 #include "machine/reduced_machine.hpp"
+#include "machine/run_record.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
 

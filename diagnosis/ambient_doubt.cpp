@@ -46,13 +46,10 @@ std::vector<Prediction> ambient_columns(const Twin& twin, const std::vector<Meas
     if (first_K > kNoMatter_K) doubts.push_back({r, with_hat(run.ambient, -row_s, 0.0, row_s, first_K)});
   }
   std::vector<Prediction> columns(doubts.size());
-  const auto readings = [&](const MeasuredRun& run, Twin::Workspace& workspace) {
-    return twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
-  };
   Prediction base;
   {
     Twin::Workspace workspace(twin);
-    for (const MeasuredRun& run : runs) base.push_back(readings(run, workspace));
+    for (const MeasuredRun& run : runs) base.push_back(twin.readings(twin.as_written(), run, workspace));
   }
   for_each_index(
       doubts.size(), [&] { return Twin::Workspace(twin); },
@@ -60,7 +57,7 @@ std::vector<Prediction> ambient_columns(const Twin& twin, const std::vector<Meas
         for (const Eigen::MatrixXd& b : base) columns[i].push_back(Eigen::MatrixXd::Zero(b.rows(), b.cols()));
         MeasuredRun other = runs[doubts[i].run];
         other.ambient = doubts[i].ambient;
-        columns[i][doubts[i].run] = readings(other, workspace) - base[doubts[i].run];
+        columns[i][doubts[i].run] = twin.readings(twin.as_written(), other, workspace) - base[doubts[i].run];
       });
   return columns;
 }

@@ -30,6 +30,10 @@ struct Claim {
   bool happens = false;     ///< the same
 };
 using Hypothesis = std::vector<Claim>;
+/// The knobs of a hypothesis, claim by claim.
+[[nodiscard]] std::vector<const Knob*> knobs_of(const Hypothesis& hypothesis);
+/// Of each of them, whether it is turned by slopes; one that is not keeps the value of the fit's start.
+[[nodiscard]] std::vector<char> smooth_knobs(const Hypothesis& hypothesis);
 /// Logarithm of how many rows the jumps of a claim could have happened at [nats].
 [[nodiscard]] double price_of_times(const Claim& claim);
 
@@ -136,8 +140,7 @@ class Fitter {
                                           const KeptRuns& about = {}, Prediction* responses = nullptr) const;
 
  private:
-  [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held, Twin::Workspace& workspace,
-                          double of_interest, Slopes slopes) const;
+  class Climb;  ///< one fit (climb.cpp)
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;

@@ -1,7 +1,8 @@
 #pragma once
 // Where the model errs: random heat in the machine's bodies, of which only size and duration are known, as process noise.
 //
-//     M z' = -K z + Σ b_i u_i(t),   u_i: an Ornstein-Uhlenbeck process (Matérn 1/2) of standard deviation q_i and one time constant
+//     M z' = -K z + Σ b_i u_i(t),   u_i: an Ornstein-Uhlenbeck process (Matérn 1/2) of standard deviation q_i and
+//                                   one time constant
 //
 // q by maximum likelihood (expectation and maximisation of variance components), the time constant by trial of several. A
 // body with a large q is one where the model misses something; readings that its heat affects say little about anything

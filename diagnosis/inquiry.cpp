@@ -110,8 +110,8 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
   for (const MeasuredRun& run : runs) {
-    difference.push_back(mesh_error_share * (coarse->read(state, run, coarse->respond(state, run, coarse_space)) -
-                                             twin.read(state, run, twin.respond(state, run, fine_space))));
+    difference.push_back(mesh_error_share *
+                         (coarse->readings(state, run, coarse_space) - twin.readings(state, run, fine_space)));
   }
   std::vector<int> outputs;
   for (const MeasuredRun& run : runs) {

@@ -2,7 +2,8 @@
 // The effect of a little more heat on the readings of one run: the machine linearised from row to row at the states of a
 // prediction.
 //
-//     z' = -K(t) z + b(t) in the modes K V = M V Λ of each stretch in which K is the same; a load is constant from row to row
+//     z' = -K(t) z + b(t) in the modes K V = M V Λ of each stretch in which K is the same;
+//                              a load is constant from row to row
 
 #include "diagnosis/twin.hpp"
 

@@ -69,12 +69,30 @@ class StatementBuilder {
     }
     return rows;
   }
+  /// What a channel shows too much of whatever happens: each channel by itself.
   void readings();
+  /// A statement about one channel, without course and law.
+  static Statement about(const Channel& c);
+  /// Adds the column of one channel. @param course  over the rows, by run
+  void say(const Channel& c, const std::string& follows, const std::string& law, double size, const std::string& unit,
+           const std::vector<Row>& course);
+  void follows_courses(const Channel& c);
+  void follows_itself(const Channel& c);        ///< lags and a gain
+  void follows_differences(const Channel& c);   ///< of a thermometer to the ambient and to each body
+  void follows_temperatures(const Channel& c);  ///< of a displacement: of each body and of the ambient
+  void exchanged_channels();                    ///< any two of one unit
+  void expansions();                            ///< of each part, seen in all displacements
   /// Thermometers that are wrong together by the same number: the effect of one of them alone, applied to all at once.
   void instruments_in_common();
 
   // of the surroundings (statement_surroundings.cpp)
   void surroundings();
+  static Statement of_ambient();  ///< without course and law
+  void ambients();
+  void late_ambients();   ///< where it is recorded
+  void stratification();  ///< of a meshed machine
+  void speeds();
+  void clocks();
   /// The effect of an effect on all channels, by the twin itself. @param size  its size, to scale the columns to one unit
   std::vector<Acting> exactly(const effects::Effect& effect, double size) const;
   /// The same for another state.

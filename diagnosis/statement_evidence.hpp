@@ -161,7 +161,7 @@ class StatementEvidence {
   [[nodiscard]] double of_rows(std::size_t k, const Sizes& on, Scored& scored) const;
   void score_several(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
   void score_unknown(std::size_t k, const Eigen::MatrixXd& g, const Eigen::VectorXd& along, std::vector<Scored>& list) const;
-  void set_records();
+  void set_records();  ///< with set_priors() in statement_priors.cpp
   void set_priors();
 
   const StatementSpace& space_;

@@ -64,6 +64,8 @@ void StatementBuilder::build() {
   conductivities();
   capacities();
   readings();
+  exchanged_channels();
+  expansions();
   instruments_in_common();
   surroundings();
 }

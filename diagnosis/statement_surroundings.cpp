@@ -17,21 +17,33 @@ constexpr double kClocks_s[] = {-3600.0, -1500.0, -720.0, -360.0, -180.0, -60.0,
 constexpr double kSet_s = 60.0;         // typical shift of a clock that is set during a record
 constexpr double kLeastLate_s = 180.0;  // least delay of an ambient's record, which changes slowly
 
+effects::Effect ambient_effect(const char* kind, const char* number, double value) {
+  return effects::make_effect(kind, effects::Place::kAmbient, effects::kAmbientName, {{number, value}});
+}
+
 }  // namespace
 
 void StatementBuilder::surroundings() {
-  auto air = std::make_shared<Loads>(), standing = std::make_shared<Loads>();
-  for (const LinearOperator& m : machine_) {
-    air->push_back(m.ambient());
-    standing->push_back(m.standing());
-  }
-  const Statement ambient{.quantity = StatedQuantity::kAmbient,
-                          .place = {"hall"},
-                          .follows = {},
-                          .law = {},
-                          .in_run = {},
-                          .unit_size = kAmbient_K,
-                          .unit = "K"};
+  ambients();
+  late_ambients();
+  stratification();
+  if (scene_.turns) speeds();
+  clocks();
+}
+
+Statement StatementBuilder::of_ambient() {
+  return {.quantity = StatedQuantity::kAmbient,
+          .place = {"hall"},
+          .follows = {},
+          .law = {},
+          .in_run = {},
+          .unit_size = kAmbient_K,
+          .unit = "K"};
+}
+
+void StatementBuilder::ambients() {
+  auto air = std::make_shared<Loads>();
+  for (const LinearOperator& m : machine_) air->push_back(m.ambient());
   const auto with_instruments = [&](const TimedCourse& course, bool always) {
     std::vector<Acting> acts = {{.loads = air, .channel = {}, .course = course.in_interval, .always = always}};
     for (const Channel& c : channels_) {
@@ -45,60 +57,68 @@ void StatementBuilder::surroundings() {
   const bool starts_in_air = start == scenarios::Start::kAmbient || start == scenarios::Start::kSteady;
   for (std::size_t i = 0; i < courses_.size(); ++i) {
     if (i > 0 && i + 1 < courses_.size()) continue;  // no course of the drive: only constant and growing
-    Statement s = ambient;
+    Statement s = of_ambient();
     s.follows = courses_[i].follows;
     s.law = courses_[i].law;
     add(s, with_instruments(courses_[i], starts_in_air && !courses_[i].rests));
   }
-  add_cells(ambient, with_instruments(courses_.front(), false));
-  const auto ambient_effect = [](const char* kind, const char* number, double value) {
-    return effects::make_effect(kind, effects::Place::kAmbient, effects::kAmbientName, {{number, value}});
-  };
+  add_cells(of_ambient(), with_instruments(courses_.front(), false));
+}
+
+void StatementBuilder::late_ambients() {
   const bool is_recorded = std::any_of(runs_.begin(), runs_.end(), [](const MeasuredRun& run) { return run.has_ambient; });
   for (double late_s : kClocks_s) {
     if (!is_recorded || std::abs(late_s) < kLeastLate_s) continue;
-    Statement s = ambient;
+    Statement s = of_ambient();
     s.follows = "late";
     s.law = fmt::format("its record {}, by some {:g} min", late_s > 0.0 ? "late" : "early", std::abs(late_s) / 60.0);
     s.unit_size = late_s;
     s.unit = "s";
     add(s, exactly(ambient_effect("ambient", "late", late_s / 60.0), late_s));
   }
-  if (fitter_.twin().machine().mesh.n_nodes() > 0) {
-    Statement s = ambient;
-    s.follows = "height";
-    s.law = "warmer above than below";
-    s.unit_size = 1.0;
-    s.unit = "K/m";
-    TwinState other = state_;
-    const auto written =
-        std::find_if(other.begin(), other.end(), [](const effects::Effect& e) { return e.kind->key == "stratification"; });
-    if (written == other.end()) {
-      other.push_back(ambient_effect("stratification", "gradient", 1.0));
-    } else {  // about its present level
-      written->set("gradient", (*written)["gradient"] + 1.0);
-    }
-    add(s, exactly(other, 1.0));
+}
+
+void StatementBuilder::stratification() {
+  if (fitter_.twin().machine().mesh.n_nodes() == 0) return;
+  Statement s = of_ambient();
+  s.follows = "height";
+  s.law = "warmer above than below";
+  s.unit_size = 1.0;
+  s.unit = "K/m";
+  TwinState other = state_;
+  const auto written =
+      std::find_if(other.begin(), other.end(), [](const effects::Effect& e) { return e.kind->key == "stratification"; });
+  if (written == other.end()) {
+    other.push_back(ambient_effect("stratification", "gradient", 1.0));
+  } else {  // about its present level
+    written->set("gradient", (*written)["gradient"] + 1.0);
   }
-  if (scene_.turns) {
-    Statement speed{.quantity = StatedQuantity::kSpeed,
-                    .place = {"spindle"},
-                    .follows = "constant",
-                    .law = "a factor",
-                    .in_run = {},
-                    .unit_size = kUsualLogarithm,
-                    .unit = "1"};
-    for (double factor : kSpeedFactors) {
-      speed.law = factor > 1.0 ? "faster" : "slower";
-      speed.law += fmt::format(", about {:g} times", factor);
-      speed.unit_size = std::log(factor);
-      add(speed, exactly(effects::make_effect("speed_override", effects::Place::kSpindle, "spindle", {{"factor", factor}}),
-                         speed.unit_size));
-    }
-    speed.law = "another speed";
-    speed.unit_size = 1.0;
-    add_heat_cells(speed, standing);
+  add(s, exactly(other, 1.0));
+}
+
+void StatementBuilder::speeds() {
+  Statement speed{.quantity = StatedQuantity::kSpeed,
+                  .place = {"spindle"},
+                  .follows = "constant",
+                  .law = "a factor",
+                  .in_run = {},
+                  .unit_size = kUsualLogarithm,
+                  .unit = "1"};
+  for (double factor : kSpeedFactors) {
+    speed.law = factor > 1.0 ? "faster" : "slower";
+    speed.law += fmt::format(", about {:g} times", factor);
+    speed.unit_size = std::log(factor);
+    add(speed, exactly(effects::make_effect("speed_override", effects::Place::kSpindle, "spindle", {{"factor", factor}}),
+                       speed.unit_size));
   }
+  speed.law = "another speed";
+  speed.unit_size = 1.0;
+  auto standing = std::make_shared<Loads>();
+  for (const LinearOperator& m : machine_) standing->push_back(m.standing());
+  add_heat_cells(speed, standing);
+}
+
+void StatementBuilder::clocks() {
   double longest_s = 0.0;
   for (const MeasuredRun& run : runs_) longest_s = std::max(longest_s, run.time_s.back());
   const auto late_by = [&](double late_s) {
@@ -135,9 +155,7 @@ std::vector<Acting> StatementBuilder::exactly(const TwinState& with, double size
   std::vector<Eigen::MatrixXd> difference;
   const bool is_solved = has_solution([&] {
     for (const MeasuredRun& run : runs_) {
-      difference.push_back((twin.read(with, run, twin.respond(with, run, workspace)) -
-                            twin.read(state_, run, twin.respond(state_, run, workspace))) /
-                           size);
+      difference.push_back((twin.readings(with, run, workspace) - twin.readings(state_, run, workspace)) / size);
     }
   });
   if (!is_solved) return {};

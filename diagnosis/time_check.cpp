@@ -34,9 +34,7 @@ MeasuredRun with_times(MeasuredRun run, double factor) {
 /// solution.
 double left_of_course(const MeasuredRun& run, const Twin& twin, Twin::Workspace& workspace) {
   Eigen::MatrixXd prediction;
-  if (!has_solution(
-          [&] { prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)); }))
-    return 1.0;
+  if (!has_solution([&] { prediction = twin.readings(twin.as_written(), run, workspace); })) return 1.0;
   std::vector<double> shares;
   for (const MeasuredChannel& c : run.channels) {
     const Eigen::ArrayXd there = (c.value.array() == c.value.array()).cast<double>();

@@ -77,6 +77,10 @@ class Twin {
                                                                 Workspace& workspace, bool for_slopes = true) const;
   /// The readings of these outputs at the run's rows, n_outputs x n_times, with the instruments' effects.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
+  /// The readings of a state: read() of what respond() gives.
+  [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+    return read(state, run, respond(state, run, workspace));
+  }
 
   /// The machine of a state in a run with its laws bound, for the effect of a little more heat.
   struct Bound {

@@ -105,7 +105,7 @@ void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin) {
   const double reference_C = twin.reference_K() - kZeroCelsius_K;
   Twin::Workspace workspace(twin);
   for (MeasuredRun& run : runs) {
-    const Eigen::MatrixXd prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+    const Eigen::MatrixXd prediction = twin.readings(twin.as_written(), run, workspace);
     const bool may_be_turned = temperatures_follow(run, prediction);
     std::string why;
     std::erase_if(run.channels, [&](const MeasuredChannel& c) {

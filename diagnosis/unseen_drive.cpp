@@ -133,9 +133,7 @@ TimeSeries warmer_in(const TimeSeries& ambient, const Hole& part, double by_K) {
 std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs) {
   std::vector<Prediction> columns;
   Twin::Workspace workspace(twin);
-  const auto readings = [&](const MeasuredRun& run) {
-    return twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
-  };
+  const auto readings = [&](const MeasuredRun& run) { return twin.readings(twin.as_written(), run, workspace); };
   const auto driven = [&](const MeasuredRun& run, const Hole& part, bool is_most) {
     MeasuredRun other = run;
     other.cyclogram = driven_otherwise(run, part, is_most);

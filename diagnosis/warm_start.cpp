@@ -46,8 +46,7 @@ First first_readings(const MeasuredRun& run, const Eigen::MatrixXd& prediction) 
 void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
   Twin::Workspace workspace(twin);
   for (MeasuredRun& run : runs) {
-    const First first =
-        first_readings(run, twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)));
+    const First first = first_readings(run, twin.readings(twin.as_written(), run, workspace));
     const bool is_warm = first.n_warm > 0 && first.n_warm >= std::min<int>(2, static_cast<int>(first.outputs.size()));
     if (!is_warm) continue;
     const Eigen::MatrixXd bodies = twin.warmer_bodies();
@@ -85,9 +84,7 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
 std::vector<Prediction> start_columns(const Twin& twin, const std::vector<MeasuredRun>& runs) {
   std::vector<Prediction> columns;
   Twin::Workspace workspace(twin);
-  const auto readings = [&](const MeasuredRun& run) {
-    return twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
-  };
+  const auto readings = [&](const MeasuredRun& run) { return twin.readings(twin.as_written(), run, workspace); };
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (runs[r].start_doubt_K.cols() == 0) continue;
     const Eigen::MatrixXd base = readings(runs[r]);

@@ -119,10 +119,16 @@ bool is_of_medium(const DoubtScene& s, const HeatInput& heat) {
                      [&](const Exchange& x) { return heat.name == of_medium(x.name); });
 }
 
-/// Another size, growth with speed or decay of the heats of a body.
-void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
-  std::vector<Effect> of_all, of_known;  // heats of the body; those that depend on the drive alone
-  double written_W = 0.0, low_W = 0.0, high_W = 0.0;
+/// The heats of a body as written.
+struct WrittenHeats {
+  std::vector<Effect> all, known;  ///< a change of each; of those that depend on the drive alone
+  double known_W = 0.0;            ///< of the latter, at the typical speed
+  double exponent = 0.0;           ///< of all together, of speed
+};
+
+WrittenHeats written_heats(const DoubtScene& s, const Body& body) {
+  WrittenHeats heats;
+  double low_W = 0.0, high_W = 0.0;
   const auto power_W = [&](const HeatInput& h, double rpm) {
     return h.power_W(
         Inputs{.drive = {.speed_rpm = rpm}, .probe_K = std::vector<double>(h.power_W.probes.size(), s.reference_K + 10.0)});
@@ -132,67 +138,76 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   };
   for (const HeatInput& h : s.balance.heats) {
     if (!(h.body == body) || !h.power_W.thermostat.empty() || is_of_record(s, h) || is_of_medium(s, h)) continue;
-    add(of_all, h.name);
+    add(heats.all, h.name);
     low_W += power_W(h, 0.97 * s.typical_rpm);
     high_W += power_W(h, 1.03 * s.typical_rpm);
     if (!h.power_W.probes.empty()) continue;
-    add(of_known, h.name);
-    written_W += power_W(h, s.typical_rpm);
+    add(heats.known, h.name);
+    heats.known_W += power_W(h, s.typical_rpm);
   }
-  if (of_all.empty()) return;
-  if (written_W > 0.0) {
-    DoubtedNumber more = doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W());
-    more.low = -0.95 * written_W;
-    more.set = [written_W](std::span<Effect> added, double value) {
-      for (Effect& e : added) e.set("factor", 1.0 + value / written_W);
-    };
-    list.push_back({.finding = "heat_source",
-                    .where = body.name,
-                    .law = fmt::format("the law written, at {:.0f} rpm", s.typical_rpm),
-                    .added = of_known,
-                    .numbers = {more},
-                    .trial = more.step,
-                    .at_speed_rpm = s.typical_rpm});
-  }
-  for (Effect& e : of_all) {
+  for (Effect& e : heats.all) {
     e.set("at_speed", s.typical_rpm);
     e.set("at_temperature", s.reference_K);
   }
-  const double written = low_W > 0.0 && high_W > 0.0 ? std::log(high_W / low_W) / std::log(1.03 / 0.97) : 0.0;
-  Doubt friction{.finding = "friction_law", .where = body.name, .law = {}, .added = of_all, .numbers = {}};
-  if (written > 0.05) {
-    DoubtedNumber exponent = doubted("exponent", "1", 0.5, 0.05, written);
-    exponent.low = kLowestExponent;
-    exponent.high = kHighestExponent;
-    exponent.set = [written](std::span<Effect> added, double value) {
-      for (Effect& e : added) e.set("exponent", value - written);
-    };
-    friction.at_speed_rpm = s.typical_rpm;
-    friction.law = fmt::format("another growth with speed, the same at {:.0f} rpm", s.typical_rpm);
-    friction.numbers = {exponent};
-    list.push_back(friction);
-    friction.law = fmt::format("another heat and another growth with speed, at {:.0f} rpm", s.typical_rpm);
-    friction.numbers = {doubted_factor(), exponent};
-    friction.grid = {{0.0}, {0.4}, {-0.4}};
-    list.push_back(friction);
-  }
-  if (written > 0.05) {  // a film that starves, a motor above its base speed, a seal that lifts off
-    Doubt bends = friction;
-    bends.law = "heat that grows by another share beyond a speed; 0: it levels off";
-    bends.at_speed_rpm = 0.0;
-    DoubtedNumber share = doubted("growth_beyond", "1", 1.0, 0.1, 1.0);
-    share.low = -3.0;
-    share.high = 5.0;
-    DoubtedNumber beyond = doubted("beyond", "rpm", 0.3 * s.top_rpm, 0.01 * s.top_rpm, 0.6 * s.top_rpm);
-    beyond.low = 0.1 * s.top_rpm;
-    beyond.high = 0.95 * s.top_rpm;
-    bends.numbers = {share, beyond};
-    bends.trial = -0.5;
-    bends.grid.clear();
-    for (const double of_top : {0.25, 0.4, 0.55, 0.7, 0.85}) bends.grid.push_back({(of_top - 0.6) * s.top_rpm});
-    list.push_back(std::move(bends));
-  }
-  for (const double rpm : s.speed_steps_rpm) {  // a gear stage, a switched winding, a geared pump
+  if (low_W > 0.0 && high_W > 0.0) heats.exponent = std::log(high_W / low_W) / std::log(1.03 / 0.97);
+  return heats;
+}
+
+/// Another power of the heats that depend on the drive alone.
+Doubt of_power(const DoubtScene& s, const Body& body, const WrittenHeats& heats) {
+  DoubtedNumber more = doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W());
+  more.low = -0.95 * heats.known_W;
+  more.set = [written_W = heats.known_W](std::span<Effect> added, double value) {
+    for (Effect& e : added) e.set("factor", 1.0 + value / written_W);
+  };
+  return {.finding = "heat_source",
+          .where = body.name,
+          .law = fmt::format("the law written, at {:.0f} rpm", s.typical_rpm),
+          .added = heats.known,
+          .numbers = {more},
+          .trial = more.step,
+          .at_speed_rpm = s.typical_rpm};
+}
+
+/// Another exponent of speed, with the size as written and with another.
+void add_growth_with_speed(const DoubtScene& s, Doubt friction, double written, std::vector<Doubt>& list) {
+  DoubtedNumber exponent = doubted("exponent", "1", 0.5, 0.05, written);
+  exponent.low = kLowestExponent;
+  exponent.high = kHighestExponent;
+  exponent.set = [written](std::span<Effect> added, double value) {
+    for (Effect& e : added) e.set("exponent", value - written);
+  };
+  friction.at_speed_rpm = s.typical_rpm;
+  friction.law = fmt::format("another growth with speed, the same at {:.0f} rpm", s.typical_rpm);
+  friction.numbers = {exponent};
+  list.push_back(friction);
+  friction.law = fmt::format("another heat and another growth with speed, at {:.0f} rpm", s.typical_rpm);
+  friction.numbers = {doubted_factor(), exponent};
+  friction.grid = {{0.0}, {0.4}, {-0.4}};
+  list.push_back(friction);
+}
+
+/// Another growth beyond a speed: a film that starves, a motor above its base speed, a seal that lifts off.
+Doubt that_bends(const DoubtScene& s, const Doubt& friction) {
+  Doubt bends = friction;
+  bends.law = "heat that grows by another share beyond a speed; 0: it levels off";
+  bends.at_speed_rpm = 0.0;
+  DoubtedNumber share = doubted("growth_beyond", "1", 1.0, 0.1, 1.0);
+  share.low = -3.0;
+  share.high = 5.0;
+  DoubtedNumber beyond = doubted("beyond", "rpm", 0.3 * s.top_rpm, 0.01 * s.top_rpm, 0.6 * s.top_rpm);
+  beyond.low = 0.1 * s.top_rpm;
+  beyond.high = 0.95 * s.top_rpm;
+  bends.numbers = {share, beyond};
+  bends.trial = -0.5;
+  bends.grid.clear();
+  for (const double of_top : {0.25, 0.4, 0.55, 0.7, 0.85}) bends.grid.push_back({(of_top - 0.6) * s.top_rpm});
+  return bends;
+}
+
+/// Another size below a speed: a gear stage, a switched winding, a geared pump.
+void add_stages(const DoubtScene& s, const Doubt& friction, std::vector<Doubt>& list) {
+  for (const double rpm : s.speed_steps_rpm) {
     Doubt stage = friction;
     stage.law = fmt::format("heat by another factor below {:.0f} rpm", rpm);
     stage.at_speed_rpm = 0.0;
@@ -202,17 +217,14 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     stage.grid = {{}};
     list.push_back(std::move(stage));
   }
-  friction.law = "heat that falls as its body warms";
-  friction.at_speed_rpm = 0.0;
-  friction.numbers = {doubted("decay", "1/K", 0.02, 0.002)};
-  friction.trial = 0.01;
-  friction.grid = {{}};
-  list.push_back(friction);
-  if (!(written > 0.05)) return;
+}
+
+/// Preload that grows, or is lost, when the inner ring is warmer than the housing.
+void add_preloads(const DoubtScene& s, const Body& body, const Doubt& friction, std::vector<Doubt>& list) {
   std::vector<Body> neighbours;
   std::copy_if(s.bodies.begin(), s.bodies.end(), std::back_inserter(neighbours),
                [&](const Body& other) { return !(other == body) && are_joined(s, body, other); });
-  for (const Body& other : neighbours) {  // preload that grows, or is lost, when the inner ring is warmer than the housing
+  for (const Body& other : neighbours) {
     Doubt preload = friction;
     preload.law = fmt::format("heat that falls as its body becomes warmer than {}; < 0: it grows", other.name);
     preload.rarity = std::log(static_cast<double>(neighbours.size()));
@@ -222,6 +234,28 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     }
     list.push_back(std::move(preload));
   }
+}
+
+/// Another size, growth with speed or decay of the heats of a body.
+void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
+  constexpr double kLeastExponent = 0.05;  // below it a heat does not depend on speed
+  const WrittenHeats heats = written_heats(s, body);
+  if (heats.all.empty()) return;
+  if (heats.known_W > 0.0) list.push_back(of_power(s, body, heats));
+  const bool grows = heats.exponent > kLeastExponent;
+  Doubt friction{.finding = "friction_law", .where = body.name, .law = {}, .added = heats.all, .numbers = {}};
+  if (grows) {
+    add_growth_with_speed(s, friction, heats.exponent, list);
+    list.push_back(that_bends(s, friction));
+  }
+  add_stages(s, friction, list);
+  friction.law = "heat that falls as its body warms";
+  friction.at_speed_rpm = 0.0;
+  friction.numbers = {doubted("decay", "1/K", 0.02, 0.002)};
+  friction.trial = 0.01;
+  friction.grid = {{}};
+  list.push_back(friction);
+  if (grows) add_preloads(s, body, friction, list);
 }
 
 /// True if air or a medium takes part, which a door, a fan or a valve changes within minutes.

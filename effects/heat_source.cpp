@@ -113,106 +113,128 @@ DoubtedNumber in_minutes(DoubtedNumber n) {
   return n;
 }
 
-std::vector<Doubt> doubts(const DoubtScene& s) {
+/// A heat of unknown power in a body, by a law with these values.
+Doubt of_heat(const DoubtScene& s, const Body& body, const std::string& law,
+              const std::vector<std::pair<std::string, double>>& values = {}) {
+  const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
+  Doubt doubt{.finding = "heat_source",
+              .where = body.name,
+              .law = law,
+              .added = {make_effect("heat_source", body, values)},
+              .numbers = {doubted("power", "W", sd_W, trial_W)},
+              .trial = trial_W};
+  doubt.numbers[0].low = 0.0;  // removed heat is a coolant's; a written heat that is too large is a doubt of its law
+  return doubt;
+}
+
+Doubt of_speed(const DoubtScene& s, const Body& body) {
+  Doubt doubt = of_heat(s, body, fmt::format("power law of speed, at {:.0f} rpm", s.typical_rpm),
+                        {{"at_speed", s.typical_rpm}, {"exponent", 1.5}});
+  doubt.numbers.push_back(doubted("exponent", "1", 0.7, 0.05, 1.5));
+  doubt.numbers.back().low = -1.0;
+  doubt.numbers.back().high = 4.0;
+  doubt.grid = {{-0.5}, {0.0}, {0.5}};
+  doubt.at_speed_rpm = s.typical_rpm;
+  return doubt;
+}
+
+/// Heats of a spindle that starts and stops: at rest, after each stop, and some minutes longer than it turns.
+void add_of_stops(const DoubtScene& s, const Body& body, const Doubt& while_turning, std::vector<Doubt>& list) {
+  Doubt of_stops = of_heat(s, body, "constant heat while the spindle is at rest");
+  of_stops.added[0].words["runs"] = "while_spindle_stands";
+  list.push_back(of_stops);
+  of_stops.law = "constant heat for some minutes after each stop";
+  of_stops.added[0].set("lasts", kUsualOfStop_min);
+  of_stops.numbers.push_back(doubted_run_on(kUsualOfStop_min));
+  of_stops.numbers.back().name = "lasts";
+  of_stops.grid = {{-1.0}, {0.0}, {1.0}};
+  list.push_back(of_stops);
+  of_stops.law = fmt::format("heat for some minutes after each stop, by the square of the speed before it, at {:.0f} rpm",
+                             s.typical_rpm);
+  of_stops.added[0].set("at_speed", s.typical_rpm);
+  of_stops.added[0].set("exponent", 2.0);  // heat from braking
+  of_stops.at_speed_rpm = s.typical_rpm;
+  list.push_back(std::move(of_stops));
+  Doubt standby = while_turning;  // drives or pumps, until the control switches them off
+  standby.law += " and some minutes more";
+  standby.added[0].set("runs_on", kUsualRunOn_min);
+  standby.numbers.push_back(doubted_run_on(kUsualRunOn_min));
+  standby.grid = {{-1.0}, {0.0}, {1.0}};
+  list.push_back(std::move(standby));
+}
+
+/// Heat that fades from the start on: new grease that runs in, a bearing mounted too tight.
+void add_fading(const DoubtScene& s, const Body& body, const Doubt& while_turning, std::vector<Doubt>& list) {
+  const double longest_min = s.longest_s() / 60.0;
+  Doubt fading = while_turning;
+  fading.law = fmt::format("heat in proportion to speed that fades, at {:.0f} rpm", s.typical_rpm);
+  fading.added = {make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})};
+  DoubtedNumber fades{
+      .name = "fades", .unit = "min", .nominal = kUsualFading * longest_min, .prior_sd = 0.7, .step = 0.05, .is_log = true};
+  fades.high = kLongestFading * longest_min;
+  fading.added[0].set("fades", fades.nominal);
+  fading.numbers.push_back(fades);
+  fading.grid = {{-0.7}, {0.6}};  // of the logarithm of its time constant
+  fading.at_speed_rpm = s.typical_rpm;
+  list.push_back(fading);
+  if (s.runs.size() > 1) {
+    fading.when = "in " + s.runs.front().name;
+    fading.added.front().in = s.runs.front().name;
+    fading.numbers.back().high = kLongestFading * s.runs.front().length_s / 60.0;
+    list.push_back(std::move(fading));
+  }
+}
+
+/// Heat from a time on: in one record, or into the later ones.
+void add_later(const DoubtScene& s, const Body& body, const Doubt& while_turning, std::vector<Doubt>& list) {
+  for (std::size_t run = 0; run < s.runs.size(); ++run) {
+    for (const bool with_speed : {false, true}) {
+      Doubt later = while_turning;
+      later.law = fmt::format("{} from a time on, in {}", with_speed ? "heat in proportion to speed" : "constant heat",
+                              s.runs[run].name);
+      later.added = {with_speed ? make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})
+                                : make_effect("heat_source", body)};
+      later.added[0].in = s.runs[run].name;
+      later.numbers = {doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W()),
+                       doubted_time("from", s.runs[run].length_s,
+                                    [](std::span<Effect> added, double value) { added[0].from_s = value; })};
+      if (with_speed) later.numbers[0].low = 0.0;  // otherwise a blower that was switched on, a heater that failed
+      later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
+      later.grid = time_grid(s.runs[run].length_s, 8);
+      add_with_lasting(s, run, later, list);
+    }
+  }
+}
+
+/// Heat in a wave about a mean.
+Doubt of_wave(const DoubtScene& s, const Body& body) {
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W, longest_min = s.longest_s() / 60.0;
-  const auto power = [&] { return doubted("power", "W", sd_W, trial_W); };
+  Doubt wave = of_heat(s, body, "periodic, about a mean; negative: half a period later");
+  wave.numbers[0].low = -1e300;
+  wave.added[0].until_s = s.longest_s();
+  DoubtedNumber period = in_minutes(doubted("period", "min", longest_min / 8.0, 0.5, longest_min / 7.0));
+  period.low = 0.5 * longest_min / kMostWaves;
+  period.high = longest_min / kFewestWaves;
+  wave.added[0].set("period", 60.0 * period.nominal);
+  wave.grid = waves(longest_min, period.nominal);
+  wave.numbers.push_back(period);
+  wave.numbers.push_back(in_minutes(doubted("delay", "min", 0.5 * period.nominal, 0.5)));
+  wave.numbers.push_back(doubted("mean", "W", sd_W, trial_W));
+  return wave;
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list, since;
   for (const Body& body : s.bodies) {
-    const auto add = [&](const std::string& law, std::vector<std::pair<std::string, double>> values) -> Doubt& {
-      list.push_back({.finding = "heat_source",
-                      .where = body.name,
-                      .law = law,
-                      .added = {make_effect("heat_source", body, values)},
-                      .numbers = {power()},
-                      .trial = trial_W});
-      list.back().numbers[0].low =
-          0.0;  // removed heat is a coolant's; a written heat that is too large is a doubt of its law
-      return list.back();
-    };
-    add("constant heat", {});
-    Doubt& of_speed = add(fmt::format("power law of speed, at {:.0f} rpm", s.typical_rpm),
-                          {{"at_speed", s.typical_rpm}, {"exponent", 1.5}});
-    of_speed.numbers.push_back(doubted("exponent", "1", 0.7, 0.05, 1.5));
-    of_speed.numbers.back().low = -1.0;
-    of_speed.numbers.back().high = 4.0;
-    of_speed.grid = {{-0.5}, {0.0}, {0.5}};
-    of_speed.at_speed_rpm = s.typical_rpm;
-    add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
-    const Doubt while_turning = list.back();
-    if (s.starts_and_stops) {
-      add("constant heat while the spindle is at rest", {}).added[0].words["runs"] = "while_spindle_stands";
-      Doubt of_stops = list.back();
-      of_stops.law = "constant heat for some minutes after each stop";
-      of_stops.added[0].set("lasts", kUsualOfStop_min);
-      of_stops.numbers.push_back(doubted_run_on(kUsualOfStop_min));
-      of_stops.numbers.back().name = "lasts";
-      of_stops.grid = {{-1.0}, {0.0}, {1.0}};
-      list.push_back(of_stops);
-      of_stops.law = fmt::format(
-          "heat for some minutes after each stop, by the square of the speed before it, at {:.0f} rpm", s.typical_rpm);
-      of_stops.added[0].set("at_speed", s.typical_rpm);
-      of_stops.added[0].set("exponent", 2.0);  // heat from braking
-      of_stops.at_speed_rpm = s.typical_rpm;
-      list.push_back(std::move(of_stops));
-      Doubt standby = while_turning;  // drives or pumps, until the control switches them off
-      standby.law += " and some minutes more";
-      standby.added[0].set("runs_on", kUsualRunOn_min);
-      standby.numbers.push_back(doubted_run_on(kUsualRunOn_min));
-      standby.grid = {{-1.0}, {0.0}, {1.0}};
-      list.push_back(std::move(standby));
-    }
-
-    if (s.turns) {  // new grease that runs in, a bearing mounted too tight
-      Doubt fading = while_turning;
-      fading.law = fmt::format("heat in proportion to speed that fades, at {:.0f} rpm", s.typical_rpm);
-      fading.added = {make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})};
-      DoubtedNumber fades{.name = "fades",
-                          .unit = "min",
-                          .nominal = kUsualFading * longest_min,
-                          .prior_sd = 0.7,
-                          .step = 0.05,
-                          .is_log = true};
-      fades.high = kLongestFading * longest_min;
-      fading.added[0].set("fades", fades.nominal);
-      fading.numbers.push_back(fades);
-      fading.grid = {{-0.7}, {0.6}};  // of the logarithm of its time constant
-      fading.at_speed_rpm = s.typical_rpm;
-      list.push_back(fading);
-      if (s.runs.size() > 1) {
-        fading.when = "in " + s.runs.front().name;
-        fading.added.front().in = s.runs.front().name;
-        fading.numbers.back().high = kLongestFading * s.runs.front().length_s / 60.0;
-        list.push_back(std::move(fading));
-      }
-    }
-    for (std::size_t run = 0; run < s.runs.size(); ++run) {
-      for (const bool with_speed : {false, true}) {
-        Doubt later = while_turning;
-        later.law = fmt::format("{} from a time on, in {}", with_speed ? "heat in proportion to speed" : "constant heat",
-                                s.runs[run].name);
-        later.added = {with_speed ? make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})
-                                  : make_effect("heat_source", body)};
-        later.added[0].in = s.runs[run].name;
-        later.numbers = {power(), doubted_time("from", s.runs[run].length_s,
-                                               [](std::span<Effect> added, double value) { added[0].from_s = value; })};
-        if (with_speed) later.numbers[0].low = 0.0;  // otherwise a blower that was switched on, a heater that failed
-        later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
-        later.grid = time_grid(s.runs[run].length_s, 8);
-        add_with_lasting(s, run, later, since);
-      }
-    }
-
-    Doubt& wave = add("periodic, about a mean; negative: half a period later", {});
-    wave.numbers[0].low = -1e300;
-    wave.added[0].until_s = s.longest_s();
-    DoubtedNumber period = in_minutes(doubted("period", "min", longest_min / 8.0, 0.5, longest_min / 7.0));
-    period.low = 0.5 * longest_min / kMostWaves;
-    period.high = longest_min / kFewestWaves;
-    wave.added[0].set("period", 60.0 * period.nominal);
-    wave.grid = waves(longest_min, period.nominal);
-    wave.numbers.push_back(period);
-    wave.numbers.push_back(in_minutes(doubted("delay", "min", 0.5 * period.nominal, 0.5)));
-    wave.numbers.push_back(doubted("mean", "W", sd_W, trial_W));
+    list.push_back(of_heat(s, body, "constant heat"));
+    list.push_back(of_speed(s, body));
+    Doubt while_turning = of_heat(s, body, "constant heat while the spindle turns");
+    while_turning.added[0].words["runs"] = "while_spindle_turns";
+    list.push_back(while_turning);
+    if (s.starts_and_stops) add_of_stops(s, body, while_turning, list);
+    if (s.turns) add_fading(s, body, while_turning, list);
+    add_later(s, body, while_turning, since);
+    list.push_back(of_wave(s, body));
   }
   list.insert(list.end(), since.begin(), since.end());
   return list;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/config_map.hpp"
+#include "base/lists.hpp"
 #include "base/quantity.hpp"
 #include "effects/effect.hpp"
 
@@ -20,10 +21,6 @@ std::string quantity(double value, const std::string& unit) {
 
 std::string word(const std::string& text) {
   return is_name(text) ? text : "\"" + text + "\"";
-}
-
-bool same(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
 }
 
 std::string rows(const Table& table, const TimeSeries& series) {
@@ -50,7 +47,8 @@ std::string yaml_of(const Effect& e) {
   if (!has_no_name) add(place_key(e.place_kind), word(e.place));
   for (std::size_t p = 0; p < e.values.size(); ++p) {
     const Parameter& parameter = e.kind->parameters[p];
-    if (!parameter.fallback || !same(e.values[p], *parameter.fallback)) add(parameter.name, yaml_of(parameter, e.values[p]));
+    if (!parameter.fallback || !same_number(e.values[p], *parameter.fallback))
+      add(parameter.name, yaml_of(parameter, e.values[p]));
   }
   for (const Reference& r : e.kind->references) {
     const auto found = e.references.find(r.name);

@@ -8,7 +8,8 @@
 //   the same time as the row taken last                 passed over: doubled
 //   earlier, by up to a short gap                       passed over: late
 //   later, by up to a short gap                         taken; more than 2.5 usual steps count as missing rows
-//   further off, in either direction                    passed over, until the next row confirms it by following it within a short gap. Then
+//   further off, in either direction                    passed over, until the next row confirms it by following it within a
+//                                                       short gap. Then
 //     later by up to a week                             taken: so much time has passed without rows
 //     else                                              taken: the clock was set, and one usual step has passed
 //

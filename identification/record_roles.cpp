@@ -87,10 +87,9 @@ double follows(std::span<const Record> records, const std::vector<std::string>& 
   return all > 0.0 ? scaled.dot(g.llt().solve(scaled)) / all : 1.0;
 }
 
-}  // namespace
-
-RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints) {
-  RecordRoles roles;
+/// Names of the channels that all records have, with the same unit and with readings. @param guesses  says which are left
+/// out. @throws InputError  for a name that no scenario can hold
+std::set<std::string> common_channels(std::span<const Record> records, std::vector<std::string>& guesses) {
   const Record& first = records[0];
   std::set<std::string> common;
   for (const Channel& c : first.channels) {
@@ -100,12 +99,11 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
         }))
       common.insert(c.name);
     else
-      roles.guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
+      guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
   }
   for (const Record& r : records.subspan(1)) {
     for (const Channel& c : r.channels) {
-      if (!first.find(c.name))
-        roles.guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
+      if (!first.find(c.name)) guesses.push_back(fmt::format("'{}' takes no part: not all records have it", c.header()));
     }
   }
   for (const std::string& name : std::vector<std::string>(common.begin(), common.end())) {
@@ -114,15 +112,23 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
           fmt::format("{}: a scenario cannot hold the name '{}': letters, digits, '_' and '-' alone; rename the column",
                       first.source, name));
     if (has_readings(records, name)) continue;
-    roles.guesses.push_back(fmt::format("'{}' takes no part: a record has no reading of it", name));
+    guesses.push_back(fmt::format("'{}' takes no part: a record has no reading of it", name));
     common.erase(name);
   }
+  return common;
+}
+
+void require_rows(std::span<const Record> records) {
   for (const Record& r : records) {
     if (r.n_samples() < kFewestRows)
       throw InputError(
           fmt::format("{}: {} rows; a network needs {} at least, better a few hundred over several changes of the drive",
                       r.source, r.n_samples(), kFewestRows));
   }
+}
+
+/// @throws InputError  for a hint that is not in all records
+void check_hints(const Record& first, const std::set<std::string>& common, const RoleHints& hints) {
   const auto require_common = [&](const std::string& name, const std::string& option) {
     if (!common.contains(name)) {
       (void)first.at(name);
@@ -133,14 +139,17 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
     require_common(drive, "--drive");
     if (drive == hints.ambient) throw InputError(fmt::format("'{}' cannot be both --drive and --ambient", drive));
   }
-  if (!hints.ambient.empty()) {
-    require_common(hints.ambient, "--ambient");
-    if (first.at(hints.ambient).unit != "degC")
-      throw InputError(fmt::format("--ambient {}: a temperature in degC is required, it is in {}", hints.ambient,
-                                   first.at(hints.ambient).unit));
-    roles.ambient = hints.ambient;
-  }
-  for (const Channel& c : first.channels) {
+  if (hints.ambient.empty()) return;
+  require_common(hints.ambient, "--ambient");
+  if (first.at(hints.ambient).unit != "degC")
+    throw InputError(fmt::format("--ambient {}: a temperature in degC is required, it is in {}", hints.ambient,
+                                 first.at(hints.ambient).unit));
+}
+
+/// Gives each common channel its role, the ambient excepted.
+void assign_roles(std::span<const Record> records, const std::set<std::string>& common, const RoleHints& hints,
+                  RecordRoles& roles) {
+  for (const Channel& c : records[0].channels) {
     if (!common.contains(c.name)) continue;
     const bool is_hinted = std::find(hints.drives.begin(), hints.drives.end(), c.name) != hints.drives.end();
     const bool is_speed = c.unit == "rpm" && roles.speed.empty();
@@ -170,48 +179,54 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
                       c.header(), c.unit));
     }
   }
-  std::vector<std::string> drives = roles.drives;
-  if (!roles.speed.empty()) drives.push_back(roles.speed);
-  if (drives.empty())
-    throw InputError(fmt::format(
-        "{}: nothing that drives the machine changes. A column such as speed_rpm or heater_W that is switched at least "
-        "twice is required, or --drive with a column that is; a machine that is never switched shows nothing of its heat",
-        first.source));
-  if (roles.ambient.empty()) {
-    auto named = std::find(roles.thermometers.begin(), roles.thermometers.end(), "ambient");
-    if (named == roles.thermometers.end())
-      named = std::find_if(roles.thermometers.begin(), roles.thermometers.end(), is_ambient_name);
-    if (named != roles.thermometers.end()) {
-      roles.ambient = *named;
-      roles.guesses.push_back(fmt::format("'{}' is the ambient, by its name", *named));
-    } else if (roles.thermometers.size() > 1) {
-      std::string least;
-      double share = 1e300;
-      for (const std::string& t : roles.thermometers) {
-        if (first.at(t).unit != "degC") continue;
-        const double of = follows(records, drives, t);
-        if (of < share) {
-          share = of;
-          least = t;
-        }
-      }
-      if (share < kAmbientFollows) {
-        roles.ambient = least;
-        roles.guesses.push_back(
-            fmt::format("'{}' is the ambient, a guess: of all thermometers it follows the drives least ({:.0f} % of its "
-                        "squares); --ambient says another",
-                        least, 100.0 * std::max(0.0, share)));
-      } else {
-        roles.guesses.emplace_back(
-            "no thermometer gives the ambient, because all follow the drives: it is taken as constant; --ambient names one");
-      }
+}
+
+/// The thermometer that follows the drives least, and by which share.
+std::pair<std::string, double> least_driven(std::span<const Record> records, const std::vector<std::string>& drives,
+                                            const std::vector<std::string>& thermometers) {
+  std::string least;
+  double share = 1e300;
+  for (const std::string& t : thermometers) {
+    if (records[0].at(t).unit != "degC") continue;
+    const double of = follows(records, drives, t);
+    if (of < share) {
+      share = of;
+      least = t;
+    }
+  }
+  return {least, share};
+}
+
+/// Takes the ambient out of the thermometers: by its name, else the one that follows the drives least.
+void guess_ambient(std::span<const Record> records, const std::vector<std::string>& drives, RecordRoles& roles) {
+  auto named = std::find(roles.thermometers.begin(), roles.thermometers.end(), "ambient");
+  if (named == roles.thermometers.end())
+    named = std::find_if(roles.thermometers.begin(), roles.thermometers.end(), is_ambient_name);
+  if (named != roles.thermometers.end()) {
+    roles.ambient = *named;
+    roles.guesses.push_back(fmt::format("'{}' is the ambient, by its name", *named));
+  } else if (roles.thermometers.size() > 1) {
+    const auto [least, share] = least_driven(records, drives, roles.thermometers);
+    if (share < kAmbientFollows) {
+      roles.ambient = least;
+      roles.guesses.push_back(
+          fmt::format("'{}' is the ambient, a guess: of all thermometers it follows the drives least ({:.0f} % of its "
+                      "squares); --ambient says another",
+                      least, 100.0 * std::max(0.0, share)));
     } else {
       roles.guesses.emplace_back(
-          "there is no ambient temperature: it is taken as constant; a thermometer in the air beside the machine would give "
-          "it");
+          "no thermometer gives the ambient, because all follow the drives: it is taken as constant; --ambient names one");
     }
-    std::erase(roles.thermometers, roles.ambient);
+  } else {
+    roles.guesses.emplace_back(
+        "there is no ambient temperature: it is taken as constant; a thermometer in the air beside the machine would give "
+        "it");
   }
+  std::erase(roles.thermometers, roles.ambient);
+}
+
+/// @throws InputError  for a column with a name that scenarios have for something else
+void refuse_taken_names(const Record& first, const RecordRoles& roles) {
   for (const auto* names : {&roles.thermometers, &roles.displacements, &roles.drives}) {
     for (const std::string& name : *names) {
       if (name == "ambient" || (name == "speed" && roles.speed != name))
@@ -220,15 +235,40 @@ RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints
                         first.source, name, name == "speed" ? "spindle" : "ambient"));
     }
   }
+}
+
+void note_holes(std::span<const Record> records, std::vector<std::string>& guesses) {
   for (const Record& r : records) {
     const std::vector<double> steps_s = row_steps_s(r.time_s);
     const double usual_s = upper_median(steps_s), longest_s = *std::max_element(steps_s.begin(), steps_s.end());
     if (longest_s > kHole * usual_s)
-      roles.guesses.push_back(
+      guesses.push_back(
           fmt::format("{} has a hole of {:.0f} min: what drove the machine before it is held. Where something else happened "
                       "in it, cut the record there",
                       r.source, longest_s / 60.0));
   }
+}
+
+}  // namespace
+
+RecordRoles record_roles(std::span<const Record> records, const RoleHints& hints) {
+  RecordRoles roles;
+  const Record& first = records[0];
+  const std::set<std::string> common = common_channels(records, roles.guesses);
+  require_rows(records);
+  check_hints(first, common, hints);
+  roles.ambient = hints.ambient;
+  assign_roles(records, common, hints, roles);
+  std::vector<std::string> drives = roles.drives;
+  if (!roles.speed.empty()) drives.push_back(roles.speed);
+  if (drives.empty())
+    throw InputError(fmt::format(
+        "{}: nothing that drives the machine changes. A column such as speed_rpm or heater_W that is switched at least "
+        "twice is required, or --drive with a column that is; a machine that is never switched shows nothing of its heat",
+        first.source));
+  if (roles.ambient.empty()) guess_ambient(records, drives, roles);
+  refuse_taken_names(first, roles);
+  note_holes(records, roles.guesses);
   if (roles.thermometers.empty() && roles.displacements.empty())
     throw InputError(
         fmt::format("{}: no thermometer (degC) and no displacement (um) is left to be predicted", first.source));

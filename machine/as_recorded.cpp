@@ -5,6 +5,7 @@
 #include "base/quantity.hpp"
 #include "effects/recorded_column.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::scenarios {

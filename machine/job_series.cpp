@@ -1,6 +1,7 @@
 #include "machine/job_series.hpp"
 
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 
 namespace driftwright::scenarios {
 namespace {

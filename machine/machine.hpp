@@ -1,5 +1,5 @@
 #pragma once
-// From a scenario to a computable machine: mesh, matrices, influence vectors; and its runs as records.
+// From a scenario to a computable machine: mesh, matrices, influence vectors.
 
 #include <memory>
 
@@ -40,7 +40,8 @@ struct Machine {
   PlacedMachine placed;
   /// None without a mesh, if nothing needs it, or when built with known influences.
   std::optional<solver::Elasticity> elasticity;
-  /// Elastic responses K⁻¹l of the displacements and tilts with points, 3 n_nodes each; empty for a machine without elasticity.
+  /// Elastic responses K⁻¹l of the displacements and tilts with points, 3 n_nodes each; empty for a machine without
+  /// elasticity.
   std::vector<Eigen::VectorXd> responses;
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
@@ -67,14 +68,5 @@ struct Machine {
 /// Temperatures minus the reference temperature at t = 0, as the scenario's `start` defines them.
 /// @throws SolveError  if no steady state exists to start from
 [[nodiscard]] Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine);
-
-/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in
-/// degC, displacements in um, tilts in urad; no mean temperatures of bodies.
-[[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
-                               double reference_K);
-
-/// 0, interval, 2 interval, ..., further times within the cyclogram, and its end [s].
-[[nodiscard]] std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s,
-                                                 const std::vector<double>& further_s = {});
 
 }  // namespace driftwright::scenarios

@@ -9,6 +9,7 @@
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/unusual.hpp"
 #include "solver/energy_balance.hpp"

@@ -145,9 +145,8 @@ class InpParser {
     }
     for (const char* maker : {"*ngen", "*nfill", "*ncopy", "*nmap", "*elgen", "*elcopy", "*system"}) {
       if (keyword_.name != maker) continue;
-      std::string shouted = maker;
-      for (char& c : shouted) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      fail(fmt::format("{} makes or moves nodes and elements, which is not followed; export a flat input file", shouted));
+      fail(fmt::format("{} makes or moves nodes and elements, which is not followed; export a flat input file",
+                       upper_case(maker)));
     }
     if (keyword_.name == "*node") begin_nodes();
     if (keyword_.name == "*element") begin_elements();

@@ -53,9 +53,9 @@ struct InpDeck {
   std::vector<SurfaceLine> surface_lines;
 };
 
-/// @throws InputError  with file and line: a number that cannot be read, a set or node that is defined wrongly, a 3-D element that
-///                     is not computed with, a keyword that makes nodes or elements (*NGEN, *INCLUDE, *INSTANCE with a shift
-///                     ...)
+/// @throws InputError  with file and line: a number that cannot be read, a set or node that is defined wrongly, a 3-D
+///                     element that is not computed with, a keyword that makes nodes or elements (*NGEN, *INCLUDE, *INSTANCE
+///                     with a shift ...)
 [[nodiscard]] InpDeck read_inp_deck(const std::string& path);
 
 /// @throws InputError  file:line: message

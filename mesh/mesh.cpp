@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "base/lists.hpp"
+
 namespace driftwright::mesh {
 namespace {
-
-int index_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto hit = std::find(names.begin(), names.end(), name);
-  return hit == names.end() ? -1 : static_cast<int>(hit - names.begin());
-}
 
 std::vector<int> members(const Cells& cells, int group) {
   std::vector<int> found;

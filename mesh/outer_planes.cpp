@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 
+#include "base/joined_sets.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/outer_faces.hpp"
 
@@ -23,8 +23,7 @@ double size_m(const Mesh& mesh) {
 /// For each node a number that nodes of one part share.
 class Parts {
  public:
-  explicit Parts(const Mesh& mesh) : parent_(static_cast<std::size_t>(mesh.n_nodes())) {
-    std::iota(parent_.begin(), parent_.end(), 0);
+  explicit Parts(const Mesh& mesh) : sets_(mesh.n_nodes()) {
     for (int c = 0; c < mesh.cells.size(); ++c) join_all(mesh.cells.nodes(c));
     for (const Joint& joint : mesh.joints) {
       const std::vector<int> a = mesh.facets_on(mesh.surface(joint.side_a)), b = mesh.facets_on(mesh.surface(joint.side_b));
@@ -32,13 +31,9 @@ class Parts {
       join_to_nearest(mesh, b, a);
     }
   }
-  int of(int node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
+  int of(int node) { return sets_.of(node); }
 
  private:
-  void join(int a, int b) { parent_[of(a)] = of(b); }
   /// Joins every part that has facets on one side of a joint to the part that it touches on the other: equal bolts are one
   /// side together.
   void join_to_nearest(const Mesh& mesh, const std::vector<int>& side, const std::vector<int>& other) {
@@ -50,14 +45,14 @@ class Parts {
       const Eigen::Vector3d centre =
           cell_coords(mesh, nodes.first(static_cast<std::size_t>(n_corners_of(mesh.facets.shape[f])))).rowwise().mean();
       const int nearest = nearest_point(mesh, mesh.facets, other, centre).cell;
-      join(nodes[0], mesh.facets.nodes(nearest)[0]);
+      sets_.join(nodes[0], mesh.facets.nodes(nearest)[0]);
       joined.insert(of(nodes[0]));
     }
   }
   void join_all(std::span<const int> nodes) {
-    for (int node : nodes) join(nodes[0], node);
+    for (int node : nodes) sets_.join(nodes[0], node);
   }
-  std::vector<int> parent_;
+  JoinedSets sets_;
 };
 
 /// True if a point in a facet's plane lies on the facet: on the inner side of all its edges.

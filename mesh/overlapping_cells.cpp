@@ -5,6 +5,7 @@
 #include <unsupported/Eigen/BVH>
 #include <vector>
 
+#include "base/joined_sets.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
 
@@ -15,18 +16,13 @@ using Box = Eigen::AlignedBox3d;
 
 /// For each cell a number that the cells of one body share.
 std::vector<int> bodies_of(const Mesh& mesh) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.n_nodes()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
+  JoinedSets bodies(mesh.n_nodes());
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const auto nodes = mesh.cells.nodes(c);
-    for (int n : nodes) parent[root(n)] = root(nodes[0]);
+    for (int n : nodes) bodies.join(n, nodes[0]);
   }
   std::vector<int> body;
-  for (int c = 0; c < mesh.cells.size(); ++c) body.push_back(root(mesh.cells.nodes(c)[0]));
+  for (int c = 0; c < mesh.cells.size(); ++c) body.push_back(bodies.of(mesh.cells.nodes(c)[0]));
   return body;
 }
 

@@ -18,8 +18,8 @@ namespace driftwright::mesh {
 /// Gmsh's Volume1, Volume2 ... alone, the ELSETs of 3-D elements that hold each element once. Every 3-D element must lie in
 /// exactly one. Surfaces: every *SURFACE, every ELSET of 2-D elements that are faces of 3-D ones (those on *ELEMENT lines
 /// only where there are no others), and every NSET that covers whole outer faces.
-/// @throws InputError  with file and line: for a number that cannot be read, an unknown node, element, set or face, a 3-D element
-///                     that is not computed with, *INCLUDE, *INSTANCE with a shift
+/// @throws InputError  with file and line: for a number that cannot be read, an unknown node, element, set or face, a 3-D
+///                     element that is not computed with, *INCLUDE, *INSTANCE with a shift
 [[nodiscard]] RawMesh read_inp(const std::string& path, const std::vector<std::string>& region_sets);
 
 }  // namespace driftwright::mesh

@@ -25,9 +25,9 @@ struct CorrectedNcProgram {
   std::vector<std::string> notes = {};  ///< what runs without corrections, with its line
 };
 
-/// Writes changes of the offset into a program. The lines that set the corrections of `axes` (after NcLanguage::guard_lines())
-/// are inserted before its first motion and before any G41 or G42; the lines that remove them are inserted before its end.
-/// Each change is
+/// Writes changes of the offset into a program. The lines that set the corrections of `axes` (after
+/// NcLanguage::guard_lines()) are inserted before its first motion and before any G41 or G42; the lines that remove them are
+/// inserted before its end. Each change is
 ///
 ///     [share > 0: the block's own motion word and F to the point at that share of its straight line]
 ///     NcLanguage::offset_lines()
@@ -36,15 +36,15 @@ struct CorrectedNcProgram {
 ///
 /// These lines are repeated after each block of the program that removes corrections (NcStep::resets). Points are written to
 /// 1e-6 mm or 1e-7 inch, offsets in the unit in force. An inserted line has the line ending of the line after it, and the
-/// block number and end of NcLanguage::block_form() where the program has them; later numbers are increased where there is no
-/// free number between two lines. A change at a line that runs several times, in a loop or subprogram, applies to one run
+/// block number and end of NcLanguage::block_form() where the program has them; later numbers are increased where there is
+/// no free number between two lines. A change at a line that runs several times, in a loop or subprogram, applies to one run
 /// (NcLanguage::run_counter()). Without changes the text is the original program.
 /// @param bytes    the program
 /// @param steps    of the same program
 /// @param initial_m  correction in force from the beginning [m]
 /// @param changes  in their order; each at a place that nc_entries() or why_not_divisible() allow
-/// @throws InputError  with the line: for inches, unless the language writes them; for what NcLanguage::check() refuses. Where
-///                     lines are inserted also: without a unit before them; with cutter compensation, mirror, rotation or a
+/// @throws InputError  with the line: for inches, unless the language writes them; for what NcLanguage::check() refuses.
+///                     Where lines are inserted also: without a unit before them; with cutter compensation, mirror, rotation or a
 ///                     modal cycle active at the end; for a last block that cuts; for a block that runs several times and
 ///                     removes different corrections; for what NcLanguage::check_written() refuses
 [[nodiscard]] CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,

@@ -36,11 +36,7 @@ class Drill {
   }
 
  private:
-  std::array<double, 3> at(double level_m) const {
-    std::array<double, 3> target_m = motion_.position_m;
-    target_m[cycle_.normal] = level_m;
-    return target_m;
-  }
+  [[nodiscard]] std::array<double, 3> at(double level_m) const { return motion_.at_level(cycle_.normal, level_m); }
   NcMotion& motion_;
   const NcDrilling& cycle_;
 };

@@ -39,7 +39,8 @@ struct NcSyntax {
   bool is_joined = false;           ///< without blanks: a name has no digits, and a letter may follow an operator
 };
 
-/// The value of a variable, named as it is written, without '#': "1", "<NAME>", "R1", "Q1". @throws RangeError  if it is unknown
+/// The value of a variable, named as it is written, without '#': "1", "<NAME>", "R1", "Q1". @throws RangeError  if it is
+/// unknown
 using NcLookup = std::function<NcValue(const std::string& name)>;
 
 /// The value of the expression that begins at text[at]; `at` is then the index after it. With `whole`, the longest

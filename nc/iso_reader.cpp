@@ -75,7 +75,7 @@ class IsoReader {
                        of_group(g, "origin") || contains(g, 100);
     if (waits) motion_.stop();
     if (const auto language = of_group(g, "language"); language && (*language != 2910 || !variant_.has_g291))
-      run_.fail(fmt::format("{}: Siemens programs are in ISO code (G291) as a whole or not at all here",
+      run_.fail(fmt::format("{}: a program must be in one language from its first to its last block",
                             nc_word_name('G', *language)));
     for (const NcCode cancel : {500, 501}) {  // alone they end scaling and mirroring, which do not begin here
       if (contains(g, cancel) && words.has_any("SXYZIJKPR"))

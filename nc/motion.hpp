@@ -51,6 +51,13 @@ class NcMotion {
 
   [[nodiscard]] double speed_rpm() const { return turning ? programmed_rpm : 0.0; }
 
+  /// The present position with another coordinate along the normal of the plane.
+  [[nodiscard]] std::array<double, 3> at_level(int normal, double level_m) const {
+    std::array<double, 3> target_m = position_m;
+    target_m[normal] = level_m;
+    return target_m;
+  }
+
   /// A straight line at rapid speed. @throws InputError  without a rapid speed
   void rapid_to(const std::array<double, 3>& target_m);
   /// A straight line at the feed. @throws InputError  without a feed, or per revolution of a spindle at rest

@@ -12,19 +12,19 @@
 //                                           whole block, F included (LinuxCNC would read F before)
 //   G28 G30 G53                             need NcSettings::machine_zero_m: G28 and G30 end at it, G53 counts from it
 //   G38.2 G38.3 G38.4 G38.5                 as if the probe touched at the end of its way, with a note
-//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc/drilling.hpp); Z R Q P hold within an unbroken series. G80 may be in one block with
-//                                           another motion word but a cycle's, which is then the motion
+//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc/drilling.hpp); Z R Q P hold within an unbroken series. G80 may
+//                                           be in one block with another motion word but a cycle's, which is then the motion
 //   G93 G94 G95, F, S, T                    each of the three forgets the feed before it
 //   M0 M1 M60  M2 M30                       halt without time; end
 //   M3 M4 M5 M19                            spindle. S alone does not turn it; M3 at S0 waits for an S. M19 stops it
-//   M6                                      takes NcSettings::tool_change_s; the spindle stands during and after it, until the
-//                                           next M3 or M4 (one in the same block counts: it comes after the change)
+//   M6                                      takes NcSettings::tool_change_s; the spindle stands during and after it, until
+//                                           the next M3 or M4 (one in the same block counts: it comes after the change)
 //   M98 M99, O words, #parameters, [ ]      nc/iso_source.hpp
-// Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G67 G69 G97 G15, G50 G50.1 (Fanuc, and Siemens in ISO code) in a
-// block without words for them, G54 first in the program, G10 L1 L10 L11, M7 M8 M9 M48 M49. Without effect, with a note: G41 G42 (the path is counted
-// along the programmed contour) and M words that are not known here. Every other G word is an InputError, unless NcSettings::ignored names it.
-// At the start: axes at 0 of the program, G17 G21 G90 G91.1 G94 G98 (LinuxCNC starts with G99), no motion word, no feed, spindle
-// at rest.
+// Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G67 G69 G97 G15, G50 G50.1 (Fanuc, and Siemens
+// in ISO code) in a block without words for them, G54 first in the program, G10 L1 L10 L11, M7 M8 M9 M48 M49. Without
+// effect, with a note: G41 G42 (the path is counted along the programmed contour) and M words that are not known here. Every
+// other G word is an InputError, unless NcSettings::ignored names it. At the start: axes at 0 of the program, G17 G21 G90
+// G91.1 G94 G98 (LinuxCNC starts with G99), no motion word, no feed, spindle at rest.
 
 #include <array>
 #include <map>

@@ -59,8 +59,8 @@ class NcRun {
   void change_tool(const std::string& word);
   void halt(const std::string& word);
 
-  /// By how much a coordinate as it is written may be off [m]: half of the last of the decimals that posts write at least, two of a
-  /// millimetre or three of an inch.
+  /// By how much a coordinate as it is written may be off [m]: half of the last of the decimals that posts write at least,
+  /// two of a millimetre or three of an inch.
   [[nodiscard]] double rounding_m() const { return unit_m > 1e-3 ? 0.5e-3 * unit_m : 0.5e-2 * unit_m; }
   /// Straight to a point, as rapid or at the feed.
   void rapid_to(const std::array<double, 3>& target_m) { go(NcStepKind::kRapid, target_m); }

@@ -68,8 +68,8 @@ const char* hint(char letter, NcCode code) {
   return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
 }
 
-/// Of one group; or an end of cycles beside a cycle. Beside another motion word G80 ends the cycle and the other is the motion, as in
-/// the first block of many posts: G0 G17 G21 G40 G49 G80 G90.
+/// Of one group; or an end of cycles beside a cycle. Beside another motion word G80 ends the cycle and the other is the
+/// motion, as in the first block of many posts: G0 G17 G21 G40 G49 G80 G90.
 bool contradict(NcCode a, NcCode b, const std::map<NcCode, const char*>& groups) {
   const auto ends_cycle = [&](NcCode c) { return std::string(groups.at(c)) == "end of cycles"; };
   return std::string(groups.at(a)) == groups.at(b) || (ends_cycle(a) && is_canned_cycle(b)) ||

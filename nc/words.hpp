@@ -46,9 +46,10 @@ class NcWords {
   /// 100000
   double take_not_negative(char letter);
   int take_count(char letter);
-  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E. So are M codes that
-  /// are not known here: unknown() has them.
-  /// @throws InputError  for a G code that is not known here, with a hint, for two of one group, and for G80 beside a canned cycle
+  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E. So are M
+  /// codes that are not known here: unknown() has them.
+  /// @throws InputError  for a G code that is not known here, with a hint, for two of one group, and for G80 beside a canned
+  /// cycle
   std::vector<NcCode> take_codes(char letter, const std::set<std::string>& ignored);
   [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
   /// @throws InputError  for the first unused word

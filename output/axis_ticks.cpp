@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/characters.hpp"
+
 namespace driftwright::output {
 namespace {
 
@@ -71,18 +73,52 @@ std::string with_exponent(const DecimalNumber& number) {
 
 /// In characters.
 std::size_t longest_of(const std::vector<std::string>& labels) {
-  std::ptrdiff_t longest = 0;
-  for (const std::string& label : labels) {
-    longest = std::max(longest, std::count_if(label.begin(), label.end(), [](char c) {
-                         return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // other bytes continue a character
-                       }));
+  std::size_t longest = 0;
+  for (const std::string& label : labels) longest = std::max(longest, n_characters(label));
+  return longest;
+}
+
+/// 5, 2 and 1 times powers of ten, the largest first. @param unit  that they are multiples of
+std::vector<DecimalNumber> round_numbers(int highest, int lowest, long long unit = 1) {
+  std::vector<DecimalNumber> numbers;
+  for (int exponent = highest; exponent >= lowest; --exponent) {
+    for (const long long digits : {5, 2, 1}) numbers.push_back({digits * unit, exponent});
   }
-  return static_cast<std::size_t>(longest);
+  return numbers;
+}
+
+/// The round steps of a time axis between its numbers and whole days, the largest first.
+struct TimeSteps {
+  long long day = 0;
+  std::vector<DecimalNumber> steps;
+  double largest_number = 0.0;
+};
+
+const TimeSteps& time_steps(TickSteps steps) {
+  static const TimeSteps kMinutes{
+      .day = 1440, .steps = {{720}, {360}, {180}, {120}, {60}, {30}, {15}}, .largest_number = 10.0};
+  static const TimeSteps kHours{.day = 24, .steps = {{12}, {6}, {3}, {2}, {1}, {5, -1}, {25, -2}}, .largest_number = 0.1};
+  return steps == TickSteps::kMinutes ? kMinutes : kHours;
+}
+
+/// The steps that an axis may have, the largest first. @param decade  of its span
+std::vector<DecimalNumber> steps_of(TickSteps steps, int decade) {
+  const std::vector<DecimalNumber> numbers = round_numbers(decade, decade - 2);
+  if (steps == TickSteps::kDecimal) return numbers;
+  const TimeSteps& time = time_steps(steps);
+  std::vector<DecimalNumber> all = round_numbers(decade, std::max(0, decade - 5), time.day);  // a day is up to 10^3.2
+  for (const DecimalNumber& step : time.steps) {
+    if (std::log10(step.value()) >= decade - 2) all.push_back(step);
+  }
+  for (const DecimalNumber& step : numbers) {
+    if (step.value() <= time.largest_number) all.push_back(step);
+  }
+  return all;
 }
 
 }  // namespace
 
-AxisTicks axis_ticks(double low, double high, double preferred) {
+AxisTicks axis_ticks(double low, double high, double preferred, TickSteps steps) {
   const double most = std::max(std::abs(low), std::abs(high)), span = high - low;
   if (!(span >= 1e-293 && span >= 1e-12 * most && most <= 1e302))
     throw std::logic_error(fmt::format("axis_ticks: {} to {} is no range that doubles can divide", low, high));
@@ -98,10 +134,11 @@ AxisTicks axis_ticks(double low, double high, double preferred) {
     least = off;
     chosen = offered;
   };
-  for (int exponent = decade; exponent >= decade - 2; --exponent) {
-    for (const long long digits : {5, 2, 1}) consider({digits, exponent});
-  }
+  for (const DecimalNumber& step : steps_of(steps, decade)) consider(step);
   // Between 5 and 2 the number of ticks can jump from 3 to 10: (5.5, 24.5) has three multiples of 5 and ten of 2.
+  if (chosen.step.digits == 0) {
+    for (const DecimalNumber& step : round_numbers(decade, decade - 2)) consider(step);
+  }
   for (int exponent = decade; exponent >= decade - 2 && chosen.step.digits == 0; --exponent) consider({25, exponent - 1});
   if (chosen.step.digits == 0) throw std::logic_error(fmt::format("axis_ticks: {} to {} has no round step", low, high));
 

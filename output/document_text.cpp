@@ -5,17 +5,13 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/characters.hpp"
+
 namespace driftwright::output {
 namespace {
 
-/// Number of characters of a UTF-8 text.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::string padded(const std::string& text, std::size_t width, bool to_the_right) {
-  const std::string blanks(width - std::min(width, width_of(text)), ' ');
+  const std::string blanks(width - std::min(width, n_characters(text)), ' ');
   return to_the_right ? blanks + text : text + blanks;
 }
 
@@ -24,7 +20,7 @@ std::vector<std::string> lines_of(const std::string& heading, std::size_t width)
   std::vector<std::string> lines;
   std::istringstream words(heading);
   for (std::string word; words >> word;) {
-    if (!lines.empty() && width_of(lines.back()) + 1 + width_of(word) <= width)
+    if (!lines.empty() && n_characters(lines.back()) + 1 + n_characters(word) <= width)
       lines.back() += " " + word;
     else
       lines.push_back(word);
@@ -49,12 +45,12 @@ Printed printed(const Table& table, std::size_t c) {
   for (const std::vector<Datum>& row : table.rows) {
     const std::string cell = shown(row.at(c), column.digits);
     p.cells.push_back(column.key == "unit" ? shown_unit(cell) : cell);
-    p.width = std::max(p.width, width_of(p.cells.back()));
+    p.width = std::max(p.width, n_characters(p.cells.back()));
     p.to_the_right = p.to_the_right || is_number(row[c]);
   }
   constexpr std::size_t kLeast = 10;  // narrower columns would stack the words of their headings
   p.heading = lines_of(heading_of(column), std::max(p.width, kLeast));
-  for (const std::string& line : p.heading) p.width = std::max(p.width, width_of(line));
+  for (const std::string& line : p.heading) p.width = std::max(p.width, n_characters(line));
   return p;
 }
 
@@ -98,7 +94,7 @@ class TextWriter {
 
   void flush(std::vector<const Value*>& values) {
     std::size_t width = 0;
-    for (const Value* v : values) width = std::max(width, width_of(v->words));
+    for (const Value* v : values) width = std::max(width, n_characters(v->words));
     for (const Value* v : values) {
       const std::string unit = v->unit.empty() && v->digits.kind == Digits::Kind::kPercent ? "%" : shown_unit(v->unit);
       line(padded(v->words, width, false) + "  " + shown(v->datum, v->digits) + (unit.empty() ? "" : " " + unit));

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/characters.hpp"
 #include "compensation/predictors/control_tables.hpp"
 
 namespace driftwright::output {
@@ -101,11 +102,6 @@ std::string quoted(std::string text) {
   return text;
 }
 
-std::string upper(std::string text) {
-  for (char& ch : text) ch = static_cast<char>(std::toupper(static_cast<unsigned char>(ch)));
-  return text;
-}
-
 /// The settings of the filter of probings, as C has them.
 std::string probing_numbers(const DeployedModel& d) {
   const probe_process p = compensation::probe_process_of(*d.residual, d.probe, d.model.from_start);
@@ -144,10 +140,111 @@ constexpr const char* kProbeOutputs =
     "  probe_verdict = probing.verdict;\n  probe_off_um = probing.off_um;\n  refused_probings = probing.n_refused;\n";
 /// @}
 
+/// The component, as halcompile reads it.
+constexpr const char* kComponent =
+    R"(component {name} "Correction of {target} [um], by {kind}, as external offset of an axis";
+description """
+{made_by}
+
+What is judged by Driftwright runs here: {c_file} holds the tables of the model, {files} must lie beside this file when it is compiled:
+
+  halcompile --install {name}.comp
+
+For the axis L, with [AXIS_L]OFFSET_AV_RATIO in the INI file:
+
+  loadrt {name} names=thermal
+  addf thermal servo-thread
+  net thermal-counts thermal.eoffset-counts => axis.l.eoffset-counts
+  net thermal-scale thermal.eoffset-scale => axis.l.eoffset-scale
+  net thermal-enable thermal.eoffset-enable => axis.l.eoffset-enable
+
+LinuxCNC adds up changes of the counts, drops them before all joints are homed, and forgets them when the machine is switched off.
+machine-is-on must therefore be the and of motion.motion-enabled and motion.is-all-homed.
+""";
+{pins}pin in bit enable = 0 "the offset follows the correction; else it goes back to 0 at the slew limit";
+pin in bit machine_is_on = 0 "while it is off, counts and offset are 0 at once";
+pin in bit heartbeat = 0 "turns over while the readings are fresh; until it first does, and when it has not for most-age-s, the offset goes back to 0 and the readings count as missing";
+pin in bit restart = 0 "forgets everything: rises, lags and trust begin anew when it goes back to 0";
+pin out signed eoffset_counts "to axis.L.eoffset-counts";
+pin out float eoffset_scale "to axis.L.eoffset-scale: units of the machine per count";
+pin out bit eoffset_enable "to axis.L.eoffset-enable";
+pin out float correction_um "of the model: what is to be taken away from the position";
+pin out float axis_offset_um "of the axis, in force";
+pin out float model_trust "0 to 1, that the prediction was multiplied by";
+{probe_pins}pin out bit heartbeat_is_late "the watchdog has bitten";
+pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
+{doubts}param rw float most_rate_um_s = {rate} "slew limit of the offset, um/s; 0 or more";
+param rw float most_um = {most} "largest offset by size, um; 0: no limit";
+param rw float sign = -1.0 "-1: the axis moves against the drift; +1: with it. A new one waits until the offset is 0";
+param rw float count_um = 0.1 "um per count, above 0. A new one waits until the offset is 0";
+param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
+param rw float most_age_s = {age} "the heartbeat must turn over within this time, s; above 0";
+param rw float step_s = {period} "from one step of the model to the next, s: as far apart as the readings that it was judged on; 0: each cycle";
+{probe_parameters}variable {state} model;
+variable axis_offset_state axis;
+variable double waited_s;
+variable int is_started;
+{probe_variables}include "{c_file}";
+include "drift_correction.c";
+{probe_include}include "axis_offset.c";
+function _ fp;
+license "GPL";
+;;
+FUNCTION(_) {{
+  static const {state} at_start;
+{begin}  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
+  const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
+  waited_s += fperiod;
+{wait}  if (restart) {{
+    model = at_start;
+    is_started = 0;
+    correction_um = 0.0;
+{forget}  }} else if (is_started ? !(waited_s + 0.5 * fperiod < step_s) : !is_late) {{
+{step}    is_started = 1;
+    waited_s = 0.0;
+  }}
+{probe}  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
+  eoffset_counts = axis.counts;
+  eoffset_scale = axis.scale;
+  eoffset_enable = axis.is_offset_enabled;
+  axis_offset_um = axis.offset_um;
+  model_trust = model.run.trust;
+  heartbeat_is_late = is_late;
+  setting_is_wrong = {is_wrong};
+{outputs}{set_doubts}}}
+)";
+
+/// The second function of a model whose residual is known.
+std::string probed_function(const DeployedModel& d, const std::string& name, const std::vector<std::string>& arguments,
+                            const std::vector<std::string>& readings) {
+  std::vector<std::string> values = readings;
+  values.emplace_back("");
+  return fmt::format(
+      "\n/* deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start; probe_feedback.h says what is computed. */\n"
+      "static const probe_process {0}_probing = {{{1}}};\n\n"
+      "/* The same with what probings have found, within the clamp and the slew limit. probed_um: the drift of the axis "
+      "without\n"
+      " * correction by a probing whose value has come since the call before [um], which is what the probe read on the "
+      "corrected\n"
+      " * axis plus the correction that was in force then; NAN without one. Call either this function or the one above.\n"
+      " * s->probing.verdict says what became of the last probing, s->probing.n_refused how many were refused;\n"
+      " * probe_deviation_um(&{0}_probing, &s->probing, 0.0) is the standard deviation of what is left. */\n"
+      "double {0}_probed_correction_um({0}_state *s, {2}double probed_um, double dt_s) {{\n"
+      "  const int is_first = !s->probing.has_begun;\n"
+      "  const double prediction_um = {0}_correction_um(s, {3}dt_s), before_um = is_first ? prediction_um : s->probed_um;\n"
+      "  probe_row(&{0}_probing, &s->probing, prediction_um, before_um, dt_s);\n"
+      "  if (!isnan(probed_um)) probe_drift(&{0}_probing, &s->probing, probed_um);\n"
+      "  s->probed_um = probe_corrected_um(&{0}_probing, &s->probing, prediction_um, {0}_safe.lowest_um,\n"
+      "                                    {0}_safe.highest_um);\n"
+      "  if (!is_first) s->probed_um = probe_slewed_um(before_um, s->probed_um, {0}_safe.most_rate_um_s, dt_s);\n"
+      "  return s->probed_um;\n}}\n",
+      name, probing_numbers(d), fmt::join(arguments, ""), fmt::join(values, ", "));
+}
+
 }  // namespace
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
-  const std::string name = c_name(d.model.target), capitals = upper(name);
+  const std::string name = c_name(d.model.target), capitals = upper_case(name);
   const std::vector<std::string> readings = reading_names(d.safe);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;
@@ -226,29 +323,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
       "  return drift_correction_step(&{0}_safe, &{0}_formula, &s->run, &arrays, readings, dt_s);\n}}\n",
       name);
   if (!d.residual) return text;
-  std::vector<std::string> values = readings;
-  values.emplace_back("");
-  text += fmt::format(
-      "\n/* deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start; probe_feedback.h says what is computed. */\n"
-      "static const probe_process {0}_probing = {{{1}}};\n\n"
-      "/* The same with what probings have found, within the clamp and the slew limit. probed_um: the drift of the axis "
-      "without\n"
-      " * correction by a probing whose value has come since the call before [um], which is what the probe read on the "
-      "corrected\n"
-      " * axis plus the correction that was in force then; NAN without one. Call either this function or the one above.\n"
-      " * s->probing.verdict says what became of the last probing, s->probing.n_refused how many were refused;\n"
-      " * probe_deviation_um(&{0}_probing, &s->probing, 0.0) is the standard deviation of what is left. */\n"
-      "double {0}_probed_correction_um({0}_state *s, {2}double probed_um, double dt_s) {{\n"
-      "  const int is_first = !s->probing.has_begun;\n"
-      "  const double prediction_um = {0}_correction_um(s, {3}dt_s), before_um = is_first ? prediction_um : s->probed_um;\n"
-      "  probe_row(&{0}_probing, &s->probing, prediction_um, before_um, dt_s);\n"
-      "  if (!isnan(probed_um)) probe_drift(&{0}_probing, &s->probing, probed_um);\n"
-      "  s->probed_um = probe_corrected_um(&{0}_probing, &s->probing, prediction_um, {0}_safe.lowest_um,\n"
-      "                                    {0}_safe.highest_um);\n"
-      "  if (!is_first) s->probed_um = probe_slewed_um(before_um, s->probed_um, {0}_safe.most_rate_um_s, dt_s);\n"
-      "  return s->probed_um;\n}}\n",
-      name, probing_numbers(d), fmt::join(arguments, ""), fmt::join(values, ", "));
-  return text;
+  return text + probed_function(d, name, arguments, readings);
 }
 
 std::string linuxcnc_component(const DeployedModel& d, const std::string& name, const std::string& c_file,
@@ -293,90 +368,19 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
     outputs = kProbeOutputs;
     is_wrong = "axis.is_wrong || !probe_is_valid(&process)";
   }
-  return fmt::format(
-      R"(component {name} "Correction of {target} [um], by {kind}, as external offset of an axis";
-description """
-{made_by}
-
-What is judged by Driftwright runs here: {c_file} holds the tables of the model, {files} must lie beside this file when it is compiled:
-
-  halcompile --install {name}.comp
-
-For the axis L, with [AXIS_L]OFFSET_AV_RATIO in the INI file:
-
-  loadrt {name} names=thermal
-  addf thermal servo-thread
-  net thermal-counts thermal.eoffset-counts => axis.l.eoffset-counts
-  net thermal-scale thermal.eoffset-scale => axis.l.eoffset-scale
-  net thermal-enable thermal.eoffset-enable => axis.l.eoffset-enable
-
-LinuxCNC adds up changes of the counts, drops them before all joints are homed, and forgets them when the machine is switched off.
-machine-is-on must therefore be the and of motion.motion-enabled and motion.is-all-homed.
-""";
-{pins}pin in bit enable = 0 "the offset follows the correction; else it goes back to 0 at the slew limit";
-pin in bit machine_is_on = 0 "while it is off, counts and offset are 0 at once";
-pin in bit heartbeat = 0 "turns over while the readings are fresh; until it first does, and when it has not for most-age-s, the offset goes back to 0 and the readings count as missing";
-pin in bit restart = 0 "forgets everything: rises, lags and trust begin anew when it goes back to 0";
-pin out signed eoffset_counts "to axis.L.eoffset-counts";
-pin out float eoffset_scale "to axis.L.eoffset-scale: units of the machine per count";
-pin out bit eoffset_enable "to axis.L.eoffset-enable";
-pin out float correction_um "of the model: what is to be taken away from the position";
-pin out float axis_offset_um "of the axis, in force";
-pin out float model_trust "0 to 1, that the prediction was multiplied by";
-{probe_pins}pin out bit heartbeat_is_late "the watchdog has bitten";
-pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
-{doubts}param rw float most_rate_um_s = {rate} "slew limit of the offset, um/s; 0 or more";
-param rw float most_um = {most} "largest offset by size, um; 0: no limit";
-param rw float sign = -1.0 "-1: the axis moves against the drift; +1: with it. A new one waits until the offset is 0";
-param rw float count_um = 0.1 "um per count, above 0. A new one waits until the offset is 0";
-param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
-param rw float most_age_s = {age} "the heartbeat must turn over within this time, s; above 0";
-param rw float step_s = {period} "from one step of the model to the next, s: as far apart as the readings that it was judged on; 0: each cycle";
-{probe_parameters}variable {state} model;
-variable axis_offset_state axis;
-variable double waited_s;
-variable int is_started;
-{probe_variables}include "{c_file}";
-include "drift_correction.c";
-{probe_include}include "axis_offset.c";
-function _ fp;
-license "GPL";
-;;
-FUNCTION(_) {{
-  static const {state} at_start;
-{begin}  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
-  const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
-  waited_s += fperiod;
-{wait}  if (restart) {{
-    model = at_start;
-    is_started = 0;
-    correction_um = 0.0;
-{forget}  }} else if (is_started ? !(waited_s + 0.5 * fperiod < step_s) : !is_late) {{
-{step}    is_started = 1;
-    waited_s = 0.0;
-  }}
-{probe}  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
-  eoffset_counts = axis.counts;
-  eoffset_scale = axis.scale;
-  eoffset_enable = axis.is_offset_enabled;
-  axis_offset_um = axis.offset_um;
-  model_trust = model.run.trust;
-  heartbeat_is_late = is_late;
-  setting_is_wrong = {is_wrong};
-{outputs}{set_doubts}}}
-)",
-      fmt::arg("name", name), fmt::arg("target", quoted(d.model.target)), fmt::arg("kind", quoted(d.model.kind)),
-      fmt::arg("made_by", quoted(made_by)), fmt::arg("c_file", c_file), fmt::arg("pins", pins), fmt::arg("doubts", doubts),
-      fmt::arg("step", step), fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
-      fmt::arg("files", description_files), fmt::arg("probe_pins", probe_pins),
-      fmt::arg("probe_parameters", probe_parameters), fmt::arg("probe_variables", probe_variables),
-      fmt::arg("probe_include", d.residual ? "include \"probe_feedback.c\";\n" : ""), fmt::arg("begin", begin),
-      fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""), fmt::arg("probe", probe),
-      fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
-      fmt::arg("forget", d.residual ? "    probing = unprobed;\n    probe_waited_s = 0.0;\n" : ""),
-      fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
-      fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))), fmt::arg("age", c_number(d.safe.stale_s)),
-      fmt::arg("period", c_number(d.safe.period_s)));
+  return fmt::format(kComponent, fmt::arg("name", name), fmt::arg("target", quoted(d.model.target)),
+                     fmt::arg("kind", quoted(d.model.kind)), fmt::arg("made_by", quoted(made_by)),
+                     fmt::arg("c_file", c_file), fmt::arg("pins", pins), fmt::arg("doubts", doubts), fmt::arg("step", step),
+                     fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
+                     fmt::arg("files", description_files), fmt::arg("probe_pins", probe_pins),
+                     fmt::arg("probe_parameters", probe_parameters), fmt::arg("probe_variables", probe_variables),
+                     fmt::arg("probe_include", d.residual ? "include \"probe_feedback.c\";\n" : ""),
+                     fmt::arg("begin", begin), fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""),
+                     fmt::arg("probe", probe), fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
+                     fmt::arg("forget", d.residual ? "    probing = unprobed;\n    probe_waited_s = 0.0;\n" : ""),
+                     fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
+                     fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))),
+                     fmt::arg("age", c_number(d.safe.stale_s)), fmt::arg("period", c_number(d.safe.period_s)));
 }
 
 }  // namespace driftwright::output

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/characters.hpp"
 #include "mesh/machine_skin.hpp"
 #include "output/base64.hpp"
 #include "output/markup.hpp"
@@ -37,9 +38,7 @@ std::array<float, 3> colour_of(double share) {
 /// About the width of a text in the picture, of a wide sans-serif font [units of the SVG].
 double drawn_width(const std::string& text) {
   constexpr double kOfLetter = 6.8;
-  return kOfLetter * static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
-           return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // bytes of UTF-8 that go on with a letter are none
-         }));
+  return kOfLetter * static_cast<double>(n_characters(text));
 }
 
 /// Beside each view, so that the longest name has room.

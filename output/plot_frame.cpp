@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "output/markup.hpp"
 #include "output/text_width.hpp"
@@ -20,7 +21,8 @@ constexpr double kTickLength = 5.0, kTickGap = 4.0;    // of ticks, and from the
 constexpr double kYLabelRoom = 30.0;                   // left of the tick labels [px]
 constexpr double kPerXTick = 100.0, kPerYTick = 45.0;  // room that a tick should have [px]
 constexpr double kYMargin = 0.05;                      // of the y range, above and below the curves
-// Tables of results have seven digits; differences that they do not show fill no plot. Times are shown to the last digit that ticks can have.
+// Tables of results have seven digits; differences that they do not show fill no plot. Times are shown to the last digit
+// that ticks can have.
 constexpr double kLeastYDifference = 1e-6, kLeastXDifference = 1e-12;
 
 /// Room for the widest of some labels [px].
@@ -36,6 +38,25 @@ std::size_t label_stride(const PlotFrame& frame) {
   if (frame.x_ticks.values.size() < 2) return 1;
   const double per_tick = std::abs(frame.x(frame.x_ticks.values[1]) - frame.x(frame.x_ticks.values[0]));
   return static_cast<std::size_t>(std::max(1.0, std::ceil((widest_of(frame.x_ticks.labels) + kBetween) / per_tick)));
+}
+
+/// Labels the x axis. Minutes are divided as a clock is; from four digits on they are labelled in hours.
+void label_x_axis(PlotFrame& frame, const std::string& label, const ValueRange& x, double preferred) {
+  constexpr std::string_view kMinutes = "[min]", kHours = "[h]";
+  constexpr double kFourDigits = 1000.0, kPerHour = 60.0;
+  frame.x_label = label;
+  const std::size_t minutes = label.find(kMinutes);
+  if (minutes == std::string::npos) {
+    frame.x_ticks = axis_ticks(x.low, x.high, preferred,
+                               label.find(kHours) != std::string::npos ? TickSteps::kHours : TickSteps::kDecimal);
+  } else if (std::max(std::abs(x.low), std::abs(x.high)) < kFourDigits) {
+    frame.x_ticks = axis_ticks(x.low, x.high, preferred, TickSteps::kMinutes);
+  } else {
+    frame.x_label.replace(minutes, kMinutes.size(), kHours);
+    frame.x_ticks = axis_ticks(x.low / kPerHour, x.high / kPerHour, preferred, TickSteps::kHours);
+    frame.x_ticks.step *= kPerHour;
+    for (double& value : frame.x_ticks.values) value *= kPerHour;
+  }
 }
 
 /// Places for the labels of section marks: each begins at its mark, or as far left of it as the picture's edge demands, in
@@ -98,7 +119,7 @@ PlotFrame plot_frame(const Plot& plot) {
   y = shown_range(y, kYMargin, kLeastYDifference);
 
   const double inner_height = (plot.half_width ? kHalfPlotHeight : kPlotHeight) - kTopSide - kBelow;
-  frame.x_ticks = axis_ticks(x.low, x.high, (frame.width - kLeftSide - kRightSide) / kPerXTick);
+  label_x_axis(frame, plot.x_label, x, (frame.width - kLeftSide - kRightSide) / kPerXTick);
   frame.y_ticks = axis_ticks(y.low, y.high, inner_height / kPerYTick);
   frame.left = std::max(kLeftSide, kYLabelRoom + widest_of(frame.y_ticks.labels) + kTickGap + kTickLength);
   frame.right = frame.width - std::max(kRightSide, 0.5 * text_width(frame.x_ticks.labels.back(), kAxisFont) + 4.0);
@@ -169,7 +190,7 @@ std::string drawn_over_curves(const Plot& plot, const PlotFrame& frame) {
       lines, x_labels, y_labels, kMarkFont, mark_labels);
   const double center = 0.5 * (frame.left + frame.right), middle = 0.5 * (frame.top + frame.bottom);
   const double x_room = 2.0 * std::min(center, frame.width - center), y_room = 2.0 * std::min(middle, frame.height - middle);
-  out += axis_label(plot.x_label, x_room - 8.0, fmt::format("x=\"{:.2f}\" y=\"{:.2f}\"", center, frame.height - 12.0));
+  out += axis_label(frame.x_label, x_room - 8.0, fmt::format("x=\"{:.2f}\" y=\"{:.2f}\"", center, frame.height - 12.0));
   out += axis_label(plot.y_label, y_room - 8.0, fmt::format("transform=\"translate(22 {:.2f}) rotate(-90)\"", middle));
   if (frame.is_empty)
     out += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"middle\" fill=\"#777777\">no data</text>\n", center,

@@ -16,6 +16,7 @@ struct PlotFrame {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;  ///< positions of the frame's sides
   AxisScale x = {}, y = {};
   AxisTicks x_ticks = {}, y_ticks = {};
+  std::string x_label = {};  ///< of the plot; "[h]" in place of "[min]" where the ticks' labels are hours
   struct MarkLabel {
     double x = 0.0;  ///< where the text begins
     int row = 0;     ///< above the frame, from zero

@@ -23,10 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-InputError cannot(const std::string& what, const fs::path& path, int error) {
-  return InputError(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(error)));
-}
-
 InputError cannot_use(const fs::path& target, const fs::filesystem_error& e) {
   return InputError(fmt::format("-o '{}' cannot be used: {} '{}'; give a folder that can be written to", target.string(),
                                 e.code().message(), e.path1().string()));
@@ -153,6 +149,10 @@ fs::path swap_in(const fs::path& work, const fs::path& target) {
 }
 
 }  // namespace
+
+InputError cannot(const std::string& what, const fs::path& path, int error) {
+  return InputError(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(error)));
+}
 
 fs::path check_results_folder(const fs::path& target, bool force) {
   if (target.empty()) throw InputError("-o names no folder");

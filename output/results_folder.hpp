@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/errors.hpp"
 #include "output/provenance.hpp"
 
 namespace driftwright::output {
@@ -15,6 +16,9 @@ namespace driftwright::output {
 /// Name of the file, inside a folder of results, that lists the files which the program wrote:
 ///     { "program": "driftwright", "version": ..., "scenario": ..., "files": ["report.html", ...] }
 inline constexpr const char* kManifestName = "driftwright-manifest.json";
+
+/// "cannot WHAT 'PATH': REASON". @param error  of the system, as errno
+[[nodiscard]] InputError cannot(const std::string& what, const std::filesystem::path& path, int error);
 
 /// Writes `text` to `file`, replacing it. Every step is checked, also closing: a full disk may show only there.
 /// @throws InputError  naming the file and the system's reason

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -19,10 +18,6 @@ namespace driftwright::output {
 namespace {
 
 namespace fs = std::filesystem;
-
-InputError cannot(const std::string& what, const fs::path& path) {
-  return InputError(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(errno)));
-}
 
 std::string opening(const RowsIdentity& identity) {
   return fmt::format("# rows of {}\n{}\n", identity.content, identity.header);
@@ -101,7 +96,7 @@ RowsUnderWay::RowsUnderWay(const fs::path& folder, const std::string& name, Rows
     if (failed) throw InputError(fmt::format("cannot create '{}': {}", folder.string(), failed.message()));
     handle_ = open(partial_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   }
-  if (handle_ < 0) throw cannot("write", partial_);
+  if (handle_ < 0) throw cannot("write", partial_, errno);
   if (flock(handle_, LOCK_EX | LOCK_NB) != 0) {
     close(handle_);
     throw InputError(
@@ -113,7 +108,7 @@ RowsUnderWay::RowsUnderWay(const fs::path& folder, const std::string& name, Rows
   const std::size_t keep = is_ours ? text.rfind('\n') + 1 : 0;  // drops an incomplete line
   if (ftruncate(handle_, static_cast<off_t>(keep)) != 0) {
     close(handle_);
-    throw cannot("write", partial_);
+    throw cannot("write", partial_, errno);
   }
   if (keep == 0) write_line(start);
 }
@@ -127,7 +122,7 @@ void RowsUnderWay::append(const std::string& row) {
 }
 
 void RowsUnderWay::write_line(const std::string& line) {
-  if (write(handle_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) throw cannot("write", partial_);
+  if (write(handle_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) throw cannot("write", partial_, errno);
 }
 
 void RowsUnderWay::finish(const NumberedRows& rows) {

@@ -128,6 +128,42 @@ void interpolate(double share, double step_s, const double* from, const double* 
   });
 }
 
+/// Gives ARKODE the callbacks, the tolerances, the method and the limits of its steps.
+void configure(void* mem, Callee& callee, SUNNonlinearSolver stage, N_Vector tolerance, const TransientOptions& options,
+               double from_s) {
+  const auto must = [&](int flag, const char* call) { check(flag, call, from_s, callee); };
+  // ARKODE's messages arrive as flags; check() reports them in our own words.
+  must(ARKStepSetErrHandlerFn(
+           mem, [](int, const char*, const char*, char*, void*) {}, nullptr),
+       "ARKStepSetErrHandlerFn");
+  must(ARKStepSetUserData(mem, &callee), "ARKStepSetUserData");
+  must(ARKStepSVtolerances(mem, options.relative_tolerance, tolerance), "ARKStepSVtolerances");
+  must(ARKStepSetTableNum(mem, ARKODE_ESDIRK324L2SA_4_2_3, ARKODE_ERK_NONE), "ARKStepSetTableNum");
+  must(ARKStepSetNonlinearSolver(mem, stage), "ARKStepSetNonlinearSolver");
+  must(ARKStepSetDeduceImplicitRhs(mem, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
+  must(ARKStepSetMaxErrTestFails(mem, 40),
+       "ARKStepSetMaxErrTestFails");  // a shock may need steps far smaller than the first
+  must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
+  must(ARKStepSetMaxStep(mem, options.max_step_s), "ARKStepSetMaxStep");
+  if (callee.n_thermostats > 0) must(ARKStepRootInit(mem, callee.n_thermostats, switch_callback), "ARKStepRootInit");
+}
+
+/// Switches the thermostats whose switching points the last step has reached.
+/// @param n_switches  of all of them so far. @throws SolveError  beyond the most that are allowed
+void toggle_reached(Callee& callee, double t_s, int most_switches, int& n_switches) {
+  std::vector<int> reached(callee.n_thermostats);
+  check(ARKStepGetRootInfo(callee.arkode, reached.data()), "ARKStepGetRootInfo", t_s, callee);
+  for (int i = 0; i < callee.n_thermostats; ++i) {
+    if (reached[i] == 0) continue;
+    callee.ode.toggle(i);
+    if (++n_switches <= most_switches) continue;
+    throw SolveError(
+        fmt::format("thermostat '{}' switched for the {}th time at t = {:.1f} s; is its hysteresis too small "
+                    "for its volume?",
+                    callee.ode.thermostats()[static_cast<std::size_t>(i)].name, n_switches, t_s));
+  }
+}
+
 }  // namespace
 
 Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
@@ -147,21 +183,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, from_s, y.get(), context.get()));
   void* mem = arkode.get();
   callee.arkode = mem;
-  const auto must = [&](int flag, const char* call) { check(flag, call, from_s, callee); };
-  // ARKODE's messages arrive as flags; check() reports them in our own words.
-  must(ARKStepSetErrHandlerFn(
-           mem, [](int, const char*, const char*, char*, void*) {}, nullptr),
-       "ARKStepSetErrHandlerFn");
-  must(ARKStepSetUserData(mem, &callee), "ARKStepSetUserData");
-  must(ARKStepSVtolerances(mem, options.relative_tolerance, tolerance.get()), "ARKStepSVtolerances");
-  must(ARKStepSetTableNum(mem, ARKODE_ESDIRK324L2SA_4_2_3, ARKODE_ERK_NONE), "ARKStepSetTableNum");
-  must(ARKStepSetNonlinearSolver(mem, stage.get()), "ARKStepSetNonlinearSolver");
-  must(ARKStepSetDeduceImplicitRhs(mem, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
-  must(ARKStepSetMaxErrTestFails(mem, 40),
-       "ARKStepSetMaxErrTestFails");  // a shock may need steps far smaller than the first
-  must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
-  must(ARKStepSetMaxStep(mem, options.max_step_s), "ARKStepSetMaxStep");
-  if (callee.n_thermostats > 0) must(ARKStepRootInit(mem, callee.n_thermostats, switch_callback), "ARKStepRootInit");
+  configure(mem, callee, stage.get(), tolerance.get(), options, from_s);
 
   Trajectory run;
   run.flows = ode.flows();
@@ -226,17 +248,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
         }
       }
       if (flag == ARK_ROOT_RETURN) {
-        std::vector<int> reached(callee.n_thermostats);
-        check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
-        for (int i = 0; i < callee.n_thermostats; ++i) {
-          if (reached[i] == 0) continue;
-          ode.toggle(i);
-          if (++n_switches <= options.most_switches) continue;
-          throw SolveError(
-              fmt::format("thermostat '{}' switched for the {}th time at t = {:.1f} s; is its hysteresis too small "
-                          "for its volume?",
-                          ode.thermostats()[static_cast<std::size_t>(i)].name, n_switches, t_s));
-        }
+        toggle_reached(callee, t_s, options.most_switches, n_switches);
         if (t_s >= stretch.end_s) break;  // reached at the very end: the next stretch begins with it switched
         (void)ode.begin_stretch(stretch, out(y.get()));
         restart(stretch.end_s);

@@ -1,6 +1,7 @@
 #include "solver/propagator.hpp"
 
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "base/series_in_order.hpp"
@@ -61,7 +62,39 @@ struct Propagator::Solution {
       sum[i] = t_s * (phi1(x) * z0[i] + t_s * (phi2(x) * f0[i] + t_s * phi3(x) * f1[i]));
     }
   }
+  /// z at the columns' times and, unless null, ∫ z up to them. @param start_s  of the stretch
+  void at(std::span<const double> times_s, double start_s, Eigen::MatrixXd& states, Eigen::MatrixXd* integrals) const {
+    Eigen::ArrayXd e = Eigen::ArrayXd::Ones(lambda.size()), decay(lambda.size());
+    double t_s = 0.0, step_s = -1.0;
+    for (std::size_t i = 0; i < times_s.size(); ++i) {  // evenly spaced outputs take one exponential per mode
+      const auto k = static_cast<Eigen::Index>(i);
+      const double now_s = times_s[i] - start_s;
+      if (std::abs(now_s - t_s - step_s) > 1e-9 * step_s) {
+        step_s = now_s - t_s;
+        decay = (-step_s * lambda.array()).exp();
+      }
+      e *= decay;
+      t_s = now_s;
+      state(t_s, e, states.col(k));
+      if (integrals) integral(t_s, e, integrals->col(k));
+    }
+  }
 };
+
+namespace {
+
+/// @throws SolveError  for a temperature among the outputs that no machine has
+void require_sane_outputs(const Trajectory& run, const ReducedSystem& system) {
+  for (std::size_t o = 0; o < system.outputs.unit.size() && !run.time_s.empty(); ++o) {
+    if (system.outputs.unit[o] != "K") continue;
+    const auto row = run.outputs.row(static_cast<Eigen::Index>(o));
+    Eigen::Index at = 0;
+    const double farthest_K = row.cwiseAbs().maxCoeff(&at), value_K = row[at];
+    if (farthest_K > 0.0) require_sane(&value_K, 1, system.reference_K, run.time_s[static_cast<std::size_t>(at)]);
+  }
+}
+
+}  // namespace
 
 Propagator::Propagator(const ReducedSystem& system) : system_(system), decompositions_(system) {
   if (!system.is_linear()) throw std::logic_error("only linear systems evolve as exponentials");
@@ -89,7 +122,6 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
 
   Eigen::VectorXd state = start, coefficient(n_exchanges), power_W(n_sources);
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
-  Eigen::ArrayXd e(n), decay(n);
   SeriesInOrder ambient_in_order(ambient);
   LawChanges changes(system_.change_times_s);
   const Decomposition* decomposition = nullptr;
@@ -116,19 +148,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
     const auto first_column = static_cast<Eigen::Index>(next), n_columns = static_cast<Eigen::Index>(last - next);
     block.resize(n, n_columns);
     if (with_heat) integrals.resize(n, n_columns);
-    double t_s = 0.0, step_s = -1.0;
-    e.setOnes();
-    for (Eigen::Index k = 0; k < n_columns; ++k) {  // evenly spaced outputs take one exponential per mode
-      const double now_s = output_s[next + static_cast<std::size_t>(k)] - stretch.start_s;
-      if (std::abs(now_s - t_s - step_s) > 1e-9 * step_s) {
-        step_s = now_s - t_s;
-        decay = (-step_s * d.lambda_1_s.array()).exp();
-      }
-      e *= decay;
-      t_s = now_s;
-      solution.state(t_s, e, block.col(k));
-      if (with_heat) solution.integral(t_s, e, integrals.col(k));
-    }
+    solution.at(std::span(output_s).subspan(next, last - next), stretch.start_s, block, with_heat ? &integrals : nullptr);
     run.outputs.middleCols(first_column, n_columns).noalias() = d.outputs * block;
     if (states) states->middleCols(first_column, n_columns).noalias() = d.vectors * block;
     const auto heats_after = [&](double dt_s, const auto& integral) {
@@ -151,7 +171,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
     }
     next = last;
 
-    e = (-length_s * d.lambda_1_s.array()).exp();
+    const Eigen::ArrayXd e = (-length_s * d.lambda_1_s.array()).exp();
     Eigen::VectorXd z(n);
     if (with_heat) {
       solution.integral(length_s, e, z.head(n));
@@ -160,13 +180,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
     solution.state(length_s, e, z.head(n));
     state.noalias() = d.vectors * z;
   }
-  for (std::size_t o = 0; o < system_.outputs.unit.size() && n_times > 0; ++o) {
-    if (system_.outputs.unit[o] != "K") continue;
-    const auto row = run.outputs.row(static_cast<Eigen::Index>(o));
-    Eigen::Index at = 0;
-    const double farthest_K = row.cwiseAbs().maxCoeff(&at), value_K = row[at];
-    if (farthest_K > 0.0) require_sane(&value_K, 1, system_.reference_K, output_s[static_cast<std::size_t>(at)]);
-  }
+  require_sane_outputs(run, system_);
   return run;
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <stdexcept>
+
+#include "base/joined_sets.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -24,20 +25,15 @@ void Cliques::add(std::span<const int> members) {
 }
 
 std::vector<int> connected_sets(int n, const Cliques& cliques) {
-  std::vector<int> parent(n), set(n, -1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root_of = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  JoinedSets joined(n);
+  std::vector<int> set(n, -1);
   for (int c = 0; c < cliques.size(); ++c) {
-    for (int k = cliques.offset[c] + 1; k < cliques.offset[c + 1]; ++k) {
-      parent[root_of(cliques.member[k])] = root_of(cliques.member[cliques.offset[c]]);
-    }
+    for (int k = cliques.offset[c] + 1; k < cliques.offset[c + 1]; ++k)
+      joined.join(cliques.member[k], cliques.member[cliques.offset[c]]);
   }
   int n_sets = 0;
   for (int i = 0; i < n; ++i) {
-    int& of_root = set[root_of(i)];
+    int& of_root = set[joined.of(i)];
     if (of_root < 0) of_root = n_sets++;
     set[i] = of_root;
   }

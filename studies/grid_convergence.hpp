@@ -38,7 +38,8 @@ inline constexpr double kLeastOrder = 0.5;     ///< a smaller observed order cou
 /// @param values          on the meshes from coarse to fine
 /// @param sizes           element sizes, strictly decreasing, > 0, in any unit
 /// @param highest_order   order in theory of this number for these elements, > 0.5
-/// @param resolution      error of the model itself >= 0, in the unit of the values; a smaller range says nothing of the mesh
+/// @param resolution      error of the model itself >= 0, in the unit of the values; a smaller range says nothing of the
+///                        mesh
 /// @throws std::logic_error  for sizes that do not decrease
 /// Source: Roache, J. Fluids Eng. 116 (1994) 405-413; procedure: Celik et al., J. Fluids Eng. 130 (2008) 078001; limits of
 /// p: Oberkampf & Roy, Verification and Validation in Scientific Computing, Cambridge 2010, section 8.7.

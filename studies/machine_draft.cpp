@@ -26,21 +26,16 @@ using mesh::OuterPlane;
 constexpr double kFilm_W_m2K = 10.0, kWarms_K = 2.0;
 constexpr double kLarge = 0.02;  ///< share of a region's surface: smaller planes are treated as pieces of curved faces
 
-bool names_one_of(const std::string& name, const std::vector<const char*>& words) {
-  const std::string low = lower_case(name);
-  return std::any_of(words.begin(), words.end(), [&](const char* word) { return low.find(word) != std::string::npos; });
-}
-
 const std::vector<const char*> kSpindleWords = {"spindle", "spindel", "arbor", "shaft", "quill", "tool", "nose", "welle"};
 const std::vector<const char*> kTableWords = {"table", "tisch", "pallet", "workpiece"};
 
 std::string likely_material(const std::string& region) {
-  if (names_one_of(region, {"mineral", "polymer", "concrete"})) return "mineral_casting";
-  if (names_one_of(region, {"granite", "granit"})) return "granite";
-  if (names_one_of(region, {"alu", "plate_al"})) return "aluminium_6082";
-  if (names_one_of(region, {"motor"})) return "motor_mean";
-  if (names_one_of(region, {"bearing", "lager"})) return "bearing_steel";
-  if (names_one_of(region, kSpindleWords) || names_one_of(region, {"screw", "rail", "nut", "bolt", "ring", "steel"}))
+  if (has_word(region, {"mineral", "polymer", "concrete"})) return "mineral_casting";
+  if (has_word(region, {"granite", "granit"})) return "granite";
+  if (has_word(region, {"alu", "plate_al"})) return "aluminium_6082";
+  if (has_word(region, {"motor"})) return "motor_mean";
+  if (has_word(region, {"bearing", "lager"})) return "bearing_steel";
+  if (has_word(region, kSpindleWords) || has_word(region, {"screw", "rail", "nut", "bolt", "ring", "steel"}))
     return "steel_c45";
   return "cast_iron_gjl250";
 }
@@ -273,7 +268,7 @@ MachineDraft::Point point_on(const Geometry& g, int region, const std::function<
 
 int named_region(const mesh::Mesh& mesh, const std::vector<const char*>& words) {
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
-    if (names_one_of(mesh.regions[r], words)) return static_cast<int>(r);
+    if (has_word(mesh.regions[r], words)) return static_cast<int>(r);
   }
   return -1;
 }

@@ -29,7 +29,7 @@ void require_candidates(const MeasuredTwin& m, const std::vector<std::string>& w
   keys.insert(std::begin(diagnosis::kEventKeys), std::end(diagnosis::kEventKeys));
   for (const std::string& key : without) {
     if (keys.contains(key)) continue;
-    throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
+    throw InputError(fmt::format("without: no candidate has the key '{}'; allowed are {}", key, fmt::join(keys, ", ")));
   }
 }
 

@@ -131,8 +131,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
 diagnosis::Prediction read_of(const MeasuredTwin& m, const diagnosis::TwinState& state) {
   diagnosis::Twin::Workspace workspace(*m.twin);
   diagnosis::Prediction read;
-  for (const diagnosis::MeasuredRun& run : m.runs)
-    read.push_back(m.twin->read(state, run, m.twin->respond(state, run, workspace)));
+  for (const diagnosis::MeasuredRun& run : m.runs) read.push_back(m.twin->readings(state, run, workspace));
   return read;
 }
 

@@ -328,6 +328,49 @@ JudgedOnce all_to_judge(const Placement& placement, std::size_t at_n, const Sets
   return judged;
 }
 
+/// What a placement says of its machine and its runs, before any place is chosen.
+Placement without_places(const scenarios::Scenario& scenario, const PlacementModel& model, const PlacementFamilies& families,
+                         const PlacementOptions& how) {
+  Placement placement{.options = how,
+                      .channels = model.channels,
+                      .regions = model.regions,
+                      .left_out = model.left_out,
+                      .factors = factor_names(model),
+                      .chosen_on = names_of(families.chosen_on),
+                      .judged_on = names_of(families.judged_on),
+                      .ambients = {},
+                      .made = families.made,
+                      .spots = model.spots,
+                      .mounted = model.mounted(),
+                      .names = new_names(scenario, static_cast<std::size_t>(how.n)),
+                      .chosen = {.way = "chosen", .sets = {}, .left = {}},
+                      .objective_um = {},
+                      .observer_um = {},
+                      .regression_um = {},
+                      .others = {},
+                      .own = {},
+                      .losses = {},
+                      .chosen_lost = {},
+                      .tests = {},
+                      .told_um = {},
+                      .model = model.opened.words(),
+                      .is_linearised = model.is_linearised,
+                      .mesh = {}};
+  for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
+  return placement;
+}
+
+/// The sets of the other ways to place, of each number. @param numbers  a piece: set after set
+std::vector<ChosenBy> rivals_of(const Pieces::Numbers& numbers, int n_most) {
+  std::vector<ChosenBy> rivals;
+  PieceReader theirs(numbers);
+  for (const std::string& way : kRivalWays) {
+    rivals.push_back({.way = way, .sets = {}, .left = {}});
+    for (int n = 1; n <= n_most; ++n) rivals.back().sets.push_back(theirs.set());
+  }
+  return rivals;
+}
+
 }  // namespace
 
 std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked,
@@ -356,32 +399,7 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
     }
     return *made;
   };
-  Placement placement{.options = how,
-                      .channels = model.channels,
-                      .regions = model.regions,
-                      .left_out = model.left_out,
-                      .factors = factor_names(model),
-                      .chosen_on = names_of(families.chosen_on),
-                      .judged_on = names_of(families.judged_on),
-                      .ambients = {},
-                      .made = families.made,
-                      .spots = model.spots,
-                      .mounted = mounted,
-                      .names = new_names(scenario, static_cast<std::size_t>(how.n)),
-                      .chosen = {.way = "chosen", .sets = {}, .left = {}},
-                      .objective_um = {},
-                      .observer_um = {},
-                      .regression_um = {},
-                      .others = {},
-                      .own = {},
-                      .losses = {},
-                      .chosen_lost = {},
-                      .tests = {},
-                      .told_um = {},
-                      .model = model.opened.words(),
-                      .is_linearised = model.is_linearised,
-                      .mesh = {}};
-  for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
+  Placement placement = without_places(scenario, model, families, how);
   const Pieces::Numbers chosen =
       pieces.of(kChosen, [&] { return chosen_places(model, design(), how, mounted, pieces, listener); });
   take_chosen(placement, chosen);
@@ -392,11 +410,7 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
     }
     return numbers;
   });
-  PieceReader theirs(rivals);
-  for (const std::string& way : kRivalWays) {
-    placement.others.push_back({.way = way, .sets = {}, .left = {}});
-    for (int n = 1; n <= how.n_most; ++n) placement.others.back().sets.push_back(theirs.set());
-  }
+  placement.others = rivals_of(rivals, how.n_most);
   const Sets random = random_places(model, how.n_most);
   std::vector<int> own = mounted;
   for (int i = model.n_candidates; i < static_cast<int>(model.spots.size()); ++i) own.push_back(i);

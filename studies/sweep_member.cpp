@@ -9,6 +9,7 @@
 
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/propagator.hpp"

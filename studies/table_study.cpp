@@ -6,6 +6,7 @@
 #include "compensation/frames/even_growth.hpp"
 #include "compensation/sensors/interpolate.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/transient.hpp"

@@ -197,7 +197,7 @@ int programmes_of(const PlannedTwin& p, const diagnosis::Doubts& doubts) {
 Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
   diagnosis::Twin::Workspace workspace(*p.twin);
   const diagnosis::TwinState& state = p.twin->as_written();
-  const Eigen::MatrixXd readings = p.twin->read(state, run, p.twin->respond(state, run, workspace));
+  const Eigen::MatrixXd readings = p.twin->readings(state, run, workspace);
   Record record{.source = run.name, .time_s = run.time_s, .channels = {{"speed", "rpm", {}}}};
   for (double t_s : run.time_s) record.channels.front().values.push_back(run.cyclogram.speed_rpm(t_s));
   for (const diagnosis::MeasuredChannel& c : p.channels) {

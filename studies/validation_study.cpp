@@ -13,6 +13,7 @@
 #include "base/record_channel.hpp"
 #include "compensation/sensors/thermometers.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "studies/linear_physics.hpp"

@@ -8,6 +8,7 @@
 
 #include "effects/reading_chain.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::studies {

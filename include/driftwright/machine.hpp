@@ -115,7 +115,8 @@ class DRIFTWRIGHT_API Machine {
   /// @throws InputError  for records that cannot be compared, and for a key in `without` that no candidate has
   /// @throws SolveError  where the machine with what was found has no solution
   [[nodiscard]] Diagnosis diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options = {}) const;
-  /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes. Errors as diagnose().
+  /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes. Errors as
+  /// diagnose().
   [[nodiscard]] Diagnosis calibrate(const std::vector<Record>& measured) const;
 
  private:

@@ -12,7 +12,8 @@ namespace driftwright {
 namespace {
 
 /// Corrections are added to the datum shift in force by the difference. Absolute: the datum shift is set.
-/// Source: Heidenhain, TNC 640 User's Manual Cycle Programming, cycle 7: an incremental shift counts from the datum in force.
+/// Source: Heidenhain, TNC 640 User's Manual Cycle Programming, cycle 7: an incremental shift counts from the datum in
+/// force.
 class Heidenhain : public NcLanguage {
  public:
   std::string remark_line(const std::string& text) const override { return "; " + text; }

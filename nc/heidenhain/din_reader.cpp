@@ -220,6 +220,134 @@ class HeidenhainReader {
   static bool has(const Block& b, char letter) { return b.words.contains(letter); }
   double length_m(const Block& b, char letter) const { return b.words.at(letter).value * run_.unit_m; }
 
+  /// What the G words of a block ask for.
+  struct Asked {
+    std::optional<int> cycle;
+    bool dwells = false, moves = true;
+  };
+
+  void take_g(const HeidenhainLine& line, const Block& b, int g, Asked& of) {
+    if (g >= 200) {
+      of.cycle = g;
+      of.moves = false;
+      return;
+    }
+    if (std::set<int>{0, 1, 2, 3, 5, 6, 10, 11, 12, 13, 15, 16}.contains(g)) {
+      run_.motion_word = 10 * g;
+      run_.step().motion_word = true;
+      return;
+    }
+    switch (g) {
+      case 4:
+        of.dwells = true;
+        break;
+      case 17:
+      case 18:
+      case 19:
+        run_.normal = 19 - g;
+        break;
+      case 29:
+        tnc_.pole_m = run_.motion.position_m;
+        break;
+      case 24:
+      case 25:
+      case 26:
+      case 27:
+        run_.note(fmt::format("G{}", g), "corners and tangential ways are counted as programmed, without it");
+        run_.forget();
+        of.moves = of.moves && (has(b, 'X') || has(b, 'Y') || has(b, 'Z'));
+        break;
+      case 40:
+        run_.compensated = false;
+        break;
+      case 41:
+      case 42:
+      case 43:
+      case 44:
+        run_.compensated = true;
+        run_.note(fmt::format("G{}", g),
+                  "cutter compensation is not followed; the path is counted along the programmed contour");
+        break;
+      case 54:
+        shift(line, b);
+        of.moves = false;
+        break;
+      case 53:
+        tnc_.other_datum("G53");
+        of.moves = false;
+        break;
+      case 28:
+        tnc_.mirror(has(b, 'X') || has(b, 'Y') || has(b, 'Z'), "G28");
+        of.moves = false;
+        break;
+      case 72:
+        if (!has(b, 'F') || b.words.at('F').value != 1.0)
+          tnc_.fail(line, "scaling is not computed here; let the post-processor write lengths as they are");
+        of.moves = false;
+        break;
+      case 73:
+        tnc_.turn(has(b, 'H') && b.words.at('H').value != 0.0, "G73");
+        of.moves = false;
+        break;
+      case 36:
+        run_.motion.turning = false;
+        of.moves = false;
+        break;
+      case 62:
+        of.moves = false;
+        break;
+      case 38:
+        run_.halt("G38");
+        break;
+      case 70:
+      case 71:
+      case 79:
+      case 90:
+      case 91:
+        break;
+      case 20:
+      case 21:
+        tnc_.fail(line,
+                  fmt::format("G{}: this control's inch and mm are G70 and G71, in the first line; a tool axis but Z is "
+                              "not followed here",
+                              g));
+      default:
+        tnc_.fail(
+            line,
+            fmt::format("G{}: {}", g,
+                        (g >= 80 && g <= 89)
+                            ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
+                            : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
+    }
+  }
+
+  /// Feed mode, feed or dwell, and speed.
+  void set_feed_and_speed(const HeidenhainLine& line, const Block& b, const Asked& of) {
+    if (contains(b.m, 136)) run_.set_feed_mode(NcFeedMode::PerRevolution);
+    if (contains(b.m, 137)) run_.set_feed_mode(NcFeedMode::PerMinute);
+    if (of.dwells) {
+      if (!has(b, 'F') || b.words.at('F').value < 0.0) tnc_.fail(line, "G04 has no time; write F in seconds");
+      run_.motion.wait(b.words.at('F').value);
+    } else if (has(b, 'F') && of.moves && !has(b, 'T')) {
+      run_.set_feed(b.words.at('F').value);
+    }
+    if (has(b, 'S')) {
+      if (b.words.at('S').value < 0.0) tnc_.fail(line, "the speed must be zero or above");
+      run_.motion.programmed_rpm = b.words.at('S').value;
+    }
+  }
+
+  HeidenhainCycle defined(const HeidenhainLine& line, const Block& b, int cycle) {
+    HeidenhainCycle c = b.cycle;
+    c.number = cycle;
+    if (!std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(cycle))
+      tnc_.fail(line,
+                fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
+                            "write the others out",
+                            cycle));
+    return c;
+  }
+
   bool run_block(const HeidenhainLine& line, const Block& b) {
     NcStep& step = run_.step();
     if (contains(b.g, 98)) {  // a label
@@ -230,132 +358,19 @@ class HeidenhainReader {
       if (contains(b.g, 17)) run_.normal = 2;
       return false;
     }
-    std::optional<int> cycle;
-    bool dwells = false, moves = true;
-    for (const int g : b.g) {
-      if (g >= 200) {
-        cycle = g;
-        moves = false;
-        continue;
-      }
-      if (std::set<int>{0, 1, 2, 3, 5, 6, 10, 11, 12, 13, 15, 16}.contains(g)) {
-        run_.motion_word = 10 * g;
-        step.motion_word = true;
-        continue;
-      }
-      switch (g) {
-        case 4:
-          dwells = true;
-          break;
-        case 17:
-        case 18:
-        case 19:
-          run_.normal = 19 - g;
-          break;
-        case 29:
-          tnc_.pole_m = run_.motion.position_m;
-          break;
-        case 24:
-        case 25:
-        case 26:
-        case 27:
-          run_.note(fmt::format("G{}", g), "corners and tangential ways are counted as programmed, without it");
-          run_.forget();
-          moves = moves && (has(b, 'X') || has(b, 'Y') || has(b, 'Z'));
-          break;
-        case 40:
-          run_.compensated = false;
-          break;
-        case 41:
-        case 42:
-        case 43:
-        case 44:
-          run_.compensated = true;
-          run_.note(fmt::format("G{}", g),
-                    "cutter compensation is not followed; the path is counted along the programmed contour");
-          break;
-        case 54:
-          shift(line, b);
-          moves = false;
-          break;
-        case 53:
-          tnc_.other_datum("G53");
-          moves = false;
-          break;
-        case 28:
-          tnc_.mirror(has(b, 'X') || has(b, 'Y') || has(b, 'Z'), "G28");
-          moves = false;
-          break;
-        case 72:
-          if (!has(b, 'F') || b.words.at('F').value != 1.0)
-            tnc_.fail(line, "scaling is not computed here; let the post-processor write lengths as they are");
-          moves = false;
-          break;
-        case 73:
-          tnc_.turn(has(b, 'H') && b.words.at('H').value != 0.0, "G73");
-          moves = false;
-          break;
-        case 36:
-          run_.motion.turning = false;
-          moves = false;
-          break;
-        case 62:
-          moves = false;
-          break;
-        case 38:
-          run_.halt("G38");
-          break;
-        case 70:
-        case 71:
-        case 79:
-        case 90:
-        case 91:
-          break;
-        case 20:
-        case 21:
-          tnc_.fail(line,
-                    fmt::format("G{}: this control's inch and mm are G70 and G71, in the first line; a tool axis but Z is "
-                                "not followed here",
-                                g));
-        default:
-          tnc_.fail(
-              line,
-              fmt::format("G{}: {}", g,
-                          (g >= 80 && g <= 89)
-                              ? "only the drilling cycles G200 to G203, G206, G207 and G240 are computed here"
-                              : "its effect on times and speeds is not known here; if it has none, name it under `ignore`"));
-      }
-    }
-    if (contains(b.m, 136)) run_.set_feed_mode(NcFeedMode::PerRevolution);
-    if (contains(b.m, 137)) run_.set_feed_mode(NcFeedMode::PerMinute);
-    if (dwells) {
-      if (!has(b, 'F') || b.words.at('F').value < 0.0) tnc_.fail(line, "G04 has no time; write F in seconds");
-      run_.motion.wait(b.words.at('F').value);
-    } else if (has(b, 'F') && moves && !has(b, 'T')) {
-      run_.set_feed(b.words.at('F').value);
-    }
-    if (has(b, 'S')) {
-      if (b.words.at('S').value < 0.0) tnc_.fail(line, "the speed must be zero or above");
-      run_.motion.programmed_rpm = b.words.at('S').value;
-    }
+    Asked of;
+    for (const int g : b.g) take_g(line, b, g, of);
+    set_feed_and_speed(line, b, of);
     if (has(b, 'T')) tnc_.change_tool();
     for (const int m : {3, 4, 13, 14}) {
       if (contains(b.m, m)) run_.motion.turning = true;
     }
-    if (cycle == 247) {
+    if (of.cycle == 247)
       tnc_.other_datum("G247");
-    } else if (cycle) {
-      HeidenhainCycle c = b.cycle;
-      c.number = *cycle;
-      if (!std::set<int>{200, 201, 202, 203, 206, 207, 240}.contains(*cycle))
-        tnc_.fail(line,
-                  fmt::format("G{}: of the cycles from 200 on only 200, 201, 202, 203, 206, 207 and 240 are computed here; "
-                              "write the others out",
-                              *cycle));
-      tnc_.define(c);
-    } else if (moves && !dwells) {
+    else if (of.cycle)
+      tnc_.define(defined(line, b, *of.cycle));
+    else if (of.moves && !of.dwells)
       move(line, b);
-    }
     if (contains(b.g, 79)) tnc_.call_cycle();
     if (run_.modal_cycle && step.kind != NcStepKind::kNone && !contains(b.m, 99)) tnc_.call_cycle();
     bool ends = false;

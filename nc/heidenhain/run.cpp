@@ -293,11 +293,7 @@ void HeidenhainRun::drill(const HeidenhainCycle& c) {
                second_m = surface_m + q_or(204, 0.0) * run_.unit_m;
   if (!(q(201) < 0.0))
     run_.fail(fmt::format("cycle {}: Q201, the depth, must be below zero; with zero nothing is drilled", c.number));
-  const auto at_level = [&](double level_m) {
-    std::array<double, 3> target_m = motion.position_m;
-    target_m[run_.normal] = level_m;
-    return target_m;
-  };
+  const auto at_level = [&](double level_m) { return motion.at_level(run_.normal, level_m); };
   const double modal_feed = motion.feed;
   const NcFeedMode modal_mode = motion.feed_mode;
   const auto feed = [&](double q_feed) {

@@ -45,7 +45,8 @@ class LinuxCnc final : public NcLanguage {
 
   std::string remark_line(const std::string& text) const override { return fmt::format("({})", text); }
 
-  /// Added corrections: lines that stop the program if another G92 or G52 is in force or, for x and y, a rotated work offset.
+  /// Added corrections: lines that stop the program if another G92 or G52 is in force or, for x and y, a rotated work
+  /// offset.
   std::vector<std::string> guard_lines(const NcOffsetOptions& options) const override {
     if (options.absolute || options.shares_shift) return {};
     std::string condition;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/characters.hpp"
 #include "nc/controls.hpp"
 #include "nc/iso_reader.hpp"
 #include "nc/siemens/reader.hpp"
@@ -71,7 +72,7 @@ class SiemensIso final : public Siemens {
     for (std::string line : lines) {
       line.erase(std::min(line.find(';'), line.size()));
       line.erase(std::min(line.find('('), line.size()));
-      for (char& c : line) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      line = upper_case(line);
       if (line.find("G291") != std::string::npos) return true;
       if (line.find('X') != std::string::npos || line.find('Z') != std::string::npos) return false;
     }

@@ -81,11 +81,7 @@ void run_siemens_cycle(NcRun& run, const SiemensCycle& c) {
   if (!(bottom_m <= safe_m && retract_m >= bottom_m))
     run.fail(fmt::format("the depth of CYCLE{} lies above its planes; drilling goes downward", c.code));
   NcMotion& motion = run.motion;
-  const auto at = [&](double level_m) {
-    std::array<double, 3> target_m = motion.position_m;
-    target_m[run.normal] = level_m;
-    return target_m;
-  };
+  const auto at = [&](double level_m) { return motion.at_level(run.normal, level_m); };
   motion.rapid_to(at(safe_m));
   switch (c.code) {
     case 83:

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/lists.hpp"
 #include "base/quantity.hpp"
 #include "base/shown_units.hpp"
 #include "effects/reading_chain.hpp"
@@ -136,11 +137,6 @@ DriveWords words_of(DriveVariable variable) {
       return {"Cutting power", "W"};
   }
   return {"", ""};
-}
-
-int index_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
 Json json_of(const TwinCorrection& correction, const std::vector<std::string>& names) {

@@ -10,6 +10,7 @@
 #include "base/record.hpp"
 #include "tests/shared/column_and_head.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/small_table.hpp"
 
 namespace driftwright::mesh_convergence_test {
 namespace {
@@ -18,21 +19,8 @@ using Json = nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const char* const kTable = R"(name: small_table
-reference_temperature: 20 degC
-machine:
-  generator: gantry_table
-  table: {length: 2 m, width: 1 m, height: 200 mm}
-  bed: {length: 2.4 m, width: 1 m, height: 300 mm}
-  guideways: {width: 150 mm, height: 100 mm, gauge: 700 mm}
-  mesh_size: 400 mm
-materials: {table: cast_iron_gjl250, bed: cast_iron_gjl250}
-supports: [{surface: bed_underside, fixed: [x, y, z]}]
-effects:
-  - {type: contact, joint: bed/table, conductance: 150 W/(m^2 K)}
-  - {type: convection, surface: table_top, film: 8 W/(m^2 K)}
-  - {type: convection, surface: bed_sides, film: 6 W/(m^2 K)}
-  - {type: heat_source, surface: table_low_x, power: 500 W, at_speed: 1 rpm, exponent: 0}
+const std::string kTable = fixtures::small_table("400 mm") +
+                           R"(  - {type: heat_source, surface: table_low_x, power: 500 W, at_speed: 1 rpm, exponent: 0}
 ambient: 20 degC
 sensors: [{name: mid, region: table, at: [0 m, 0 m, 0 m]}]
 displacements: [{name: bow, along: z, tool: {region: table, at: [900 mm, 0 m, 0 m]}, table: {region: bed, at: [0 m, 0 m, -600 mm]}}]

@@ -12,12 +12,15 @@
 
 #include "base/csv_row.hpp"
 #include "base/record.hpp"
+#include "tests/app/csv_table.hpp"
 #include "tests/shared/column_and_head.hpp"
 #include "tests/shared/command_line.hpp"
 
 namespace driftwright::reduced_run_test {
 namespace {
 
+using fixtures::read_table;
+using fixtures::Table;
 namespace fs = std::filesystem;
 using fixtures::ColumnAndHead;
 using fixtures::write_column_and_head;
@@ -152,15 +155,6 @@ TEST(ReducedRun, ADamagedFolderIsMadeAnew) {
   EXPECT_THAT(run_program("simulate " + scenario + " -o " + (folder / "c").string()).output, HasSubstr("known from disk"));
 }
 
-using Table = std::vector<std::vector<std::string>>;
-Table read_table(const fs::path& file) {
-  Table rows;
-  std::istringstream in(read_text(file));
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#")) rows.push_back(csv_cells(line));
-  }
-  return rows;
-}
 double number(const Table& table, std::size_t member, const std::string& column) {
   const auto found = std::find(table[0].begin(), table[0].end(), column);
   if (found == table[0].end()) throw std::runtime_error("no column " + column);

@@ -14,11 +14,14 @@
 #include "base/csv_row.hpp"
 #include "base/file_bytes.hpp"
 #include "base/record.hpp"
+#include "tests/app/csv_table.hpp"
 #include "tests/shared/command_line.hpp"
 
 namespace driftwright::sweep_test {
 namespace {
 
+using fixtures::read_table;
+using fixtures::Table;
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -44,18 +47,6 @@ vary:
   - {name: flow, key: "effects[coolant].flow", log_uniform: [3 L/min, 9 L/min]}
 collect: [nose_z, t_cooler.max]
 )";
-
-using Table = std::vector<std::vector<std::string>>;
-
-/// Header and rows of a table.
-Table read_table(const fs::path& file) {
-  Table rows;
-  std::istringstream in(read_text(file));
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#")) rows.push_back(csv_cells(line));
-  }
-  return rows;
-}
 
 std::string cell(const Table& table, std::size_t member, const std::string& column) {
   const auto found = std::find(table[0].begin(), table[0].end(), column);

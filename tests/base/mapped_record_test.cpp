@@ -1,10 +1,13 @@
 // Files as loggers write them, read by a map of their columns. The samples in tests/data/loggers mimic:
 //   keysight_34972a    USB files of a Keysight 34972A (User's Guide): a fraction after a colon, 9.9E+37 for overload
 //   benchlink_utf16    BenchLink Data Logger 3: UTF-16, lines before the header, an alarm column beside each channel
-//   hioki_lr8431       a HIOKI LR8431 (manual, appendix "Text File (CSV) Internal Format"): everything quoted, a table of channels in front
+//   hioki_lr8431       a HIOKI LR8431 (manual, appendix "Text File (CSV) Internal Format"): everything quoted, a table of
+//                      channels in front
 //   graphtec_gl840     a Graphtec GL840: units under the header, a column of milliseconds, BURNOUT, blanks after the sign
-//   labview            NI LabVIEW's .lvm ("Specification for the LabVIEW Measurement File"): tabs, decimal commas, two header blocks, comments
-//   german_latin1      a spreadsheet's export in Germany: Latin-1, semicolons, decimal commas, the night in which clocks are set back
+//   labview            NI LabVIEW's .lvm ("Specification for the LabVIEW Measurement File"): tabs, decimal commas, two
+//                      header blocks, comments
+//   german_latin1      a spreadsheet's export in Germany: Latin-1, semicolons, decimal commas, the night in which clocks are
+//                      set back
 //   simatic_data_log   a data log of a SIMATIC S7-1200: date and time in two columns, //END before rows of an earlier log
 //   halsampler         LinuxCNC's halsampler -t (its manual page): no header, blanks, the number of the sample in front
 

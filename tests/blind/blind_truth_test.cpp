@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "blind/case.hpp"
+#include "machine/run_record.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::blind::blind_truth_test {

@@ -160,18 +160,10 @@ CasePlan draw_plan(const Subject& s, std::uint64_t seed) {
   return plan;
 }
 
-Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
-  const std::vector<std::string> bodies = bodies_of(s), bearings = places_of(s, "bearing_friction"),
-                                 films = places_of(s, "convection"), open_films = places_of(s, "convection", true),
-                                 forced = places_of(s, "forced_convection"), still = without(open_films, forced),
-                                 contacts = contacts_of(s);
-  std::vector<std::string> sensors, displacements;
-  for (const auto& sensor : s.model.sensors) sensors.push_back(sensor.name);
-  for (const auto& d : s.model.displacements) displacements.push_back(d.name);
-  const bool is_lumped = s.is_lumped();
-  const double all_W = heat_W(s), ln_least = std::log(1.0 / 0.65);
+namespace {
 
-  // One vote per key of the catalogue, then per law.
+/// What may be hidden, by key of the catalogue: one vote per key, then per law.
+std::vector<std::vector<Hide>> hideable(const Subject& s, const CasePlan& plan) {
   std::vector<std::vector<Hide>> keys = {{Hide::kHeatConstant, Hide::kHeatOfSpeed},
                                          {Hide::kFrictionExponent, Hide::kFrictionDecay},
                                          {Hide::kContactFactor},
@@ -189,7 +181,7 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
                                          {Hide::kClockOffset},
                                          {Hide::kSpeedOverride},
                                          {Hide::kMissingStop}};
-  if (!is_lumped) {
+  if (!s.is_lumped()) {
     keys.push_back({Hide::kFilmFactor, Hide::kDraught});
     keys.push_back({Hide::kForcedFactor, Hide::kForcedNew});
     keys.push_back({Hide::kStratification});
@@ -197,9 +189,38 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
     keys.push_back({Hide::kConductivity});
     keys.push_back({Hide::kExpansion});
   }
-  if (plan.seed >= kFirstOfLater) keys = {{Hide::kProbeLag}, {Hide::kCoolantHeld}, {Hide::kDoorOpen}};
+  if (plan.seed >= kFirstOfLater) return {{Hide::kProbeLag}, {Hide::kCoolantHeld}, {Hide::kDoorOpen}};
+  return keys;
+}
+
+/// A time in the longest section that turns [s]. @return 0 without one
+double within_longest_turn_s(const Cyclogram& drive, Random& random) {
+  double start_s = 0.0, longest_s = 0.0, time_s = 0.0;
+  for (const auto& section : drive.sections) {
+    if (section.drive.speed_rpm > 0.0 && section.duration_s > longest_s) {
+      longest_s = section.duration_s;
+      time_s = start_s + 60.0 * std::floor(random.uniform(0.2, 0.5) * longest_s / 60.0);
+    }
+    start_s += section.duration_s;
+  }
+  return time_s;
+}
+
+}  // namespace
+
+// One case a law, each with its places and its sizes: a table, which is longer than a screen.
+Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
+  const std::vector<std::string> bodies = bodies_of(s), bearings = places_of(s, "bearing_friction"),
+                                 films = places_of(s, "convection"), open_films = places_of(s, "convection", true),
+                                 forced = places_of(s, "forced_convection"), still = without(open_films, forced),
+                                 contacts = contacts_of(s);
+  std::vector<std::string> sensors, displacements;
+  for (const auto& sensor : s.model.sensors) sensors.push_back(sensor.name);
+  for (const auto& d : s.model.displacements) displacements.push_back(d.name);
+  const double all_W = heat_W(s), ln_least = std::log(1.0 / 0.65);
+
   Hidden h;
-  h.what = random.one_of(random.one_of(keys));
+  h.what = random.one_of(random.one_of(hideable(s, plan)));
   const auto sized = [&](const std::vector<std::string>& places, double low, double high, double sign) {
     h.where = random.one_of(places);
     h.low = low;
@@ -326,14 +347,7 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
       sized({"spindle"}, 120.0, 2400.0, 1.0);
       h.what = Hide::kMissingStop;
       h.record = random.below(static_cast<int>(plan.n_measured()));
-      double start_s = 0.0, longest_s = 0.0;
-      for (const auto& section : plan.records[static_cast<std::size_t>(h.record)].drive.sections) {
-        if (section.drive.speed_rpm > 0.0 && section.duration_s > longest_s) {
-          longest_s = section.duration_s;
-          h.time_s = start_s + 60.0 * std::floor(random.uniform(0.2, 0.5) * longest_s / 60.0);
-        }
-        start_s += section.duration_s;
-      }
+      h.time_s = within_longest_turn_s(plan.records[static_cast<std::size_t>(h.record)].drive, random);
   }
   return h;
 }

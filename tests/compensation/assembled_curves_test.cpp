@@ -8,10 +8,12 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "tests/compensation/record_of.hpp"
 
 namespace driftwright::compensation::assembled_curves_test {
 namespace {
 
+using fixtures::message_of;
 using ::testing::HasSubstr;
 
 constexpr double kTau_s = 4000.0;
@@ -116,15 +118,6 @@ TEST(CyclogramType, IsRecognised) {
   EXPECT_EQ(type_of(steps({{60, 1000}, {60, 800}, {60, 0}})), CyclogramType::kStepwiseDown);
   EXPECT_EQ(type_of(steps({{60, 1000}, {60, 0}, {60, 800}})), CyclogramType::kChaotic);
   EXPECT_EQ(type_of(steps({{60, 1000}, {60, 2000}, {60, 800}})), CyclogramType::kChaotic);
-}
-
-std::string message_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 TEST(AssembledCurves, NameWhatIsWrong) {

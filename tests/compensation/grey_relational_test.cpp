@@ -6,19 +6,15 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "tests/compensation/record_of.hpp"
 
 namespace driftwright::compensation::grey_relational_test {
 namespace {
 
+using fixtures::record_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-Record record_of(std::vector<Channel> channels) {
-  Record record{.source = "test", .time_s = {}, .channels = std::move(channels)};
-  for (std::size_t i = 0; i < record.channels[0].values.size(); ++i) record.time_s.push_back(static_cast<double>(i));
-  return record;
-}
 
 Ranking rank(const Record& record, const std::vector<std::string>& candidates, const GreyOptions& options = {}) {
   return rank_channels(std::span(&record, 1), "drift", candidates, options);

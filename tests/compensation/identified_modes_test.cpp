@@ -9,10 +9,12 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "tests/compensation/record_of.hpp"
 
 namespace driftwright::compensation::identified_modes_test {
 namespace {
 
+using fixtures::message_of;
 using ::testing::HasSubstr;
 
 constexpr double kTau_s[] = {9000.0, 1500.0};  // slow, fast, at standstill
@@ -192,15 +194,6 @@ TEST(IdentifiedModes, AreNotUpsetByAChannelThatStandsStill) {
   for (ThermalTest& t : tests) t.readings.row(3).setZero();  // a held temperature
   const IdentifiedModes modes = identify_modes(tests, kChannels, two_modes());
   EXPECT_LT(error_over_peak(modes, kChaotic, 0, 0.0), 0.02);
-}
-
-std::string message_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 TEST(IdentifiedModes, NameWhatIsWrongWithTests) {

@@ -6,18 +6,14 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "tests/compensation/record_of.hpp"
 
 namespace driftwright::compensation::regression_test {
 namespace {
 
+using fixtures::record_of;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-Record record_of(std::vector<Channel> channels) {
-  Record record{.source = "test", .time_s = {}, .channels = std::move(channels)};
-  for (std::size_t i = 0; i < record.channels[0].values.size(); ++i) record.time_s.push_back(static_cast<double>(i));
-  return record;
-}
 
 Regression fit_one(const Record& record, const std::vector<std::string>& inputs) {
   return fit_regression(std::span(&record, 1), inputs, "drift");

@@ -12,6 +12,7 @@
 #include "diagnosis/unseen_drive.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::bad_data_test {
@@ -75,8 +76,7 @@ struct Bench {
     MeasuredRun warm = runs[0];
     warm.start_K = start_K;
     Twin::Workspace workspace(*twin);
-    const Eigen::MatrixXd readings =
-        twin->read(twin->as_written(), warm, twin->respond(twin->as_written(), warm, workspace));
+    const Eigen::MatrixXd readings = twin->readings(twin->as_written(), warm, workspace);
     runs[0].channels = {{"t_shaft", 0, "K", readings.row(0), 0.0, "degC"},
                         {"t_housing", 1, "K", readings.row(1), 0.0, "degC"},
                         {"nose", 2, "m", readings.row(2), 0.0, "um"}};

@@ -65,8 +65,7 @@ TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
       extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
   const TwinState read = scenarios::read_scenario(write_file("extended.yaml", extended.text)).machine->effects;
   Twin::Workspace workspace(*beside.twin);
-  const Eigen::MatrixXd readings =
-      beside.twin->read(read, beside.runs[0], beside.twin->respond(read, beside.runs[0], workspace));
+  const Eigen::MatrixXd readings = beside.twin->readings(read, beside.runs[0], workspace);
   if (d.written.hypothesis.size() == 1) {
     EXPECT_LT((readings - d.extended[0]).topRows(2).cwiseAbs().maxCoeff(), 1e-3) << "kelvin";
   }

@@ -130,8 +130,8 @@ void expect_written_and_read_back(const char* name, Places places) {
         }
         std::filesystem::remove(path);
         for (const MeasuredRun& run : runs) {
-          const Eigen::MatrixXd predicted = twin.read(found, run, twin.respond(found, run, workspace)),
-                                written = twin.read(read, run, twin.respond(read, run, workspace));
+          const Eigen::MatrixXd predicted = twin.readings(found, run, workspace),
+                                written = twin.readings(read, run, workspace);
           for (Eigen::Index o = 0; o < predicted.rows(); ++o) {
             const bool is_K = twin.outputs().unit[static_cast<std::size_t>(o)] == "K";
             const double scale = is_K ? 1.0 / kSame_K : 1e6 / kSame_um;

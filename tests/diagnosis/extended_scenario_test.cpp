@@ -13,6 +13,7 @@
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/column_and_head.hpp"
@@ -124,7 +125,7 @@ Eigen::MatrixXd by_twin(const Bench& b, const Change& change) {
   TwinState state = twin.as_written();
   change(state);
   Twin::Workspace workspace(twin);
-  Eigen::MatrixXd readings = twin.read(state, b.runs[0], twin.respond(state, b.runs[0], workspace));
+  Eigen::MatrixXd readings = twin.readings(state, b.runs[0], workspace);
   for (Eigen::Index o = 0; o < readings.rows(); ++o) {
     if (twin.outputs().unit[static_cast<std::size_t>(o)] == "m") readings.row(o) *= 1e6;
   }

@@ -13,6 +13,7 @@
 #include "diagnosis/scene.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/lumped_records.hpp"

@@ -79,8 +79,8 @@ class ColumnTest : public testing::Test {
       double largest = 0.0, miss = 0.0;
       for (std::size_t r = 0; r < beside_.runs.size(); ++r) {
         const MeasuredRun& run = beside_.runs[r];
-        const Eigen::MatrixXd with = twin.read(state, run, twin.respond(state, run, workspace)),
-                              without = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+        const Eigen::MatrixXd with = twin.readings(state, run, workspace),
+                              without = twin.readings(twin.as_written(), run, workspace);
         for (std::size_t c = 0; c < run.channels.size(); ++c) {
           const double scale = run.channels[c].unit == "K" ? 1.0 : 1e6;
           const Eigen::RowVectorXd is = scale * (with - without).row(run.channels[c].output);

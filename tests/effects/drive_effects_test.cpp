@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::drive_effects_test {
 namespace {
@@ -17,9 +17,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("drive_effects_test.yaml", text)));
-}
 DriveChange change_of(const std::string& text, const std::string& run = "shift") {
   return drive_change({read(text)}, run);
 }

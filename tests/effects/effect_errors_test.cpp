@@ -5,17 +5,13 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::effect_errors_test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("effect_errors_test.yaml", text)));
-}
 
 struct Bad {
   const char* text;

@@ -10,7 +10,7 @@
 #include "effects/bearing_formulas.hpp"
 #include "effects/catalogue_table.hpp"
 #include "effects/effect.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::effect_laws_test {
 namespace {
@@ -18,9 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("effect_laws_test.yaml", text)));
-}
 HeatBalance balance_of(const std::string& text) {
   return heat_balance({read(text)});
 }

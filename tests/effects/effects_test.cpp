@@ -9,7 +9,7 @@
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
 #include "effects/formula.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::effects_test {
 namespace {
@@ -87,10 +87,6 @@ TEST(RotatingCylinder, IsValidUpToItsReynoldsNumber) {
 }
 
 // --- the catalogue ----------------------------------------------------------------------------------------------
-
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("effects_test.yaml", text)));
-}
 
 TEST(Catalogue, KeysAndParameterNamesAreUnique) {
   std::set<std::string> keys;

@@ -8,17 +8,13 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::reading_effects_test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("reading_effects_test.yaml", text)));
-}
 
 const std::vector<double> kTime_s = {0, 60, 150, 300, 600, 900};
 const Cyclogram kCyclogram{.name = "shift",

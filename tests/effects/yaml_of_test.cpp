@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "effects/effect.hpp"
 #include "effects/formula.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/effects/read_entry.hpp"
 
 namespace driftwright::effects::yaml_of_test {
 namespace {
-
-Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(write_file("yaml_of_test.yaml", text)));
-}
 
 void expect_same(const Effect& a, const Effect& b, const std::string& text) {
   ASSERT_EQ(a.kind, b.kind) << text;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "machine/reduced_machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/shared/column_and_head.hpp"

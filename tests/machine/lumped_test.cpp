@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "machine/heat_flow_record.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::lumped_test {

@@ -13,6 +13,7 @@
 #include "base/npy_file.hpp"
 #include "machine/machine_key.hpp"
 #include "machine/reduced_files.hpp"
+#include "machine/run_record.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/shared/column_and_head.hpp"

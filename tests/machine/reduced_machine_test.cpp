@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "machine/run_record.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"

@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "machine/body_parts.hpp"
 #include "machine/reduced_machine.hpp"
+#include "machine/run_record.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"

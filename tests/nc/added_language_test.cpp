@@ -15,11 +15,13 @@
 #include "nc/run.hpp"
 #include "nc/units.hpp"
 #include "nc/written_words.hpp"
+#include "tests/nc/program_sums.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::added_language_test {
 namespace {
 
+using fixtures::on_line;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -124,14 +126,6 @@ NcProgram read(const std::string& text, const std::string& control = "marker") {
   settings.rapid_m_s = 0.25;  // 15 m/min
   settings.control = control;
   return read_nc_program(write_file("added_language_test.txt", text), settings, controls());
-}
-
-std::size_t on_line(const NcProgram& program, int line) {
-  for (std::size_t i = 0; i < program.steps.size(); ++i) {
-    if (program.steps[i].where.line == line) return i;
-  }
-  ADD_FAILURE() << "no block on line " << line;
-  return 0;
 }
 
 constexpr const char* kProgram =

@@ -10,11 +10,15 @@
 #include "nc/correction.hpp"
 #include "nc/places.hpp"
 #include "nc/program.hpp"
+#include "tests/nc/program_sums.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_languages_test {
 namespace {
 
+using fixtures::on_line;
+using fixtures::revolutions;
+using fixtures::travel_mm;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -31,20 +35,6 @@ NcProgram read(const std::string& text, const std::string& control) {
                             .ignored = {},
                             .control = control};
   return read_nc_program(write_file("nc_languages_test.txt", text), settings);
-}
-
-std::array<double, 3> travel_mm(const NcProgram& program) {
-  std::array<double, 3> sum = {0, 0, 0};
-  for (const NcMove& m : program.moves) {
-    for (int axis = 0; axis < 3; ++axis) sum[axis] += 1e3 * m.travel_m[axis];
-  }
-  return sum;
-}
-
-double revolutions(const NcProgram& program) {
-  double sum = 0.0;
-  for (const NcMove& m : program.moves) sum += m.speed_rpm / 60.0 * m.duration_s;
-  return sum;
 }
 
 struct Timed {
@@ -434,14 +424,6 @@ TEST(NcLanguages, KeepUnknownMWordsAndSaySoOnce) {
 
 // --- corrections in each control's own way
 // ----------------------------------------------------------------------------------------
-
-std::size_t on_line(const NcProgram& program, int line) {
-  for (std::size_t i = 0; i < program.steps.size(); ++i) {
-    if (program.steps[i].where.line == line) return i;
-  }
-  ADD_FAILURE() << "no block on line " << line;
-  return 0;
-}
 
 std::string corrected(const std::string& text, const std::string& control, const std::vector<NcOffsetChange>& changes,
                       const std::array<double, 3>& initial_m, bool absolute = false) {

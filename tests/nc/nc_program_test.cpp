@@ -9,11 +9,14 @@
 #include "nc/arc.hpp"
 #include "nc/program.hpp"
 #include "nc/sections.hpp"
+#include "tests/nc/program_sums.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_program_test {
 namespace {
 
+using fixtures::revolutions;
+using fixtures::travel_mm;
 using ::testing::AllOf;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
@@ -31,20 +34,6 @@ const NcSettings kSettings{.rapid_m_s = 0.25,  // 15 m/min
 
 NcProgram read(const std::string& text, const NcSettings& settings = kSettings) {
   return read_nc_program(write_file("nc_program_test.ngc", text), settings);
-}
-
-std::array<double, 3> travel_mm(const NcProgram& program) {
-  std::array<double, 3> sum = {0, 0, 0};
-  for (const NcMove& m : program.moves) {
-    for (int axis = 0; axis < 3; ++axis) sum[axis] += 1e3 * m.travel_m[axis];
-  }
-  return sum;
-}
-
-double revolutions(const NcProgram& program) {
-  double sum = 0.0;
-  for (const NcMove& m : program.moves) sum += m.speed_rpm / 60.0 * m.duration_s;
-  return sum;
 }
 
 struct Timed {

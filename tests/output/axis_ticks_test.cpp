@@ -87,6 +87,29 @@ TEST(AxisTicks, QuartersFillTheJumpBetweenTwoAndFive) {
   EXPECT_THAT(axis_ticks(5.5, 24.5, 5).values, ElementsAre(7.5, 10, 12.5, 15, 17.5, 20, 22.5));
 }
 
+TEST(AxisTicks, OfTimesAreThoseOfAClock) {
+  EXPECT_THAT(axis_ticks(0, 250, 8, TickSteps::kMinutes).labels,
+              ElementsAre("0", "30", "60", "90", "120", "150", "180", "210", "240"));
+  EXPECT_THAT(axis_ticks(0, 300, 6, TickSteps::kMinutes).labels, ElementsAre("0", "60", "120", "180", "240", "300"));
+  EXPECT_THAT(axis_ticks(0, 100, 6, TickSteps::kMinutes).labels, ElementsAre("0", "15", "30", "45", "60", "75", "90"));
+  EXPECT_THAT(axis_ticks(0, 2.5, 6, TickSteps::kMinutes).labels, ElementsAre("0.0", "0.5", "1.0", "1.5", "2.0", "2.5"));
+  EXPECT_THAT(axis_ticks(0, 24, 8, TickSteps::kHours).labels, ElementsAre("0", "3", "6", "9", "12", "15", "18", "21", "24"));
+  EXPECT_THAT(axis_ticks(0, 1.5, 8, TickSteps::kHours).labels,
+              ElementsAre("0.00", "0.25", "0.50", "0.75", "1.00", "1.25", "1.50"));
+  EXPECT_THAT(axis_ticks(0, 168, 8, TickSteps::kHours).labels,
+              ElementsAre("0", "24", "48", "72", "96", "120", "144", "168"));
+}
+
+TEST(AxisTicks, OfTimesAreFourToNineWhateverTheRange) {
+  for (const Axis& axis : drawn_axes(3000)) {
+    for (TickSteps steps : {TickSteps::kMinutes, TickSteps::kHours}) {
+      const AxisTicks ticks = axis_ticks(axis.low, axis.high, axis.preferred, steps);
+      ASSERT_GE(ticks.values.size(), 4u) << axis.low << " to " << axis.high;
+      ASSERT_LE(ticks.values.size(), 9u) << axis.low << " to " << axis.high;
+    }
+  }
+}
+
 TEST(AxisTicks, LabelsHaveTheDecimalsOfTheStepOrAnExponentWhenTheyAreLong) {
   EXPECT_THAT(axis_ticks(-1, 1, 5).labels, ElementsAre("−1.0", "−0.5", "0.0", "0.5", "1.0"));
   EXPECT_THAT(axis_ticks(0, 4000, 4).labels, ElementsAre("0", "1000", "2000", "3000", "4000"));

@@ -91,6 +91,19 @@ std::vector<std::vector<At>> corners(const std::vector<SvgElement>& picture) {
 
 constexpr double kRounding = 0.011;  // coordinates have two decimals [px], and so have the ticks that read them back
 
+// A thermal test of a day: its minutes have four digits, so the axis shows hours, and 600 min are at its 10 h.
+TEST(Plot, LongTimesInMinutesAreShownInHours) {
+  Plot plot = of_series({{.label = "s", .x = {0, 600, 1440}, .y = {0, 1, 2}}});
+  plot.x_label = "time [min]";
+  const Drawn d = drawn(plot);
+  EXPECT_THAT(d.svg, AllOf(HasSubstr("time [h]"), Not(HasSubstr("[min]"))));
+  EXPECT_NEAR(d.x(corners(d.picture).at(0).at(1).x), 10.0, 1e-3 * 24.0);
+  plot.series[0].x.back() = 900;
+  const Drawn shorter = drawn(plot);
+  EXPECT_THAT(shorter.svg, HasSubstr("time [min]"));
+  EXPECT_NEAR(shorter.x(corners(shorter.picture).at(0).at(1).x), 600.0, 1e-3 * 900.0);
+}
+
 TEST(Plot, SamplesAreWhereTheAxesSay) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

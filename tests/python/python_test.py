@@ -130,7 +130,7 @@ class Package(unittest.TestCase):
         for ours, theirs in zip(found.gain, expected["gain"]["channels"], strict=True):
             np.testing.assert_allclose([ours.rmse_all_before, ours.rmse_written], [theirs["rmse_all_before"], theirs["rmse_written"]], rtol=1e-5)
             self.assertLess(ours.rmse_written, 0.5 * ours.rmse_all_before)  # 40 W in the housing, and noise
-        with self.assertRaisesRegex(dw.InputError, "heat_sorce: no candidate has that key"):
+        with self.assertRaisesRegex(dw.InputError, "^without: no candidate has the key 'heat_sorce'"):
             dw.Machine(machine).diagnose(files, without=["heat_sorce"])
         program("calibrate", machine, *arguments, "-o", self.folder / "calibration")
         self.assertEqual(dw.Machine(machine).calibrate(files).extended_scenario,

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "nc/program.hpp"
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/recorded_run.hpp"

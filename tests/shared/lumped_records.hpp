@@ -11,6 +11,7 @@
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
+#include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/temporary_file.hpp"

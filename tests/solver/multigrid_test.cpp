@@ -4,7 +4,6 @@
 #include <omp.h>
 
 #include <Eigen/Geometry>
-#include <random>
 
 #include "solver/conduction_factor.hpp"
 #include "solver/conjugate_gradients.hpp"
@@ -13,17 +12,10 @@
 #include "solver/prolongator.hpp"
 #include "solver/stiffness_assembly.hpp"
 #include "tests/shared/fixtures.hpp"
+#include "tests/solver/random_vector.hpp"
 
 namespace driftwright::solver::multigrid_test {
 namespace {
-
-Eigen::VectorXd random_vector(Eigen::Index n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd v(n);
-  for (double& value : v) value = normal(random);
-  return v;
-}
 
 struct Heat {
   SparseRow mass, stiffness;
@@ -56,7 +48,7 @@ Solved solve(const SparseRow& a, const Multigrid& multigrid, const Eigen::Vector
 TEST(MultigridOfHeat, FindsWhatAFactorFinds) {
   for (const mesh::CellShape shape : {mesh::CellShape::kTet4, mesh::CellShape::kTet10, mesh::CellShape::kHex8}) {
     const SparseRow k = heat_in_block(10, shape).stiffness;
-    const Eigen::VectorXd b = random_vector(k.rows(), 1), exact = ConductionFactor(k).solve(b);
+    const Eigen::VectorXd b = fixtures::random_vector(k.rows(), 1), exact = ConductionFactor(k).solve(b);
     const Solved solved = solve(k, Multigrid(k), b, 1e-10);
     // The norm of the error is bounded in the norm of K; its condition here is 1e4.
     EXPECT_LT((solved.x - exact).norm(), 1e-7 * exact.norm());
@@ -67,7 +59,7 @@ TEST(MultigridOfHeat, FindsWhatAFactorFinds) {
 TEST(MultigridOfHeat, NeedsHardlyMoreIterationsOnFinerMeshes) {
   const auto iterations = [](int n) {
     const SparseRow k = heat_in_block(n).stiffness;
-    return solve(k, Multigrid(k), random_vector(k.rows(), 2), 1e-8).iterations;
+    return solve(k, Multigrid(k), fixtures::random_vector(k.rows(), 2), 1e-8).iterations;
   };
   const int coarse = iterations(8), fine = iterations(24);  // 27 times the nodes
   EXPECT_LE(fine, coarse + 6);
@@ -79,14 +71,14 @@ TEST(MultigridOfHeat, FollowsTheMatrixWhenItIsRefreshed) {
   for (double gamma_s : {1.0, 100.0, 1e4}) {
     const SparseRow a = heat.mass + gamma_s * heat.stiffness;
     multigrid.refresh(a);
-    EXPECT_LT(solve(a, multigrid, random_vector(a.rows(), 3), 1e-8).iterations, 25) << gamma_s;
+    EXPECT_LT(solve(a, multigrid, fixtures::random_vector(a.rows(), 3), 1e-8).iterations, 25) << gamma_s;
   }
 }
 
 TEST(MultigridOfHeat, IsSymmetricAndPositive) {
   const SparseRow k = heat_in_block(12).stiffness;
   const Multigrid multigrid(k);
-  const Eigen::VectorXd r = random_vector(k.rows(), 4), s = random_vector(k.rows(), 5);
+  const Eigen::VectorXd r = fixtures::random_vector(k.rows(), 4), s = fixtures::random_vector(k.rows(), 5);
   Eigen::VectorXd br(k.rows()), bs(k.rows());
   multigrid.precondition(r.data(), br.data());
   multigrid.precondition(s.data(), bs.data());
@@ -103,7 +95,7 @@ TEST(MultigridOfHeat, TakesARowThatCouplesWithThousands) {
   balance.exchanges.push_back(effects::make_film("film", "z0", fixtures::constant(200.0), "oil"));
   balance.exchanges.push_back(effects::make_film("air", "z1", fixtures::constant(10.0), "ambient"));
   const SparseRow k = fixtures::stiffness(assemble_heat(mesh, {fixtures::steel()}, balance));
-  const Eigen::VectorXd b = random_vector(k.rows(), 6), exact = ConductionFactor(k).solve(b);
+  const Eigen::VectorXd b = fixtures::random_vector(k.rows(), 6), exact = ConductionFactor(k).solve(b);
   const Multigrid multigrid(k);
   const Solved solved = solve(k, multigrid, b, 1e-10);
   EXPECT_LT((solved.x - exact).norm(), 1e-6 * exact.norm());
@@ -210,7 +202,7 @@ TEST(ElasticityByMultigrid, EqualsThatByAFactor) {
     const Elasticity multigrid(c.mesh, c.materials, c.supports, c.joints, ElasticMethod::kMultigrid);
     ASSERT_EQ(multigrid.report().method, ElasticMethod::kMultigrid);
     const int tip = c.mesh.n_nodes() - 1;
-    const Eigen::VectorXd theta = random_vector(c.mesh.n_nodes(), 9);
+    const Eigen::VectorXd theta = fixtures::random_vector(c.mesh.n_nodes(), 9);
     double of_influence = 0.0, of_displacement = 0.0;
     for (const double times : {1.0, 3.0, 7.0, 11.0}) {
       const DisplacementFunctional functional{{{tip, times * Eigen::Vector3d(0.6, -0.8, 0.3)}}};

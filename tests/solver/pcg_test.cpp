@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <random>
 
 #include "solver/heat_assembly.hpp"
 #include "solver/multigrid.hpp"
 #include "tests/shared/fixtures.hpp"
+#include "tests/solver/random_vector.hpp"
 
 namespace driftwright::solver::pcg_test {
 namespace {
@@ -21,17 +21,9 @@ SparseRow shifted() {
   return system.mass + 60.0 * fixtures::stiffness(system);
 }
 
-Eigen::VectorXd random_vector(Eigen::Index n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd v(n);
-  for (double& value : v) value = normal(random);
-  return v;
-}
-
 TEST(Pcg, FindsTheSolutionOfADenseSolve) {
   const SparseRow a = shifted();
-  const Eigen::VectorXd exact = random_vector(a.rows(), 3), b = a * exact;
+  const Eigen::VectorXd exact = fixtures::random_vector(a.rows(), 3), b = a * exact;
   const Eigen::VectorXd dense = Eigen::MatrixXd(a).ldlt().solve(b);
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
@@ -46,7 +38,7 @@ TEST(Pcg, FindsTheSolutionOfADenseSolve) {
 
 TEST(Pcg, StopsWhereTheScaledResidualMeetsTheTolerance) {
   const SparseRow a = shifted();
-  const Eigen::VectorXd b = a * random_vector(a.rows(), 4);
+  const Eigen::VectorXd b = a * fixtures::random_vector(a.rows(), 4);
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
@@ -59,11 +51,11 @@ TEST(Pcg, StopsWhereTheScaledResidualMeetsTheTolerance) {
 
 TEST(Pcg, LooseSolvesStillConserveHeat) {
   const SparseRow a = shifted();
-  const Eigen::VectorXd b = a * random_vector(a.rows(), 5);
+  const Eigen::VectorXd b = a * fixtures::random_vector(a.rows(), 5);
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   for (int iterations : {0, 1, 3}) {
-    Eigen::VectorXd x = random_vector(a.rows(), 6);
+    Eigen::VectorXd x = fixtures::random_vector(a.rows(), 6);
     const PcgOutcome outcome = pcg.solve(b.data(), x.data(), 1e-14, iterations);
     EXPECT_EQ(outcome.iterations, iterations);
     const Eigen::VectorXd r = b - a * x;
@@ -74,7 +66,7 @@ TEST(Pcg, LooseSolvesStillConserveHeat) {
 
 TEST(Pcg, SaysWhenItDidNotConverge) {
   const SparseRow a = shifted();
-  const Eigen::VectorXd b = a * random_vector(a.rows(), 5);
+  const Eigen::VectorXd b = a * fixtures::random_vector(a.rows(), 5);
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
@@ -86,7 +78,7 @@ TEST(Pcg, SaysWhenItDidNotConverge) {
 
 TEST(Pcg, NotANumberIsNoConvergence) {
   const SparseRow a = shifted();
-  Eigen::VectorXd b = random_vector(a.rows(), 5), x = Eigen::VectorXd::Zero(a.rows());
+  Eigen::VectorXd b = fixtures::random_vector(a.rows(), 5), x = Eigen::VectorXd::Zero(a.rows());
   b[7] = NAN;
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
@@ -95,7 +87,7 @@ TEST(Pcg, NotANumberIsNoConvergence) {
 
 TEST(Pcg, StartsFromWhatItIsGiven) {
   const SparseRow a = shifted();
-  Eigen::VectorXd x = random_vector(a.rows(), 8);
+  Eigen::VectorXd x = fixtures::random_vector(a.rows(), 8);
   const Eigen::VectorXd b = a * x;
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
@@ -106,7 +98,7 @@ TEST(Pcg, ConserveTakesHeatBackThatACarriedResidualHasLost) {
   const SparseRow a = shifted();
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
-  const Eigen::VectorXd b = random_vector(a.rows(), 9), before = random_vector(a.rows(), 10);
+  const Eigen::VectorXd b = fixtures::random_vector(a.rows(), 9), before = fixtures::random_vector(a.rows(), 10);
   ASSERT_GT(std::abs((b - a * before).sum()), 1e-3 * b.cwiseAbs().sum());
   Eigen::VectorXd x = before;
   pcg.conserve(b.data(), x.data());
@@ -121,7 +113,7 @@ TEST(Pcg, ConserveLeavesPrescribedUnknownsAlone) {
   ones[3] = 0.0;
   Pcg pcg(a);
   pcg.refresh(ones);
-  const Eigen::VectorXd b = random_vector(a.rows(), 11), before = random_vector(a.rows(), 12);
+  const Eigen::VectorXd b = fixtures::random_vector(a.rows(), 11), before = fixtures::random_vector(a.rows(), 12);
   Eigen::VectorXd x = before;
   pcg.conserve(b.data(), x.data());
   EXPECT_EQ(x[3], before[3]);
@@ -140,7 +132,7 @@ TEST(Pcg, WithMultigridFindsTheSameInFewerIterationsAndConservesHeat) {
   balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "ambient"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const SparseRow a = system.mass + 600.0 * fixtures::stiffness(system);
-  const Eigen::VectorXd exact = random_vector(a.rows(), 13), b = a * exact;
+  const Eigen::VectorXd exact = fixtures::random_vector(a.rows(), 13), b = a * exact;
   const Multigrid multigrid(a);
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <random>
-
 #include "solver/heat_assembly.hpp"
 #include "tests/shared/fixtures.hpp"
+#include "tests/solver/random_vector.hpp"
 
 namespace driftwright::solver::slope_space_test {
 namespace {
@@ -27,14 +26,6 @@ struct Matrices {
   [[nodiscard]] Eigen::Index size() const { return mass.rows(); }
 };
 
-Eigen::VectorXd random_vector(Eigen::Index n, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd v(n);
-  for (double& value : v) value = normal(random);
-  return v;
-}
-
 struct Guess {
   Eigen::VectorXd x, residual;
 };
@@ -50,7 +41,7 @@ TEST(SlopeSpace, FindsACombinationOfItsSlopesAtAnyGamma) {
   EXPECT_TRUE(space.empty());
   std::vector<Eigen::VectorXd> slopes;
   for (unsigned i = 0; i < 4; ++i) {
-    slopes.push_back(random_vector(m.size(), i));
+    slopes.push_back(fixtures::random_vector(m.size(), i));
     space.add(m.mass, m.stiffness, slopes.back().data());
   }
   const Eigen::VectorXd exact = 2.0 * slopes[0] - 0.3 * slopes[2] + 5.0 * slopes[3];
@@ -69,11 +60,11 @@ TEST(SlopeSpace, GuessIsTheBestOfItsSpanAndItsResidualIsTrue) {
   SlopeSpace space(static_cast<int>(m.size()));
   std::vector<Eigen::VectorXd> slopes;
   for (unsigned i = 0; i < 3; ++i) {
-    slopes.push_back(random_vector(m.size(), i));
+    slopes.push_back(fixtures::random_vector(m.size(), i));
     space.add(m.mass, m.stiffness, slopes.back().data());
   }
   const SparseRow a = m.mass + 30.0 * m.stiffness;
-  const Eigen::VectorXd b = random_vector(m.size(), 7);
+  const Eigen::VectorXd b = fixtures::random_vector(m.size(), 7);
   const Guess g = guess(space, 30.0, b);
   EXPECT_LT((b - a * g.x - g.residual).norm(), 1e-13 * b.norm());
   ASSERT_GT(g.residual.norm(), 0.5 * b.norm());  // b is none of them
@@ -86,7 +77,7 @@ TEST(SlopeSpace, DropsTheOldest) {
   SlopeSpace space(static_cast<int>(m.size()));
   std::vector<Eigen::VectorXd> slopes;
   for (unsigned i = 0; i < kHeld + 2; ++i) {
-    slopes.push_back(random_vector(m.size(), i));
+    slopes.push_back(fixtures::random_vector(m.size(), i));
     space.add(m.mass, m.stiffness, slopes.back().data());
   }
   const SparseRow a = m.mass + 10.0 * m.stiffness;
@@ -106,11 +97,11 @@ TEST(SlopeSpace, DropsTheOldest) {
 TEST(SlopeSpace, SlopesThatAreNearlyTheSameOrZeroDoNoHarm) {
   const Matrices m(4);
   SlopeSpace space(static_cast<int>(m.size()));
-  const Eigen::VectorXd slope = random_vector(m.size(), 1), zero = Eigen::VectorXd::Zero(m.size());
-  const Eigen::VectorXd nearly = slope + 1e-9 * random_vector(m.size(), 2);
+  const Eigen::VectorXd slope = fixtures::random_vector(m.size(), 1), zero = Eigen::VectorXd::Zero(m.size());
+  const Eigen::VectorXd nearly = slope + 1e-9 * fixtures::random_vector(m.size(), 2);
   for (const auto* s : {&slope, &nearly, &slope, &zero}) space.add(m.mass, m.stiffness, s->data());
   const SparseRow a = m.mass + 10.0 * m.stiffness;
-  const Eigen::VectorXd b = a * (3.0 * slope) + 1e-3 * random_vector(m.size(), 3);
+  const Eigen::VectorXd b = a * (3.0 * slope) + 1e-3 * fixtures::random_vector(m.size(), 3);
   const Guess g = guess(space, 10.0, b);
   EXPECT_LT((g.x - 3.0 * slope).norm(), 1e-3 * slope.norm());
   EXPECT_LT(g.x.cwiseAbs().maxCoeff(), 20.0);
@@ -123,8 +114,8 @@ TEST(SlopeSpace, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (int n_threads : {1, 2, 3}) {
     omp_set_num_threads(n_threads);
     SlopeSpace space(static_cast<int>(m.size()));
-    for (unsigned i = 0; i < 3; ++i) space.add(m.mass, m.stiffness, random_vector(m.size(), i).data());
-    found.push_back(guess(space, 30.0, random_vector(m.size(), 7)).residual);
+    for (unsigned i = 0; i < 3; ++i) space.add(m.mass, m.stiffness, fixtures::random_vector(m.size(), i).data());
+    found.push_back(guess(space, 30.0, fixtures::random_vector(m.size(), 7)).residual);
   }
   omp_set_num_threads(before);
   EXPECT_EQ(found[0], found[1]);

@@ -1,9 +1,11 @@
 // Files of loggers that nobody has described: what is guessed of them, and that the guess as YAML reads them alike. The
 // samples in tests/data/loggers mimic:
-//   almemo_2590        an Ahlborn ALMEMO 2590 with AMR-Control: Latin-1, semicolons, decimal commas, ranges and comments in front, date and time apart,
-//                      -.-- for a sensor that is off
-//   catman_ap          HBM catman's ASCII export: tabs, decimal commas, a head, units in a line below the names, time as a number
-//   picolog_6          PicoLog 6: no name over the stamps, which are ISO 8601 with an offset, here in the night in which clocks are set back
+//   almemo_2590        an Ahlborn ALMEMO 2590 with AMR-Control: Latin-1, semicolons, decimal commas, ranges and comments in
+//                      front, date and time apart, -.-- for a sensor that is off
+//   catman_ap          HBM catman's ASCII export: tabs, decimal commas, a head, units in a line below the names, time as a
+//                      number
+//   picolog_6          PicoLog 6: no name over the stamps, which are ISO 8601 with an offset, here in the night in which
+//                      clocks are set back
 //   wincc_tag_logging  a tag log of WinCC: one tag's value in each row, one tag after the other, written when it changes
 
 #include "studies/logger_import.hpp"

@@ -11,6 +11,7 @@
 #include "mesh/gmsh_parts.hpp"
 #include "studies/measured_twin.hpp"
 #include "tests/shared/column_and_head.hpp"
+#include "tests/shared/small_table.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::other_mesh_test {
@@ -90,21 +91,8 @@ TEST(OtherMesh, IsNoneWhereThereIsNoSizeAndTheReasonIsSaid) {
   }
 }
 
-const char* const kTable = R"(name: small_table
-reference_temperature: 20 degC
-machine:
-  generator: gantry_table
-  table: {length: 2 m, width: 1 m, height: 200 mm}
-  bed: {length: 2.4 m, width: 1 m, height: 300 mm}
-  guideways: {width: 150 mm, height: 100 mm, gauge: 700 mm}
-  mesh_size: 300 mm
-materials: {table: cast_iron_gjl250, bed: cast_iron_gjl250}
-supports: [{surface: bed_underside, fixed: [x, y, z]}]
-effects:
-  - {type: contact, joint: bed/table, conductance: 150 W/(m^2 K)}
-  - {type: convection, surface: table_top, film: 8 W/(m^2 K)}
-  - {type: convection, surface: bed_sides, film: 6 W/(m^2 K)}
-  - {type: heat_source, region: table, power: 50 W, at_speed: 1 rpm, exponent: 0}
+const std::string kTable =
+    fixtures::small_table("300 mm") + R"(  - {type: heat_source, region: table, power: 50 W, at_speed: 1 rpm, exponent: 0}
 ambient: [[0 min, 20 degC]]
 sensors:
   - {name: mid, region: table, at: [0 m, 0 m, 0 m]}

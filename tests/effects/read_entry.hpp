@@ -1,0 +1,17 @@
+#pragma once
+// An entry of `effects`, for tests of effects.
+
+#include <string>
+
+#include "base/config_map.hpp"
+#include "effects/effect.hpp"
+#include "tests/shared/temporary_file.hpp"
+
+namespace driftwright::effects {
+
+/// The effect of one entry's text.
+inline Effect read(const std::string& text) {
+  return read_effect(ConfigMap::read_file(write_file("effect.yaml", text)));
+}
+
+}  // namespace driftwright::effects
