@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr double kJitter = 0.01;  // share of the top speed so far; a smaller change is no change of drive, as in records
-constexpr std::size_t kMostKept = 8 * compensation::kRowsBack;
+constexpr std::size_t kMostKept = 8 * kRowsBack;
 
 }  // namespace
 
@@ -104,7 +104,7 @@ std::vector<std::string> LiveRun::older_than(double age_s) const {
 void LiveRun::forget() {
   Record& readings = run_.readings;
   if (readings.n_samples() < kMostKept) return;
-  const auto n = static_cast<std::ptrdiff_t>(readings.n_samples() - compensation::kRowsBack - 1);
+  const auto n = static_cast<std::ptrdiff_t>(readings.n_samples() - kRowsBack - 1);
   const auto drop = [&](auto& list) { list.erase(list.begin(), list.begin() + n); };
   drop(readings.time_s);
   for (Channel& c : readings.channels) drop(c.values);
