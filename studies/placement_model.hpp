@@ -13,7 +13,7 @@ namespace driftwright::studies {
 /// A cyclogram in one ambient: the real drive and ambient of the machine.
 struct PlacementRun {
   std::string cyclogram, ambient;  ///< names
-  scenarios::FeltRun felt;
+  MachineRun felt;
   int group = 0;                ///< equal for runs of one cyclogram
   std::vector<double> times_s;  ///< of the rows, from the start
 };

@@ -129,7 +129,7 @@ Courses by_model(const scenarios::MachineModel& machine, const TestChannels& cha
              const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s) {
     scenarios::MachineModel there = machine;
     there.ambient = ambient;
-    const scenarios::FeltRun felt = scenarios::felt_run(there, cyclogram);
+    const MachineRun felt = scenarios::felt_run(there, cyclogram);
     return rows_of(owned->propagator.run(felt.cyclogram, felt.ambient, time_s, start), owned->system.outputs, channels);
   };
 }
@@ -270,7 +270,7 @@ void add_by_model(ProgrammeStudy& study, const scenarios::Scenario& scenario, co
       listener.begin("scaling the model's modes to tests");
       std::vector<ThermalTest> felt_tests = bed.tests;
       for (ThermalTest& t : felt_tests) {
-        scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
+        MachineRun felt = scenarios::felt_run(machine, t.cyclogram);
         t.cyclogram = std::move(felt.cyclogram);
         t.ambient = from_start(std::move(felt.ambient));
       }

@@ -80,8 +80,8 @@ using scenarios::RunRows;
 struct ReadFile {
   std::string path;
   MachineRun recorded = {};
-  scenarios::FeltRun felt = {};  ///< drive and ambient after the changes by the scenario's effects
-  std::size_t n_before = 0;      ///< rows of the preceding record at the front
+  MachineRun felt = {};      ///< drive and ambient after the changes by the scenario's effects
+  std::size_t n_before = 0;  ///< rows of the preceding record at the front
 };
 
 Record read_with_target(const std::string& path, const scenarios::Scenario& scenario, std::vector<std::string>& notes) {

@@ -46,8 +46,7 @@ compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every
   return {.every_s = every_s, .noise_m = s.probe_noise_m, .seed = static_cast<std::uint64_t>(s.seed + 1000 * repetition)};
 }
 
-Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt, const Record& record,
-                      int repetition) {
+Record table_readings(const scenarios::Scenario& scenario, const MachineRun& felt, const Record& record, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   Record thermometers{.source = record.source, .time_s = record.time_s, .channels = {}}, result = record;
   for (const Channel& channel : record.channels) {

@@ -20,7 +20,7 @@ using Errors = std::vector<Eigen::Matrix3Xd>;
 /// The run of a scattered model, in the recorded ambient.
 TableRun wrong_run(const scenarios::Scenario& scenario, const scenarios::Model& model, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
+  const MachineRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
   const std::vector<double> times_s = scenarios::output_times_s(felt.cyclogram, scenario.solver.output_interval_s);
   scenarios::SimulatedRun run;
   if (const scenarios::Machine* full = model.full()) {
@@ -175,7 +175,7 @@ TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Mod
   for (const scenarios::TableRing& ring : s.rings) places_m.push_back(ring.at_m);
 
   listener.begin("running models that are off");
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, *cyclogram.front());
+  const MachineRun felt = scenarios::felt_run(*scenario.machine, *cyclogram.front());
   std::vector<Errors> model_m, model_table_m, warmth_m, warmth_table_m;
   std::vector<std::vector<double>> ambient_K, thermometer_K;
   for (int k = 0; k < kTableRepetitions; ++k) {
