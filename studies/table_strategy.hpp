@@ -51,6 +51,6 @@ struct TableTraining {
   std::vector<Eigen::Matrix3Xd> rings_m;
   [[nodiscard]] std::vector<double> at(const std::vector<double>& values) const;
 };
-[[nodiscard]] TableTraining train(const TableRun& run, const scenarios::TableSettings& s, int repetition);
+[[nodiscard]] TableTraining train(const TableCourse& course, const scenarios::TableSettings& s, int repetition);
 
 }  // namespace driftwright::studies
