@@ -182,8 +182,8 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Judge
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
     const std::vector<double> drift_um = row_of(j.truth, c);
     // Half of the tolerance is reserved for the predictor's error.
-    const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
-                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy, limits);
+    const CorrectedDrift corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
+                                                         row_of(p.predicted[i], c), 0.5 * tolerance_um, policy, limits);
     int changes = 0;
     for (const Operation& o : corrected.schedule->operations)
       changes += static_cast<int>(std::count_if(o.corrections.begin(), o.corrections.end(),
