@@ -40,7 +40,7 @@ void identify_beside(const IdentifyOptions& asked) {
   for (identification::IdentifiedChannel& c : learned.channels) c.missed_simulated = studies::missed(again, c.name);
   findings::IdentificationFindings found{scenario.name, beside.measured, learned, {}};
   for (const diagnosis::MeasuredRun& run : m.runs) {
-    for (const diagnosis::DataFinding& f : run.findings)
+    for (const DataFinding& f : run.findings)
       found.notes.push_back(
           fmt::format("{}: {}{}", clean_name(run.path), f.channel.empty() ? "" : f.channel + ": ", f.what));
   }

@@ -17,7 +17,7 @@ compensation::FrameProgram frame_program(const scenarios::Scenario& scenario, co
   const scenarios::TableSettings& s = *scenario.table;
   compensation::FrameProgram program{.frame = study.frame, .control = study.control, .against_dk = s.against_dk};
   for (const scenarios::TableRing& ring : s.rings) program.rings.push_back({ring.name, ring.at_m});
-  program.temperature_K = study.run.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
+  program.temperature_K = study.course.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
   program.free_diameter_m = s.probe.free_diameter_m;
   program.ball_diameter_m = s.ball_diameter_m;
   program.feed_mm_min = 6e4 * s.probe.feeds_m_s.front();
@@ -47,7 +47,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   if (fields) fields->finish();
   progress.begin("writing results");
   const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };
-  folder.write_text("record.csv", record_csv(study.run.record, comments("cyclogram " + scenario.table->cyclogram)));
+  folder.write_text("record.csv", record_csv(study.course.record, comments("cyclogram " + scenario.table->cyclogram)));
   folder.write_text("strategies.csv",
                     findings::strategies_csv(study, comments("largest position error anywhere on the table")));
   const compensation::FrameProgram program = frame_program(scenario, study, folder.made_by());
@@ -58,7 +58,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
       folder.write_text("control/" + file.name, file.text);
   }
   output::Document document = findings::document_of(study, scenario, machine.mesh(), worst, folder.made_by());
-  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(study.run.record));
+  findings::add_plausibility(document.body, scenario, scenarios::unusual_values(study.course.record));
   std::vector<std::string> warnings;
   if (!why_no_program.empty()) warnings.push_back("no programs for controls: " + why_no_program);
   add(document.body, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});

@@ -397,12 +397,12 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) on_ambient.push_back(outputs.name[o]);
   }
-  scenarios::RecordedRun recorded_run = scenarios::run_of(record, &model, on_ambient, scenarios::Reading::kStrict);
-  run.time_s = std::move(recorded_run.time_s);
+  MachineRun recorded_run = scenarios::run_of(record, &model, on_ambient, scenarios::Reading::kStrict);
+  run.time_s = std::move(recorded_run.readings.time_s);
   run.cyclogram = std::move(recorded_run.cyclogram);
   run.name = run.cyclogram.name;
   run.ambient = std::move(recorded_run.ambient);
-  run.has_ambient = recorded_run.has_ambient();
+  run.has_ambient = recorded_run.has_recorded_ambient();
   if (run.has_ambient) take_ambient(run, record.at(recorded_run.ambient_channel).values, model.reference_K);
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   scenarios::require_columns(model, run.cyclogram);

@@ -21,8 +21,6 @@ struct MeasuredChannel {
   std::string recorded_unit = {};  ///< from the record's header
 };
 
-using scenarios::DataFinding;
-
 /// A stretch of a record with an unknown drive: the run's cyclogram holds the drive before it, and readings within it do
 /// not count.
 struct Hole {

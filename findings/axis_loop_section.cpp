@@ -9,7 +9,7 @@ namespace driftwright::findings {
 namespace {
 
 using compensation::AxisLoop;
-using compensation::AxisLoopRun;
+using compensation::AxisLoopResult;
 using compensation::ErrorStage;
 using output::Bars;
 using output::Plot;
@@ -20,7 +20,7 @@ using output::Value;
 /// Plots show every n-th sample, and of the samples between these the worst.
 constexpr std::size_t kMostPoints = 1500;
 
-Series shown(const std::string& label, const AxisLoopRun& run, const std::vector<double>& values_um, double width) {
+Series shown(const std::string& label, const AxisLoopResult& run, const std::vector<double>& values_um, double width) {
   Series series{.label = label, .width = width};
   const std::size_t step = std::max<std::size_t>(1, run.time_s.size() / kMostPoints);
   for (std::size_t i = 1; i < run.time_s.size(); i += step) {
@@ -35,7 +35,7 @@ Series shown(const std::string& label, const AxisLoopRun& run, const std::vector
   return series;
 }
 
-Bars cause_bars(const AxisLoopRun& run) {
+Bars cause_bars(const AxisLoopResult& run) {
   Bars bars{.caption = fmt::format(
                 "RMS error of the tool with one cause more switched on from bar to bar: corrected by the predictor on true "
                 "temperatures at every moment, then from readings, and so on; the last bar has all causes. Without "
@@ -51,7 +51,7 @@ Bars cause_bars(const AxisLoopRun& run) {
   return bars;
 }
 
-Table cause_table(const AxisLoopRun& run) {
+Table cause_table(const AxisLoopResult& run) {
   Table table{
       .key = "switched_on_in_turn",
       .title = "Causes of error, switched on in turn",
@@ -142,8 +142,8 @@ std::string faults_told(const compensation::AxisFaults& faults) {
 
 }  // namespace
 
-output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings, const AxisLoopRun& run, double tolerance_um,
-                                  const std::vector<output::SectionMark>& marks) {
+output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings, const AxisLoopResult& run,
+                                  double tolerance_um, const std::vector<output::SectionMark>& marks) {
   const AxisLoop& loop = settings.loop;
   const compensation::InjectedSeries& with = run.with;
   output::Section section{.key = "axis_loop",

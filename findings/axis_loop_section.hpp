@@ -9,7 +9,7 @@ namespace driftwright::findings {
 
 /// Section `axis_loop`: causes of error included one after another, counts, faults, plots.
 [[nodiscard]] output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings,
-                                                const compensation::AxisLoopRun& run, double tolerance_um,
+                                                const compensation::AxisLoopResult& run, double tolerance_um,
                                                 const std::vector<output::SectionMark>& marks);
 
 }  // namespace driftwright::findings

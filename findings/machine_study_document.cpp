@@ -13,7 +13,7 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::CorrectedRun;
+using compensation::CorrectedDrift;
 using output::Column;
 using output::Datum;
 using output::Plot;
@@ -25,11 +25,11 @@ using output::Verdict;
 
 Verdict verdict(const scenarios::Study& settings, const studies::MachineStudy& study) {
   const auto of_target = study.of_channel(settings.target);
-  const auto best = *std::min_element(of_target.begin(), of_target.end(), [](const CorrectedRun* a, const CorrectedRun* b) {
-    return a->after.peak_abs < b->after.peak_abs;
-  });
+  const auto best = *std::min_element(
+      of_target.begin(), of_target.end(),
+      [](const CorrectedDrift* a, const CorrectedDrift* b) { return a->after.peak_abs < b->after.peak_abs; });
   std::vector<std::string> failing;
-  for (const CorrectedRun* c : of_target) {
+  for (const CorrectedDrift* c : of_target) {
     if (!c->inside_tolerance)
       failing.push_back(fmt::format("{} by {} ({:.1f} µm)", c->predictor, c->actuator, c->after.peak_abs));
   }
@@ -63,7 +63,7 @@ Table corrections_table(const studies::MachineStudy& study) {
                   {.key = "after.mean_um", .title = ""},
                   {.key = "inside_tolerance", .title = "inside tolerance"},
                   {.key = "schedule", .title = ""}}};
-  for (const CorrectedRun& c : study.corrections) {
+  for (const CorrectedDrift& c : study.corrections) {
     table.rows.push_back({c.channel, c.predictor, c.actuator, c.before.peak_abs, c.after.peak_abs, c.before.rmse,
                           c.after.rmse, c.before.mean, c.after.mean, c.inside_tolerance,
                           c.schedule ? Datum(compensation::to_text(*c.schedule)) : Datum()});
@@ -80,7 +80,7 @@ Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenar
             .series = {{.label = "before", .x = minutes(record), .y = record.at(channel).values, .width = 3.0}},
             .bands = {{fmt::format("tolerance ±{:g} µm", tolerance_um), -tolerance_um, tolerance_um}},
             .marks = section_marks(scenario.cyclogram(scenario.study->judge))};
-  for (const CorrectedRun* c : study.of_channel(channel)) {
+  for (const CorrectedDrift* c : study.of_channel(channel)) {
     plot.series.push_back({.label = c->predictor + " by " + c->actuator, .x = minutes(record), .y = c->residual_um});
   }
   return plot;
@@ -310,7 +310,7 @@ std::string schedule_text(const studies::MachineStudy& study) {
       "# Correction schedules: one line per operation, n-{intervals in min}-{corrections in um, "
       "increments}.\n"
       "# The axis moves by minus the sum of the increments so far.\n";
-  for (const CorrectedRun& c : study.corrections) {
+  for (const CorrectedDrift& c : study.corrections) {
     if (c.schedule)
       text += fmt::format("\n# {}, predicted by {}\n{}", c.channel, c.predictor, compensation::to_text(*c.schedule));
   }

@@ -44,9 +44,9 @@ output::Table meshes_table(const MeshConvergence& found) {
                                   {.key = "was_known", .title = "model read from disk"}}};
   const char* const names[] = {"coarse", "middle", "fine"};
   for (std::size_t k = 0; k < 3; ++k) {
-    const studies::MeshRun& run = found.runs[k];
-    table.rows.push_back({names[k], k == found.own, run.factor, 1e3 * run.size_m, run.n_elements, run.n_unknowns,
-                          run.seconds, run.was_known});
+    const studies::MeshLevel& level = found.levels[k];
+    table.rows.push_back({names[k], k == found.own, level.factor, 1e3 * level.size_m, level.n_elements, level.n_unknowns,
+                          level.seconds, level.was_known});
   }
   return table;
 }
@@ -90,7 +90,7 @@ output::Plot channel_plot(const MeshConvergence& found, std::size_t first) {
     const int color = static_cast<int>(i - first);
     output::Series line{.label = moment_words(value), .color = color};
     for (std::size_t k = 0; k < 3; ++k) {
-      line.x.push_back(1e3 * found.runs[k].size_m);
+      line.x.push_back(1e3 * found.levels[k].size_m);
       line.y.push_back(value.values[k]);
     }
     if (!std::isnan(value.convergence.extrapolated)) {
@@ -145,7 +145,7 @@ std::vector<std::string> next_steps(const MeshConvergence& found, const Converge
   const double p = worst.convergence.used_order;
   if (!std::isnan(p) && worst.convergence.kind == Convergence::kMonotone) {
     const double factor = std::pow(0.5, 1.0 / p);
-    const double elements = found.runs[found.own].n_elements / std::pow(factor, 3);
+    const double elements = found.levels[found.own].n_elements / std::pow(factor, 3);
     steps.push_back(fmt::format(
         "To halve this error multiply every `mesh_size` of the scenario by {:.2f}. That mesh has about {:.0f} elements.",
         factor, elements));

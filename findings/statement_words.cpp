@@ -14,7 +14,7 @@ Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs) {
   for (const diagnosis::MeasuredRun& run : runs) {
     for (const auto& [name, why] : run.left_out) left_out[name] = why;
     for (const diagnosis::MeasuredChannel& c : run.channels) names.insert(c.name);
-    for (const diagnosis::DataFinding& f : run.findings) {
+    for (const DataFinding& f : run.findings) {
       if (f.leaves_out) doubted.try_emplace(f.channel, f.what);
     }
   }

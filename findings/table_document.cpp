@@ -42,16 +42,16 @@ const studies::TableStrategy& strategy(const studies::TableStudy& study, const s
 }
 
 Plot series_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
-  const studies::TableRun& run = study.run;
+  const studies::TableCourse& course = study.course;
   // The latter since the start, because counted from 20 degC they would dwarf the rest.
   std::vector<double> x_um, table_um, scale_um;
-  for (std::size_t i = 0; i < run.table_only_x_um.size(); ++i) {
-    table_um.push_back(run.table_only_x_um[i] - run.table_only_x_um[0]);
-    scale_um.push_back(run.scale_only_x_um[i] - run.scale_only_x_um[0]);
+  for (std::size_t i = 0; i < course.table_only_x_um.size(); ++i) {
+    table_um.push_back(course.table_only_x_um[i] - course.table_only_x_um[0]);
+    scale_um.push_back(course.scale_only_x_um[i] - course.scale_only_x_um[0]);
   }
-  for (std::size_t i = 0; i < run.table_only_x_um.size(); ++i)
-    x_um.push_back(run.table_only_x_um[i] - run.scale_only_x_um[i]);
-  const std::vector<double> t_h = hours(run.table.time_s);
+  for (std::size_t i = 0; i < course.table_only_x_um.size(); ++i)
+    x_um.push_back(course.table_only_x_um[i] - course.scale_only_x_um[i]);
+  const std::vector<double> t_h = hours(course.table.time_s);
   Plot plot{.title = "X error over the table's length: computed, and as published",
             .x_label = "time [h]",
             .y_label = "growth from end to end [µm]",
@@ -71,13 +71,13 @@ Plot temperatures_plot(const scenarios::Scenario& scenario, const studies::Table
   Plot plot{.title = "Temperatures", .x_label = "time [h]", .y_label = "temperature [°C]"};
   for (const auto& sensor : scenario.machine->sensors) {
     plot.series.push_back(
-        {.label = sensor.name, .x = hours(study.run.table.time_s), .y = study.run.record.at(sensor.name).values});
+        {.label = sensor.name, .x = hours(study.course.table.time_s), .y = study.course.record.at(sensor.name).values});
   }
   return plot;
 }
 
 Plot strategies_plot(const studies::TableStudy& study) {
-  std::vector<double> t_h = hours(study.run.table.time_s);
+  std::vector<double> t_h = hours(study.course.table.time_s);
   t_h.resize(study.n_judged);
   Plot plot{.title = "Largest position error anywhere on the table", .x_label = "time [h]", .y_label = "error [µm]"};
   for (const char* name : {"none", "ambient temperature", "model alone", "rings", "rings, thermometers between",
@@ -95,8 +95,8 @@ Plot profile_plot(const scenarios::Scenario& scenario, const studies::TableStudy
   std::vector<double> x_m, before_um, after_um;
   const compensation::Frame frame = study.frame.frame();
   for (std::size_t p = row; p < row + n_x; ++p) {
-    const Eigen::Vector3d& at_m = study.run.table.points_m[p];
-    const double error_m = study.run.table.error_m[study.n_judged - 1](0, static_cast<Eigen::Index>(p));
+    const Eigen::Vector3d& at_m = study.course.table.points_m[p];
+    const double error_m = study.course.table.error_m[study.n_judged - 1](0, static_cast<Eigen::Index>(p));
     x_m.push_back(at_m[0]);
     before_um.push_back(1e6 * error_m);
     after_um.push_back(1e6 * (error_m - (frame.map(at_m)[0] - at_m[0])));
@@ -372,7 +372,7 @@ output::Document document_of(const studies::TableStudy& study, const scenarios::
 }
 
 std::string strategies_csv(const studies::TableStudy& study, const std::vector<std::string>& comments) {
-  Record record{.source = "table", .time_s = study.run.table.time_s, .channels = {}};
+  Record record{.source = "table", .time_s = study.course.table.time_s, .channels = {}};
   record.time_s.resize(study.n_judged);
   for (const studies::TableStrategy& s : study.strategies) {
     std::string name = s.name;

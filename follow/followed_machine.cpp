@@ -204,7 +204,7 @@ class FollowedMachine final : public Followed {
   solver::TransientOptions tolerances_;
   std::optional<scenarios::Model> model_;
   std::optional<solver::Propagator> exact_;  // for a linear reduced model
-  std::optional<LiveRun> run_;
+  std::optional<LiveRows> run_;
   Eigen::VectorXd state_;
   std::vector<Eigen::Index> output_;  // index of each axis
   std::vector<AxisCorrection> axes_;

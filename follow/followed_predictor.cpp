@@ -277,7 +277,7 @@ class FollowedPredictor final : public Followed {
   output::PredictorFile file_;
   DeployedFollower follower_;
   OutputStage stage_;
-  std::optional<LiveRun> run_;
+  std::optional<LiveRows> run_;
   std::optional<Watch> watch_;
   Probe probe_;
   std::optional<double> tolerance_um_;

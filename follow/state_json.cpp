@@ -28,7 +28,7 @@ std::vector<double> numbers_of(const Json& j, const char* key) {
   return numbers;
 }
 
-Json state_json(const LiveRun::State& s) {
+Json state_json(const LiveRows::State& s) {
   return {{"start_s", s.start_s},
           {"rows", s.n_rows},
           {"time_s", s.time_s},
@@ -42,7 +42,7 @@ Json state_json(const LiveRun::State& s) {
           {"cutting_power_W", s.drive.cutting_power_W}};
 }
 
-LiveRun::State live_run_of(const Json& j) {
+LiveRows::State live_run_of(const Json& j) {
   return {.start_s = finite(j, "start_s"),
           .n_rows = value<std::size_t>(j, "rows"),
           .time_s = finite(j, "time_s"),

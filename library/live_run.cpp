@@ -58,7 +58,7 @@ std::vector<double> Run::step(const Row& row) {
   }
   solver::TransientOptions from_here = s.tolerances;
   from_here.from_s = before_s;
-  const scenarios::FeltRun felt = scenarios::felt_run(s.machine, s.cyclogram);
+  const MachineRun felt = scenarios::felt_run(s.machine, s.cyclogram);
   const auto keep = [&](double, const Eigen::VectorXd& state) { s.state = state; };
   const auto run = [&](const auto& system) {
     const Eigen::VectorXd start = s.state;

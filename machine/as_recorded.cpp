@@ -21,7 +21,7 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
     if (is_on_ambient(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = ambient;
   }
   if (const effects::ReadingChain chain = effects::reading_chain(model.effects, recorded.name); !chain.empty()) {
-    const FeltRun felt = felt_run(model, recorded);
+    const MachineRun felt = felt_run(model, recorded);
     told.outputs =
         chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.ambient, std::move(told.outputs));
   }

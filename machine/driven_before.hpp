@@ -12,7 +12,7 @@ namespace driftwright::scenarios {
 /// @param system  a solver::FullSystem or a solver::ReducedSystem
 /// @param from    the state before that
 template <typename System>
-[[nodiscard]] Eigen::VectorXd after_what_was_before(const System& system, const FeltRun& felt,
+[[nodiscard]] Eigen::VectorXd after_what_was_before(const System& system, const MachineRun& felt,
                                                     const solver::TransientOptions& options, Eigen::VectorXd from) {
   if (felt.before.sections.empty()) return from;
   const TimeSeries ambient{{0.0}, {felt.ambient.at(0.0)}};

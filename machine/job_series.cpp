@@ -65,7 +65,8 @@ JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeri
   SeriesWriter writer(series, interval_s);
   if (order.start) {
     (void)writer.add(order.start->cyclogram.sections);
-    if (order.start->has_ambient()) series.ambient = continued(order.start->ambient, series.time_s.back(), scenario_ambient);
+    if (order.start->has_recorded_ambient())
+      series.ambient = continued(order.start->ambient, series.time_s.back(), scenario_ambient);
   }
   writer.add_rest(order.pause_s);
   for (int part = 0; part < order.n_parts; ++part) {

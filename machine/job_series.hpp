@@ -12,10 +12,10 @@ namespace driftwright::scenarios {
 
 /// How a job is done.
 struct JobOrder {
-  std::optional<RecordedRun> start;  ///< what the machine did before; none: the job begins in the scenario's start state
-  double pause_s = 0.0;              ///< pause at rest between that run and the job, >= 0
-  int n_parts = 1;                   ///< how many times the job is done, >= 1
-  double between_s = 0.0;            ///< pause at rest between two parts, >= 0
+  std::optional<MachineRun> start;  ///< what the machine did before; none: the job begins in the scenario's start state
+  double pause_s = 0.0;             ///< pause at rest between that run and the job, >= 0
+  int n_parts = 1;                  ///< how many times the job is done, >= 1
+  double between_s = 0.0;           ///< pause at rest between two parts, >= 0
 };
 
 /// Rows of one part. If no time passes between two parts, they share a row.

@@ -117,15 +117,15 @@ std::optional<compensation::ModalPredictors> modal_predictors(const solver::Full
 ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms) {
   const MachineModel& model = *scenario.machine;
   const effects::HeatBalance balance = effects::with_radiation_as_films(effects::heat_balance(model.effects));
-  std::vector<FeltRun> felt;
+  std::vector<MachineRun> felt;
   for (const Cyclogram* cyclogram : cyclograms) felt.push_back(felt_run_as_far_as_known(model, *cyclogram));
   std::vector<const Cyclogram*> driven;
-  for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
+  for (const MachineRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
   plan.demand = solver::reduction_demand(balance, driven, model.ambient, model.reference_K);
   const bool moves_ambient = std::any_of(model.effects.begin(), model.effects.end(), effects::changes_drive);
   if (moves_ambient) {  // each run may have another ambient
-    for (const FeltRun& run : felt) {
+    for (const MachineRun& run : felt) {
       plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.ambient, model.reference_K));
     }
   }

@@ -78,7 +78,7 @@ std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& f
 SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
                           const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
                           const solver::OutputCallback& at_output) {
-  const FeltRun felt = felt_run(machine, cyclogram);
+  const MachineRun felt = felt_run(machine, cyclogram);
   const auto run = [&](const auto& system) {
     try {
       return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, options, from, at_output);
@@ -115,7 +115,7 @@ Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
 
 Eigen::VectorXd after_what_was_before(const MachineModel& machine, const solver::TransientOptions& options,
                                       const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram) {
-  const FeltRun felt = felt_run(machine, cyclogram);
+  const MachineRun felt = felt_run(machine, cyclogram);
   return model.reduced() ? after_what_was_before(model.reduced()->system, felt, options, from)
                          : after_what_was_before(model.full()->system, felt, options, from);
 }

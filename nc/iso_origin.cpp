@@ -2,7 +2,7 @@
 
 namespace driftwright {
 
-IsoOrigin::IsoOrigin(NcRun& run) : run_(run) {
+IsoOrigin::IsoOrigin(NcExecution& run) : run_(run) {
   for (int system = 1; system <= 9; ++system) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto given = run.settings().parameters.find(5221 + 20 * (system - 1) + axis);

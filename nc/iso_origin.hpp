@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 namespace driftwright {
 
@@ -14,7 +14,7 @@ namespace driftwright {
 /// a change of the system does not change positions.
 class IsoOrigin {
  public:
-  explicit IsoOrigin(NcRun& run);
+  explicit IsoOrigin(NcExecution& run);
 
   [[nodiscard]] int system() const { return system_; }
   /// True once the program has named a system.
@@ -33,7 +33,7 @@ class IsoOrigin {
   void clear_shift();
 
  private:
-  NcRun& run_;
+  NcExecution& run_;
   int system_ = 1;
   bool named_ = false;
   std::map<std::pair<int, int>, double> offset_m_;  // of a system and an axis, if known

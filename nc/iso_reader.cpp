@@ -23,7 +23,7 @@ bool is_drilling(std::optional<NcCode> motion) {
 
 class IsoReader {
  public:
-  IsoReader(NcRun& run, const IsoVariant& variant) : run_(run), variant_(variant), motion_(run.motion), origin_(run) {}
+  IsoReader(NcExecution& run, const IsoVariant& variant) : run_(run), variant_(variant), motion_(run.motion), origin_(run) {}
 
   /// The value of a parameter that the machine itself provides, or none.
   std::optional<NcValue> parameter(const std::string& name) {
@@ -379,7 +379,7 @@ class IsoReader {
     drill(motion_, cycle);
   }
 
-  NcRun& run_;
+  NcExecution& run_;
   const IsoVariant variant_;
   NcMotion& motion_;
   IsoOrigin origin_;
@@ -391,7 +391,8 @@ class IsoReader {
 
 }  // namespace
 
-void run_iso_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run, const IsoVariant& variant) {
+void run_iso_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run,
+                     const IsoVariant& variant) {
   IsoReader reader(run, variant);
   IsoSource source(path, lines, run, [&](const std::string& name) { return reader.parameter(name); });
   while (const std::optional<NcBlock> block = source.next()) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 namespace driftwright {
 
@@ -16,6 +16,7 @@ struct IsoVariant {
 };
 
 /// Runs the program. @throws InputError  as read_nc_program()
-void run_iso_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run, const IsoVariant& variant);
+void run_iso_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run,
+                     const IsoVariant& variant);
 
 }  // namespace driftwright

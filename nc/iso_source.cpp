@@ -66,7 +66,7 @@ struct Frame {
 
 class IsoSource::Impl {
  public:
-  Impl(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
+  Impl(const std::string& path, const std::vector<std::string>& lines, NcExecution& run, NcMachineParameters machine)
       : path_(path), run_(run), machine_(std::move(machine)) {
     const File& file = load(path, lines);
     run_.expect(file.lines.size());
@@ -405,7 +405,7 @@ class IsoSource::Impl {
   }
 
   std::string path_;
-  NcRun& run_;
+  NcExecution& run_;
   NcMachineParameters machine_;
   std::map<std::string, std::unique_ptr<File>> files_;
   std::vector<Frame> frames_;
@@ -413,7 +413,8 @@ class IsoSource::Impl {
   std::map<std::string, NcValue> globals_;
 };
 
-IsoSource::IsoSource(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine)
+IsoSource::IsoSource(const std::string& path, const std::vector<std::string>& lines, NcExecution& run,
+                     NcMachineParameters machine)
     : impl_(std::make_unique<Impl>(path, lines, run, std::move(machine))) {}
 IsoSource::~IsoSource() = default;
 std::optional<NcBlock> IsoSource::next() {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "nc/block.hpp"
+#include "nc/execution.hpp"
 #include "nc/expression.hpp"
-#include "nc/run.hpp"
 
 namespace driftwright {
 
@@ -27,11 +27,11 @@ using NcMachineParameters = std::function<std::optional<NcValue>(const std::stri
 ///
 /// A condition or loop that depends on a value known only at the machine is evaluated with 0 (a probe: as if it touched at
 /// the end of its path), with a note.
-/// @throws InputError  file, line and column; also for a loop without end (NcRun::count())
+/// @throws InputError  file, line and column; also for a loop without end (NcExecution::count())
 /// Source: LinuxCNC documentation, "O Codes" and "G-code Overview".
 class IsoSource {
  public:
-  IsoSource(const std::string& path, const std::vector<std::string>& lines, NcRun& run, NcMachineParameters machine);
+  IsoSource(const std::string& path, const std::vector<std::string>& lines, NcExecution& run, NcMachineParameters machine);
   ~IsoSource();
   /// The next block with words; none after the last line.
   [[nodiscard]] std::optional<NcBlock> next();

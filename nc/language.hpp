@@ -12,7 +12,7 @@
 namespace driftwright {
 
 class NcLanguage;
-class NcRun;
+class NcExecution;
 
 /// How corrections are written.
 struct NcOffsetOptions {
@@ -66,7 +66,7 @@ class NcLanguage {
   /// True if the lines are a program in this language.
   [[nodiscard]] virtual bool recognises(const std::vector<std::string>& lines) const = 0;
   /// Runs the program: interprets its words and calls `run`. @throws InputError  as read_nc_program()
-  virtual void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const = 0;
+  virtual void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const = 0;
 
   // --- lines of corrections
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/delimited_text.hpp"
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 namespace driftwright {
 
@@ -22,7 +22,7 @@ NcProgram read_nc_program(const std::string& path, const NcSettings& settings, c
                                      [&](const NcLanguage* known) { return known->recognises(lines); });
   if (language == control.languages.end())
     throw InputError(fmt::format("{}: the program is in no language of {} ({})", path, control.title, control.about));
-  NcRun run(settings);
+  NcExecution run(settings);
   run.expect(lines.size());
   (*language)->read(path, lines, run);
   return std::move(run).result(path, **language);

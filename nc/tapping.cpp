@@ -2,7 +2,7 @@
 
 namespace driftwright {
 
-void tap_to(NcRun& run, const std::array<double, 3>& target_m, double pitch_m, double speed_rpm) {
+void tap_to(NcExecution& run, const std::array<double, 3>& target_m, double pitch_m, double speed_rpm) {
   if (!(speed_rpm > 0.0)) run.fail("tapping requires a speed of the spindle; write an S above zero");
   if (!(pitch_m > 0.0)) run.fail("tapping requires a pitch");
   const NcFeedMode mode = run.motion.feed_mode;

@@ -23,10 +23,10 @@ constexpr double kFarthest_K = 3000.0;  // from the reference; no machine gets t
 constexpr int kBisections = 40;
 
 /// One run.
-class ExponentialRun {
+class ExponentialIntegrator {
  public:
-  ExponentialRun(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
-                 const Eigen::VectorXd& start, StepsOfRun* steps)
+  ExponentialIntegrator(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
+                        const Eigen::VectorXd& start, StepsOfRun* steps)
       : system_(system),
         ambient_(ambient),
         steps_(steps),
@@ -248,7 +248,7 @@ std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, c
   if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {
-    ExponentialRun run(system, ambient, options, start, steps);
+    ExponentialIntegrator run(system, ambient, options, start, steps);
     std::size_t next = 0;
     const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, ambient);
     for (const LinearStretch& stretch : stretches) {

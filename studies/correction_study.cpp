@@ -67,7 +67,7 @@ CorrectionStudy through_none(const DeployedPredictor& d, const ObservedRun& run)
 }
 
 CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
-  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
+  const AxisLoopResult loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
     return correct(d, {run.cyclogram, run.ambient, readings}).correction_um;
   });
   CorrectionStudy o{.time_s = loop.time_s,
@@ -97,8 +97,8 @@ CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredict
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
   const double tolerance_um = scenario.study->tolerance_um,
                margin_um = std::min(d.interval_um.value_or(0.0), 0.5 * tolerance_um);
-  const CorrectedRun corrected = correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, tolerance_um}, ahead_um,
-                                                     margin_um, planner_of(scenario), scenario.limits.correction);
+  const CorrectedDrift corrected = correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, tolerance_um}, ahead_um,
+                                                       margin_um, planner_of(scenario), scenario.limits.correction);
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = ahead_um,

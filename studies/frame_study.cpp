@@ -49,15 +49,14 @@ compensation::Physics physics_for(const Scenario& scenario, const scenarios::Mod
       "this predictor requires a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
 }
 
-Errors rings_of(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
-                solver::Trajectory run, int repetition) {
-  scenarios::SimulatedRun simulated;
-  simulated.record = scenarios::as_recorded(*scenario.machine, run, model.outputs(), felt.cyclogram);
-  simulated.trajectory = std::move(run);
-  return table_run(scenario, std::move(simulated), wrong_expansions(*scenario.table, repetition)).rings_m;
+Errors rings_of(const Scenario& scenario, const scenarios::Model& model, const MachineRun& felt,
+                const solver::Trajectory& run, int repetition) {
+  return table_course(scenario, scenarios::as_recorded(*scenario.machine, run, model.outputs(), felt.cyclogram),
+                      wrong_expansions(*scenario.table, repetition))
+      .rings_m;
 }
 
-Believed by_modes(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
+Believed by_modes(const Scenario& scenario, const scenarios::Model& model, const MachineRun& felt,
                   const std::vector<double>& times_s, int repetition) {
   const compensation::Physics p = physics_for(scenario, model, repetition);
   return {"thermal modes of a model that is off, from the ambient alone",
@@ -66,8 +65,8 @@ Believed by_modes(const Scenario& scenario, const scenarios::Model& model, const
                    repetition)};
 }
 
-Believed by_observer(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
-                     const Record& readings, int repetition) {
+Believed by_observer(const Scenario& scenario, const scenarios::Model& model, const MachineRun& felt, const Record& readings,
+                     int repetition) {
   const compensation::Physics p = physics_for(scenario, model, repetition);
   const std::vector<std::string> sensors = thermometers_of(scenario);
   const Thermometers& instrument = scenario.table->instrument;
@@ -81,11 +80,11 @@ Believed by_observer(const Scenario& scenario, const scenarios::Model& model, co
   run.time_s = readings.time_s;
   run.outputs = seen.outputs;
   return {fmt::format("the same model corrected by {}", fmt::join(sensors, ", ")),
-          rings_of(scenario, model, felt, std::move(run), repetition)};
+          rings_of(scenario, model, felt, run, repetition)};
 }
 
 /// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured during training.
-Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings, int repetition) {
+Believed by_regression(const Scenario& scenario, const TableCourse& truth, const Record& readings, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   std::vector<std::string> sensors = thermometers_of(scenario);
   const auto n_rings = truth.rings_m.front().cols();
@@ -127,10 +126,10 @@ FrameStudy correct_through_frame(const Scenario& scenario, const std::string& mo
   const scenarios::TableSettings& s = *scenario.table;
   const Cyclogram& cyclogram = scenario.cyclogram(s.cyclogram);
   const scenarios::Model model = scenarios::open_model(scenario, {&cyclogram}, listener, false);
-  TableRun truth =
-      table_run(scenario, std::move(scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, listener).front()));
+  TableCourse truth = table_course(
+      scenario, std::move(scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, listener).front().record));
   listener.begin("correcting");
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
+  const MachineRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
   std::vector<Believed> believed;
   for (int k = 0; k < kTableRepetitions; ++k) {
     const Record readings = table_readings(scenario, felt, truth.record, k);

@@ -37,16 +37,16 @@ Eigen::Index output_index(const solver::ReducedSystem& system, const std::string
   return found - system.outputs.name.begin();
 }
 
-/// A run of a reduced system as an observer follows it.
-struct ModelRun {
+/// The drift of a reduced system during a run, and the rows at which laws are linearised.
+struct ModelDrift {
   Eigen::VectorXd drift_um;  ///< since its first row
   std::vector<solver::OperatingRow> rows;
 };
-ModelRun model_run(const solver::ReducedSystem& system, const Eigen::VectorXd& start, double start_ambient_K,
-                   Eigen::Index target, const solver::TransientOptions& options, const ObservedRun& run) {
+ModelDrift model_drift(const solver::ReducedSystem& system, const Eigen::VectorXd& start, double start_ambient_K,
+                       Eigen::Index target, const solver::TransientOptions& options, const ObservedRun& run) {
   const std::vector<double>& times_s = run.readings.time_s;
   const double warmer_K = run.ambient.at(times_s.front()) - start_ambient_K;
-  ModelRun result;
+  ModelDrift result;
   const solver::Trajectory trajectory = solver::simulate(
       system, run.cyclogram, run.ambient, times_s, options, start + warmer_K * system.ones,
       [&](double t_s, const Eigen::VectorXd& state) {
@@ -84,13 +84,13 @@ LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& m
   const Eigen::Index target = output_index(system, name);
   const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const auto run_of = [&](const solver::ReducedSystem& of, const ObservedRun& run) {
-    return model_run(of, reduced->start, ambient_K, target, scenario.solver.transient, run);
+    return model_drift(of, reduced->start, ambient_K, target, scenario.solver.transient, run);
   };
   const std::vector<ObservedRun> whole = compensation::joined_histories(runs, name);
   std::vector<solver::OperatingRow> rows;
   std::vector<Eigen::VectorXd> nonlinear_um;
   for (const ObservedRun& run : whole) {
-    ModelRun nonlinear = run_of(system, run);
+    ModelDrift nonlinear = run_of(system, run);
     std::move(nonlinear.rows.begin(), nonlinear.rows.end(), std::back_inserter(rows));
     nonlinear_um.push_back(std::move(nonlinear.drift_um));
   }

@@ -105,12 +105,12 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   for (const auto& section : judged.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
   for (const compensation::DeployedPredictor& d : study.predictors) {
-    const JudgedRun run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
-                        settings.tolerance_um};
+    const DriftToCorrect run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
+                             settings.tolerance_um};
     const double margin_um = largest_miss_um(d, training);
-    for (CorrectedRun corrected : {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
-                                   correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario),
-                                                       scenario.limits.correction)}) {
+    for (CorrectedDrift corrected : {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
+                                     correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario),
+                                                         scenario.limits.correction)}) {
       corrected.predictor = d.name;
       corrected.channel = d.target;
       study.corrections.push_back(std::move(corrected));
@@ -146,9 +146,9 @@ void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<const CorrectedRun*> MachineStudy::of_channel(const std::string& channel) const {
-  std::vector<const CorrectedRun*> found;
-  for (const CorrectedRun& c : corrections) {
+std::vector<const CorrectedDrift*> MachineStudy::of_channel(const std::string& channel) const {
+  std::vector<const CorrectedDrift*> found;
+  for (const CorrectedDrift& c : corrections) {
     if (c.channel == channel) found.push_back(&c);
   }
   return found;

@@ -42,14 +42,14 @@ struct MachineStudy {
   /// For each displacement: one thermometer, regression, thermal modes.
   std::vector<compensation::DeployedPredictor> predictors;
   /// In the order of the predictors, each first through the pulse injector, then the schedule.
-  std::vector<compensation::CorrectedRun> corrections;
-  std::optional<compensation::AxisLoopRun>
+  std::vector<compensation::CorrectedDrift> corrections;
+  std::optional<compensation::AxisLoopResult>
       axis_loop;                             ///< the regression through the injector, if the scenario has an `axis_loop`
   std::vector<SensorAmbiguity> ambiguities;  ///< of the target at each point on the machine, worst first
   double worst_energy_gap = 0.0;
 
   /// The corrections of one channel.
-  [[nodiscard]] std::vector<const compensation::CorrectedRun*> of_channel(const std::string& channel) const;
+  [[nodiscard]] std::vector<const compensation::CorrectedDrift*> of_channel(const std::string& channel) const;
 };
 
 [[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const scenarios::Model& model,

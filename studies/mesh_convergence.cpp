@@ -43,7 +43,7 @@ void add_values(MeshConvergence& found, const scenarios::SolverSettings& solver,
   for (std::size_t k = 0; k < 3; ++k) {
     const Channel& channel = records[k].at(of_finest.name);
     extremes[k] = extremes_of(channel, is_temperature ? channel.values.front() : 0.0);
-    sizes[k] = found.runs[k].size_m;
+    sizes[k] = found.levels[k].size_m;
   }
   const bool is_high = std::abs(extremes[2].highest) >= std::abs(extremes[2].lowest);
   for (bool is_peak : {false, true}) {
@@ -65,7 +65,7 @@ MeshConvergence mesh_convergence(const scenarios::Scenario& scenario, const Cycl
   MeshConvergence found{.cyclogram = cyclogram.name,
                         .model = scenario.solver.model == scenarios::ModelKind::kFull ? "full" : "reduced",
                         .highest_order = element_order(machine.mesh) + 1.0,
-                        .runs = {},
+                        .levels = {},
                         .own = ladder.own,
                         .values = {}};
   std::array<Record, 3> records;
@@ -83,12 +83,12 @@ MeshConvergence mesh_convergence(const scenarios::Scenario& scenario, const Cycl
     const Clock::time_point began = Clock::now();
     const scenarios::Model model = scenarios::open_model(meshed, {&cyclogram}, of_mesh, false);
     records[k] = std::move(scenarios::simulate_cyclograms(meshed, model, {&cyclogram}, of_mesh).front().record);
-    found.runs[k] = {.factor = rung.factor,
-                     .size_m = rung.size_m,
-                     .n_elements = rung.n_elements,
-                     .n_unknowns = model.n_unknowns(),
-                     .seconds = std::chrono::duration<double>(Clock::now() - began).count(),
-                     .was_known = model.was_known};
+    found.levels[k] = {.factor = rung.factor,
+                       .size_m = rung.size_m,
+                       .n_elements = rung.n_elements,
+                       .n_unknowns = model.n_unknowns(),
+                       .seconds = std::chrono::duration<double>(Clock::now() - began).count(),
+                       .was_known = model.was_known};
   }
   for (const Channel& channel : records[2].channels) {
     const bool is_temperature = channel.unit == "degC" && is_thermometer(machine, channel);

@@ -12,7 +12,8 @@
 
 namespace driftwright::studies {
 
-struct MeshRun {
+/// One of the three meshes, and what its run took.
+struct MeshLevel {
   double factor = 1.0;  ///< on the mesh sizes of the scenario
   double size_m = 0.0;  ///< MeshRung::size_m
   int n_elements = 0;
@@ -34,7 +35,7 @@ struct MeshConvergence {
   std::string cyclogram;
   std::string model;                   ///< which model was run on each mesh, in words
   double highest_order = 0.0;          ///< of point values in theory: order of the elements plus one
-  std::array<MeshRun, 3> runs;         ///< from coarse to fine
+  std::array<MeshLevel, 3> levels;     ///< from coarse to fine
   std::size_t own = 0;                 ///< index of the scenario's own mesh
   std::vector<ConvergedValue> values;  ///< channels in the order of the record, each at the end, then its peak
 };

@@ -31,7 +31,8 @@ constexpr std::size_t kSearch = 0, kChosen = 1'000'000, kRivals = 1'000'001, kJu
 
 /// The runs used for the choice, with the data that all candidates need.
 struct DesignRuns {
-  const std::vector<PlacementRun>& runs;
+  const std::vector<MachineRun>& runs;
+  std::size_t n_ambients = 0;  ///< number of runs of each cyclogram
   std::vector<std::vector<Eigen::MatrixXd>> by_factor, scattered;
 };
 
@@ -44,7 +45,7 @@ struct Criteria {
   Criteria(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how, const Eigen::MatrixXd& rows,
            const Eigen::VectorXd& ambient)
       : observer(sensitivities(model, design.runs, design.by_factor, how.noise_K, rows), how.scatter),
-        regression(scattered_runs(model, design.runs, design.scattered, rows, ambient), how.noise_K),
+        regression(scattered_runs(model, design.runs, design.n_ambients, design.scattered, rows, ambient), how.noise_K),
         both(observer, regression) {}
   Criteria(const Criteria&) = delete;
   Criteria& operator=(const Criteria&) = delete;
@@ -389,12 +390,12 @@ std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario,
         fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
   const std::vector<int> mounted = model.mounted();
-  const std::vector<PlacementRun> chosen_on = runs_in_all_ambients(scenario, families.chosen_on, families.ambients, kRows);
+  const std::vector<MachineRun> chosen_on = runs_in_all_ambients(scenario, families.chosen_on, families.ambients, kRows);
   std::optional<DesignRuns> made;
   const auto design = [&]() -> const DesignRuns& {
     if (!made) {
       listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
-      made.emplace(DesignRuns{chosen_on, factor_states(model, chosen_on),
+      made.emplace(DesignRuns{chosen_on, families.ambients.size(), factor_states(model, chosen_on),
                               scattered_states(model, chosen_on, how.scatter, kDesignSeeds)});
     }
     return *made;

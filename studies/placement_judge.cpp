@@ -35,8 +35,8 @@ Record since_start(const ObservedRun& run, const std::vector<std::string>& chann
 
 }  // namespace
 
-PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<PlacementRun>& fitted,
-                               const std::vector<PlacementRun>& judged, std::vector<int> candidates,
+PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<MachineRun>& fitted,
+                               const std::vector<MachineRun>& judged, std::vector<int> candidates,
                                const std::vector<double>& scatter, const std::vector<int>& seeds, double noise_K)
     : model_(model), candidates_(std::move(candidates)), noise_K_(noise_K) {
   solver::ReducedSystem seen = model.system;
@@ -70,25 +70,25 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Pl
     Machine& machine = machines_[m];
     machine.system = compensation::scattered(model.system, scatter[m / seeds.size()], seeds[m % seeds.size()], true);
     std::uint64_t seed = 1000 * (m + 1);
-    for (const PlacementRun& run : fitted)
+    for (const MachineRun& run : fitted)
       machine.fitted.push_back(since_start(read(machine.system, run, ++seed), model.channels));
-    for (const PlacementRun& run : judged) machine.judged.push_back(read(machine.system, run, ++seed));
+    for (const MachineRun& run : judged) machine.judged.push_back(read(machine.system, run, ++seed));
   });
 }
 
-ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const PlacementRun& run, std::uint64_t seed) const {
+ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const MachineRun& run, std::uint64_t seed) const {
   const Eigen::MatrixXd states = states_of(model_, system, run);
   const Eigen::MatrixXd drift = studies::drift_um(model_, run, states);
-  ObservedRun observed{.cyclogram = run.felt.cyclogram, .ambient = run.felt.ambient, .readings = {}};
+  ObservedRun observed{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = {}};
   Record& record = observed.readings;
-  record.source = run.cyclogram;
-  record.time_s = run.times_s;
+  record.source = run.cyclogram.name;
+  record.time_s = run.readings.time_s;
   const double zero_K = model_.system.reference_K - kZeroCelsius_K;
   for (int candidate : candidates_) {
     Random random(seed, static_cast<std::uint64_t>(candidate));
     Channel channel{.name = name_of(candidate), .unit = "degC", .values = {}};
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
-      const double ambient_K = run.felt.ambient.at(run.times_s[static_cast<std::size_t>(i)]);
+      const double ambient_K = run.ambient.at(record.time_s[static_cast<std::size_t>(i)]);
       channel.values.push_back(zero_K + model_.rows.row(candidate).dot(states.col(i)) +
                                model_.ambient[candidate] * ambient_K + noise_K_ * random.normal());
     }
@@ -148,7 +148,7 @@ std::vector<Residual> PlacementJudge::of(const std::vector<std::vector<int>>& se
   return all;
 }
 
-Residual PlacementJudge::behind_test(const std::vector<int>& set, const PlacementRun& test) const {
+Residual PlacementJudge::behind_test(const std::vector<int>& set, const MachineRun& test) const {
   Sum total;
   for (std::size_t m = 0; m < machines_.size(); ++m) {
     const ObservedRun run = read(machines_[m].system, test, 7000 + m);

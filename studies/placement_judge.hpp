@@ -20,16 +20,16 @@ class PlacementJudge {
   /// @param model       must outlive this
   /// @param candidates  the sets to be judged consist of these
   /// @param seeds       one machine for each scatter and seed
-  PlacementJudge(const PlacementModel& model, const std::vector<PlacementRun>& fitted,
-                 const std::vector<PlacementRun>& judged, std::vector<int> candidates, const std::vector<double>& scatter,
-                 const std::vector<int>& seeds, double noise_K);
+  PlacementJudge(const PlacementModel& model, const std::vector<MachineRun>& fitted, const std::vector<MachineRun>& judged,
+                 std::vector<int> candidates, const std::vector<double>& scatter, const std::vector<int>& seeds,
+                 double noise_K);
 
   /// The residuals of each set. Without a thermometer the observer is the model alone, and the regression leaves the
   /// drift unchanged.
   [[nodiscard]] std::vector<Residual> of(const std::vector<std::vector<int>>& sets) const;
   /// The residual of a set when the regression was fitted to one run of the machine only, and the observer has learned
   /// from the same run with its measured drift.
-  [[nodiscard]] Residual behind_test(const std::vector<int>& set, const PlacementRun& test) const;
+  [[nodiscard]] Residual behind_test(const std::vector<int>& set, const MachineRun& test) const;
   [[nodiscard]] double drift_um() const;  ///< root mean square of the uncorrected drift
   [[nodiscard]] double noise_K() const { return noise_K_; }
 
@@ -42,7 +42,7 @@ class PlacementJudge {
   struct Sum {
     double observer = 0.0, regression = 0.0, n = 0.0;
   };
-  [[nodiscard]] compensation::ObservedRun read(const solver::ReducedSystem& system, const PlacementRun& run,
+  [[nodiscard]] compensation::ObservedRun read(const solver::ReducedSystem& system, const MachineRun& run,
                                                std::uint64_t seed) const;
   [[nodiscard]] std::vector<std::string> names(const std::vector<int>& set) const;
   void add(Sum& sum, const Machine& machine, const std::vector<Record>& fitted, const std::vector<int>& set,

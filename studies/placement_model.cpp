@@ -172,24 +172,24 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
   return model;
 }
 
-Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system, const PlacementRun& run) {
-  const double warmer_K = run.felt.ambient.at(0.0) - model.start_ambient_K;
+Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system, const MachineRun& run) {
+  const double warmer_K = run.ambient.at(0.0) - model.start_ambient_K;
   Eigen::MatrixXd states;
   solver::Propagator propagator(system);
-  (void)propagator.run(run.felt.cyclogram, run.felt.ambient, run.times_s, model.start + warmer_K * system.ones, false,
+  (void)propagator.run(run.cyclogram, run.ambient, run.readings.time_s, model.start + warmer_K * system.ones, false,
                        &states);
   return states;
 }
 
-Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states) {
-  const Eigen::VectorXd start = model.start + (run.felt.ambient.at(0.0) - model.start_ambient_K) * model.system.ones;
+Eigen::MatrixXd drift_um(const PlacementModel& model, const MachineRun& run, const Eigen::MatrixXd& states) {
+  const Eigen::VectorXd start = model.start + (run.ambient.at(0.0) - model.start_ambient_K) * model.system.ones;
   Eigen::MatrixXd drift(states.cols(), static_cast<Eigen::Index>(model.drifts.size()));
   for (std::size_t d = 0; d < model.drifts.size(); ++d) {
     const Eigen::Index output = model.drifts[d];
     const Eigen::VectorXd row = model.system.outputs.state.col(output);
     const double ambient_share = model.system.outputs.ambient[output];
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
-      const double ambient_K = run.felt.ambient.at(run.times_s[static_cast<std::size_t>(i)]) - run.felt.ambient.at(0.0);
+      const double ambient_K = run.ambient.at(run.readings.time_s[static_cast<std::size_t>(i)]) - run.ambient.at(0.0);
       drift(i, static_cast<Eigen::Index>(d)) = 1e6 * (row.dot(states.col(i) - start) + ambient_share * ambient_K);
     }
   }
@@ -203,7 +203,7 @@ std::vector<std::string> factor_names(const PlacementModel& model) {
   return names;
 }
 
-std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model, const std::vector<PlacementRun>& runs) {
+std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model, const std::vector<MachineRun>& runs) {
   const std::size_t n_factors = factor_names(model).size();
   std::vector<Eigen::MatrixXd> nominal(runs.size());
   parallel_for(runs.size(), [&](std::size_t r) { nominal[r] = states_of(model, model.system, runs[r]); });
@@ -216,7 +216,7 @@ std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& mo
   return by_factor;
 }
 
-std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<MachineRun>& runs,
                                                         const std::vector<std::vector<Eigen::MatrixXd>>& by_factor,
                                                         double noise_K, const Eigen::MatrixXd& rows) {
   const compensation::ObserverSettings usual;
@@ -225,7 +225,8 @@ std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& mo
     drifts.row(static_cast<Eigen::Index>(d)) = 1e6 * model.system.outputs.state.col(model.drifts[d]).transpose();
   std::vector<compensation::RunSensitivity> result(runs.size());
   parallel_for(runs.size(), [&](std::size_t r) {
-    const double step_s = runs[r].times_s.size() > 1 ? runs[r].times_s[1] - runs[r].times_s[0] : usual.period_s;
+    const std::vector<double>& times_s = runs[r].readings.time_s;
+    const double step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : usual.period_s;
     result[r].reading_K2 = noise_K * noise_K + usual.model_K * usual.model_K * std::max(1.0, usual.model_holds_s / step_s);
     for (const Eigen::MatrixXd& states : by_factor[r]) {
       result[r].reading_K.emplace_back(rows * states);
@@ -235,8 +236,7 @@ std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& mo
   return result;
 }
 
-std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model,
-                                                           const std::vector<PlacementRun>& runs,
+std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model, const std::vector<MachineRun>& runs,
                                                            const std::vector<double>& scatter,
                                                            const std::vector<int>& seeds) {
   std::vector<std::vector<Eigen::MatrixXd>> states(scatter.size() * seeds.size(), std::vector<Eigen::MatrixXd>(runs.size()));
@@ -248,20 +248,21 @@ std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel&
   return states;
 }
 
-std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<MachineRun>& runs,
+                                                          std::size_t n_ambients,
                                                           const std::vector<std::vector<Eigen::MatrixXd>>& states,
                                                           const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient) {
   std::vector<compensation::RunOfCandidates> result(states.size() * runs.size());
   parallel_for(result.size(), [&](std::size_t i) {
     const std::size_t m = i / runs.size(), r = i % runs.size();
-    const double warmer_K = runs[r].felt.ambient.at(0.0) - model.start_ambient_K;
+    const double warmer_K = runs[r].ambient.at(0.0) - model.start_ambient_K;
     compensation::RunOfCandidates& run = result[i];
     run.machine = static_cast<int>(m);
-    run.group = runs[r].group;
+    run.group = static_cast<int>(r / n_ambients);
     run.reading_K = rows * (states[m][r].colwise() - (model.start + warmer_K * model.system.ones));
     for (Eigen::Index k = 0; k < run.reading_K.cols(); ++k)
       run.reading_K.col(k) +=
-          (runs[r].felt.ambient.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.ambient.at(0.0)) * ambient;
+          (runs[r].ambient.at(runs[r].readings.time_s[static_cast<std::size_t>(k)]) - runs[r].ambient.at(0.0)) * ambient;
     run.drift_um = drift_um(model, runs[r], states[m][r]);
   });
   return result;

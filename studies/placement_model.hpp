@@ -10,14 +10,6 @@
 
 namespace driftwright::studies {
 
-/// A cyclogram in one ambient: the real drive and ambient of the machine.
-struct PlacementRun {
-  std::string cyclogram, ambient;  ///< names
-  scenarios::FeltRun felt;
-  int group = 0;                ///< equal for runs of one cyclogram
-  std::vector<double> times_s;  ///< of the rows, from the start
-};
-
 struct PlacementModel {
   scenarios::Model opened;       ///< reduced
   solver::ReducedSystem system;  ///< linear
@@ -46,22 +38,22 @@ struct PlacementModel {
                                              const std::vector<std::string>& mounted,
                                              const std::vector<std::string>& channels, const Listener& listener);
 
-/// Reduced states of a system with the same unknowns over a run, size x n_rows. The start is the scenario's, plus the
-/// difference of the run's ambient.
+/// Reduced states of a system with the same unknowns over a run of felt_run(), at the times of its readings, size x n_rows.
+/// The start is the scenario's, plus the difference of the run's ambient.
 [[nodiscard]] Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system,
-                                        const PlacementRun& run);
+                                        const MachineRun& run);
 /// Drifts since the start, n_rows x n_drifts [um].
-[[nodiscard]] Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states);
+[[nodiscard]] Eigen::MatrixXd drift_um(const PlacementModel& model, const MachineRun& run, const Eigen::MatrixXd& states);
 
 /// The effect of each heat source, film, joint and link, all conduction and all rates of change on the states of runs, by
 /// differences over 1 % of each: for each run and factor a matrix size x n_rows.
 [[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model,
-                                                                      const std::vector<PlacementRun>& runs);
+                                                                      const std::vector<MachineRun>& runs);
 /// The effect of these factors on candidates and drifts.
 /// @param by_factor  factor_states() of the runs
 /// @param rows       of the candidates, as PlacementModel::rows
 [[nodiscard]] std::vector<compensation::RunSensitivity> sensitivities(
-    const PlacementModel& model, const std::vector<PlacementRun>& runs,
+    const PlacementModel& model, const std::vector<MachineRun>& runs,
     const std::vector<std::vector<Eigen::MatrixXd>>& by_factor, double noise_K, const Eigen::MatrixXd& rows);
 /// The names of these factors.
 [[nodiscard]] std::vector<std::string> factor_names(const PlacementModel& model);
@@ -70,12 +62,14 @@ struct PlacementModel {
 /// and run.
 /// @param seeds  one machine for each scatter and seed
 [[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model,
-                                                                         const std::vector<PlacementRun>& runs,
+                                                                         const std::vector<MachineRun>& runs,
                                                                          const std::vector<double>& scatter,
                                                                          const std::vector<int>& seeds);
-/// The temperatures of candidates and the drifts of those machines. @param states  scattered_states() of the runs
+/// The temperatures of candidates and the drifts of those machines; the runs of one cyclogram are one group.
+/// @param n_ambients  number of runs of each cyclogram, which follow each other (runs_in_all_ambients())
+/// @param states      scattered_states() of the runs
 [[nodiscard]] std::vector<compensation::RunOfCandidates> scattered_runs(
-    const PlacementModel& model, const std::vector<PlacementRun>& runs,
+    const PlacementModel& model, const std::vector<MachineRun>& runs, std::size_t n_ambients,
     const std::vector<std::vector<Eigen::MatrixXd>>& states, const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient);
 
 }  // namespace driftwright::studies

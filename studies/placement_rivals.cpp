@@ -16,9 +16,9 @@ namespace {
 constexpr std::uint64_t kSeedOfRivals = 11;
 
 /// Temperatures of all free candidates and the first drift; channels are named by number.
-Record record_of(const PlacementModel& model, const PlacementRun& run, double noise_K, std::uint64_t seed) {
+Record record_of(const PlacementModel& model, const MachineRun& run, double noise_K, std::uint64_t seed) {
   const Eigen::MatrixXd states = states_of(model, model.system, run);
-  Record record{.source = run.cyclogram + ", " + run.ambient, .time_s = run.times_s, .channels = {}};
+  Record record{.source = run.readings.source, .time_s = run.readings.time_s, .channels = {}};
   const double zero_K = model.system.reference_K - kZeroCelsius_K;
   for (Eigen::Index c = 0; c < model.n_free(); ++c) {
     Random random(seed, static_cast<std::uint64_t>(c));
@@ -34,10 +34,10 @@ Record record_of(const PlacementModel& model, const PlacementRun& run, double no
 
 }  // namespace
 
-std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<MachineRun>& runs,
                                                         int n_most, double noise_K) {
   std::vector<Record> records;
-  for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeedOfRivals + records.size()));
+  for (const MachineRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeedOfRivals + records.size()));
   std::vector<std::string> candidates;
   for (int c = 0; c < model.n_free(); ++c) candidates.push_back(fmt::format("{}", c));
   using Select =

@@ -15,7 +15,7 @@ inline constexpr int kRandomSets = 6;  ///< for each number of thermometers
 /// size.
 /// @param runs  their first drift is the target
 [[nodiscard]] std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model,
-                                                                      const std::vector<PlacementRun>& runs, int n_most,
+                                                                      const std::vector<MachineRun>& runs, int n_most,
                                                                       double noise_K);
 
 /// kRandomSets sets of each number, in addition to the mounted sensors; sets of n have the indices [(n - 1) *

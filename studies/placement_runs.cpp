@@ -53,14 +53,14 @@ Cyclogram made(const std::vector<Drive>& drives, const std::string& name, std::u
   return c;
 }
 
-PlacementRun run_of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram, const Validation::Season& season,
-                    double step_s) {
+MachineRun run_of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram, const Validation::Season& season,
+                  double step_s) {
   scenarios::MachineModel machine = *scenario.machine;
   machine.ambient = scenarios::ambient_in(season, machine.ambient, cyclogram.duration_s());
-  PlacementRun run{
-      .cyclogram = cyclogram.name, .ambient = season.name, .felt = scenarios::felt_run(machine, cyclogram), .times_s = {}};
+  MachineRun run = scenarios::felt_run(machine, cyclogram);
+  run.readings.source = cyclogram.name + ", " + season.name;
   for (double t_s = 0.0; t_s < cyclogram.duration_s() + 1e-6; t_s += step_s)
-    run.times_s.push_back(std::min(t_s, cyclogram.duration_s()));
+    run.readings.time_s.push_back(std::min(t_s, cyclogram.duration_s()));
   return run;
 }
 
@@ -120,26 +120,21 @@ PlacementFamilies placement_families(const scenarios::Scenario& scenario, const 
   return families;
 }
 
-std::vector<PlacementRun> runs_in_all_ambients(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
-                                               const std::vector<Validation::Season>& ambients, int rows) {
-  std::vector<PlacementRun> runs;
-  for (std::size_t c = 0; c < cyclograms.size(); ++c) {
-    const double step_s = std::max(60.0, 60.0 * std::floor(cyclograms[c].duration_s() / rows / 60.0));
-    for (const Validation::Season& ambient : ambients) {
-      runs.push_back(run_of(scenario, cyclograms[c], ambient, step_s));
-      runs.back().group = static_cast<int>(c);
-    }
+std::vector<MachineRun> runs_in_all_ambients(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
+                                             const std::vector<Validation::Season>& ambients, int rows) {
+  std::vector<MachineRun> runs;
+  for (const Cyclogram& cyclogram : cyclograms) {
+    const double step_s = std::max(60.0, 60.0 * std::floor(cyclogram.duration_s() / rows / 60.0));
+    for (const Validation::Season& ambient : ambients) runs.push_back(run_of(scenario, cyclogram, ambient, step_s));
   }
   return runs;
 }
 
-std::vector<PlacementRun> runs_in_turn(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
-                                       const std::vector<Validation::Season>& ambients, double row_s) {
-  std::vector<PlacementRun> runs;
-  for (std::size_t c = 0; c < cyclograms.size(); ++c) {
+std::vector<MachineRun> runs_in_turn(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
+                                     const std::vector<Validation::Season>& ambients, double row_s) {
+  std::vector<MachineRun> runs;
+  for (std::size_t c = 0; c < cyclograms.size(); ++c)
     runs.push_back(run_of(scenario, cyclograms[c], ambients[c % ambients.size()], row_s));
-    runs.back().group = static_cast<int>(c);
-  }
   return runs;
 }
 

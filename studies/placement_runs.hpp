@@ -22,16 +22,16 @@ struct PlacementFamilies {
                                                    const std::vector<std::string>& train,
                                                    const std::vector<std::string>& test);
 
-/// Each cyclogram in each ambient. @param rows  approximate number of rows of each
-[[nodiscard]] std::vector<PlacementRun> runs_in_all_ambients(const scenarios::Scenario& scenario,
-                                                             const std::vector<Cyclogram>& cyclograms,
-                                                             const std::vector<scenarios::Validation::Season>& ambients,
-                                                             int rows);
+/// The runs of felt_run() of each cyclogram in each ambient, without readings, but with their times and a name as source.
+/// @param rows  approximate number of rows of each
+[[nodiscard]] std::vector<MachineRun> runs_in_all_ambients(const scenarios::Scenario& scenario,
+                                                           const std::vector<Cyclogram>& cyclograms,
+                                                           const std::vector<scenarios::Validation::Season>& ambients,
+                                                           int rows);
 /// Each cyclogram in one ambient, with the ambients in turn. @param row_s  time between rows
-[[nodiscard]] std::vector<PlacementRun> runs_in_turn(const scenarios::Scenario& scenario,
-                                                     const std::vector<Cyclogram>& cyclograms,
-                                                     const std::vector<scenarios::Validation::Season>& ambients,
-                                                     double row_s);
+[[nodiscard]] std::vector<MachineRun> runs_in_turn(const scenarios::Scenario& scenario,
+                                                   const std::vector<Cyclogram>& cyclograms,
+                                                   const std::vector<scenarios::Validation::Season>& ambients, double row_s);
 
 /// The drives of the scenario's cyclograms except rest, from the slowest speed to the fastest; those of one speed by feed
 /// and cutting power.

@@ -59,7 +59,7 @@ std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives) {
 std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const std::function<const PlacementJudge&()>& judge,
                                    const std::vector<int>& set, const Pieces& pieces, const Listener& listener) {
   const std::vector<Cyclogram> programmes = possible_tests(drives_of(scenario));
-  const std::vector<PlacementRun> runs =
+  const std::vector<MachineRun> runs =
       runs_in_turn(scenario, programmes, {scenarios::Validation::Season{"as it is", 0.0, 0.0}}, kRow_s);
   const std::vector<Pieces::Numbers> left = pieces.of_shard(
       0, runs.size(), [&] { (void)judge(); },
@@ -70,7 +70,7 @@ std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const st
       listener);
   std::vector<TriedTest> tests;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!left[i].empty()) tests.push_back({runs[i].cyclogram, programmes[i].duration_s(), {left[i][0], left[i][1]}});
+    if (!left[i].empty()) tests.push_back({programmes[i].name, programmes[i].duration_s(), {left[i][0], left[i][1]}});
   }
   return tests;
 }

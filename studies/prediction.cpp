@@ -48,40 +48,37 @@ void require_no_effect_in(const scenarios::MachineModel& machine, const std::str
   }
 }
 
-/// The run before the job, as given on the command line.
-struct Before {
-  scenarios::JobOrder order;
-  std::optional<Record> record;  ///< none: a cyclogram of the scenario, or nothing
-};
-
-Before read_before(const scenarios::Scenario& scenario, const PredictionOptions& options, const std::string& job) {
+/// The job and the run before it, as given on the command line.
+scenarios::JobOrder read_order(const scenarios::Scenario& scenario, const PredictionOptions& options,
+                               const std::string& job) {
   const scenarios::MachineModel& machine = *scenario.machine;
-  Before before;
-  before.order.pause_s = duration_s("--after-pause", options.after_pause);
-  before.order.n_parts = options.parts;
-  before.order.between_s = duration_s("--between", options.between);
-  if (options.start.empty()) return before;
+  scenarios::JobOrder order;
+  order.pause_s = duration_s("--after-pause", options.after_pause);
+  order.n_parts = options.parts;
+  order.between_s = duration_s("--between", options.between);
+  if (options.start.empty()) return order;
   if (options.start.ends_with(".csv")) {
     ReadRecord read = read_record(options.start, scenario.columns);
-    before.order.start = scenarios::run_of(read.record, &machine, sensors_on_ambient(machine), scenarios::Reading::kStrict);
+    order.start =
+        scenarios::run_of(std::move(read.record), &machine, sensors_on_ambient(machine), scenarios::Reading::kStrict);
     for (const std::string& note : read.notes) fmt::print(stderr, "note: {}\n", note);
-    for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print(stderr, "note: {}\n", f.what);
-    before.record = std::move(read.record);
+    for (const DataFinding& f : order.start->findings) fmt::print(stderr, "note: {}\n", f.what);
   } else {
-    before.order.start.emplace();
-    before.order.start->cyclogram = scenario.cyclogram(options.start);
+    order.start.emplace();
+    order.start->cyclogram = scenario.cyclogram(options.start);
   }
-  require_no_effect_in(machine, before.order.start->cyclogram.name, job);
-  return before;
+  require_no_effect_in(machine, order.start->cyclogram.name, job);
+  return order;
 }
 
-std::string start_words(const Before& before, const PredictionOptions& options) {
-  if (!before.order.start) return "";
-  const bool lacks_ambient = before.record && !before.order.start->has_ambient();
-  return fmt::format("{}{} ({:.4g} min{}){}", before.record ? "" : "cyclogram ", options.start,
-                     before.order.start->cyclogram.duration_s() / 60.0,
+std::string start_words(const scenarios::JobOrder& order, const PredictionOptions& options) {
+  if (!order.start) return "";
+  const bool is_recorded = order.start->readings.n_samples() > 0;
+  const bool lacks_ambient = is_recorded && !order.start->has_recorded_ambient();
+  return fmt::format("{}{} ({:.4g} min{}){}", is_recorded ? "" : "cyclogram ", options.start,
+                     order.start->cyclogram.duration_s() / 60.0,
                      lacks_ambient ? ", without an ambient temperature: the scenario's" : "",
-                     before.order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", before.order.pause_s / 60.0) : "");
+                     order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", order.pause_s / 60.0) : "");
 }
 
 /// @param recorded  the run before
@@ -167,8 +164,8 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
 Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
                    const Listener& listener, const std::string& verb, PredictingModels& models) {
   const scenarios::MachineModel& own = scenarios::require_machine(scenario, verb);
-  Before before = read_before(scenario, options, job.name);
-  scenarios::JobSeries series = scenarios::job_series(job, before.order, own.ambient, scenario.solver.output_interval_s);
+  scenarios::JobOrder order = read_order(scenario, options, job.name);
+  scenarios::JobSeries series = scenarios::job_series(job, order, own.ambient, scenario.solver.output_interval_s);
   scenarios::check_cyclogram(scenario, series.cyclogram);
   scenarios::Scenario asked = scenario;
   asked.solver.model = options.model.empty()     ? predicting_model(scenario)
@@ -184,8 +181,9 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                 .model = models.of(asked, series.cyclogram, listener),
                 .start = {},
                 .series = std::move(series),
-                .before = std::move(before.record),
-                .started_from = start_words(before, options)};
+                .before = {},
+                .started_from = start_words(order, options)};
+  if (order.start) ahead.before = std::move(order.start->readings);
   ahead.machine.ambient = ahead.series.ambient;
   // The model's start is that of the scenario's ambient; a run in another ambient starts warmer by the difference.
   const double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram) +
@@ -215,7 +213,7 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
                         .parts = std::move(series.parts),
                         .predicted_by = ahead.model->words(),
                         .started_from = std::move(ahead.started_from),
-                        .start_checks = ahead.before ? start_checks(*ahead.before, run.record) : std::vector<StartCheck>{}};
+                        .start_checks = start_checks(ahead.before, run.record)};
   if (options.with_band) {
     scenarios::Scenario in_series = scenario;
     in_series.machine = ahead.machine;
@@ -237,12 +235,12 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
 namespace {
 
 /// Notes that a record was made in another ambient than the scenario's, which is the one used.
-void note_other_ambient(const scenarios::MachineModel& machine, const Record& record, const scenarios::RecordedRun& run) {
+void note_other_ambient(const scenarios::MachineModel& machine, const MachineRun& run) {
   constexpr double kNoticed_K = 0.5;  // thermometers of a workshop differ by less
-  if (!run.has_ambient()) return;
-  const std::vector<double>& recorded_C = record.at(run.ambient_channel).values;
+  if (!run.has_recorded_ambient()) return;
+  const std::vector<double>& recorded_C = run.readings.at(run.ambient_channel).values;
   const auto stated_C = [&](std::size_t i) {
-    return machine.ambient.at(run.time_s[i]) + machine.reference_K - kZeroCelsius_K;
+    return machine.ambient.at(run.readings.time_s[i]) + machine.reference_K - kZeroCelsius_K;
   };
   double farthest_K = 0.0;
   std::size_t farthest = 0;
@@ -254,17 +252,18 @@ void note_other_ambient(const scenarios::MachineModel& machine, const Record& re
   fmt::print(stderr,
              "note: {}: {} is {:g} degC at {:g} min; the machine is run in the scenario's ambient, {:g} degC then. "
              "`ambient: {{csv: FILE}}` in the scenario takes that of a record\n",
-             record.source, run.ambient_channel, recorded_C[farthest], run.time_s[farthest] / 60.0, stated_C(farthest));
+             run.readings.source, run.ambient_channel, recorded_C[farthest], run.readings.time_s[farthest] / 60.0,
+             stated_C(farthest));
 }
 
 }  // namespace
 
 Cyclogram cyclogram_of(const scenarios::Scenario& scenario, const Record& record) {
-  scenarios::RecordedRun run = scenarios::run_of(record, nullptr, {}, scenarios::Reading::kStrict);
-  for (const scenarios::DataFinding& f : run.findings) {
+  MachineRun run = scenarios::run_of(record, nullptr, {}, scenarios::Reading::kStrict);
+  for (const DataFinding& f : run.findings) {
     if (f.channel == "speed") fmt::print(stderr, "note: {}\n", f.what);  // the ambient is the scenario's
   }
-  if (scenario.machine) note_other_ambient(*scenario.machine, record, run);
+  if (scenario.machine) note_other_ambient(*scenario.machine, run);
   scenarios::check_cyclogram(scenario, run.cyclogram);
   return std::move(run.cyclogram);
 }

@@ -64,10 +64,10 @@ class PredictingModels {
 struct Outlook {
   scenarios::MachineModel machine;  ///< the scenario's, in the ambient of the series
   std::shared_ptr<const scenarios::Model> model;
-  Eigen::VectorXd start;         ///< state of the model at the start of the series
-  scenarios::JobSeries series;   ///< the run before, the pause, the job
-  std::optional<Record> before;  ///< the record that the series starts from
-  std::string started_from;      ///< the run before, in words; empty: the scenario's start
+  Eigen::VectorXd start;        ///< state of the model at the start of the series
+  scenarios::JobSeries series;  ///< the run before, the pause, the job
+  Record before;                ///< the record that the series starts from; no rows: none
+  std::string started_from;     ///< the run before, in words; empty: the scenario's start
 };
 /// @param job, verb  as predict_drift() @throws InputError  the same
 [[nodiscard]] Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,

@@ -129,7 +129,7 @@ Courses by_model(const scenarios::MachineModel& machine, const TestChannels& cha
              const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s) {
     scenarios::MachineModel there = machine;
     there.ambient = ambient;
-    const scenarios::FeltRun felt = scenarios::felt_run(there, cyclogram);
+    const MachineRun felt = scenarios::felt_run(there, cyclogram);
     return rows_of(owned->propagator.run(felt.cyclogram, felt.ambient, time_s, start), owned->system.outputs, channels);
   };
 }
@@ -182,8 +182,8 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Judge
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
     const std::vector<double> drift_um = row_of(j.truth, c);
     // Half of the tolerance is reserved for the predictor's error.
-    const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
-                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy, limits);
+    const CorrectedDrift corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
+                                                         row_of(p.predicted[i], c), 0.5 * tolerance_um, policy, limits);
     int changes = 0;
     for (const Operation& o : corrected.schedule->operations)
       changes += static_cast<int>(std::count_if(o.corrections.begin(), o.corrections.end(),
@@ -270,7 +270,7 @@ void add_by_model(ProgrammeStudy& study, const scenarios::Scenario& scenario, co
       listener.begin("scaling the model's modes to tests");
       std::vector<ThermalTest> felt_tests = bed.tests;
       for (ThermalTest& t : felt_tests) {
-        scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
+        MachineRun felt = scenarios::felt_run(machine, t.cyclogram);
         t.cyclogram = std::move(felt.cyclogram);
         t.ambient = from_start(std::move(felt.ambient));
       }

@@ -79,9 +79,8 @@ using scenarios::RunRows;
 /// A file, read once, whichever parts of it are requested.
 struct ReadFile {
   std::string path;
-  Record record;
-  scenarios::RecordedRun recorded;
-  scenarios::FeltRun felt;   ///< drive and ambient after the changes by the scenario's effects
+  MachineRun recorded = {};
+  MachineRun felt = {};      ///< drive and ambient after the changes by the scenario's effects
   std::size_t n_before = 0;  ///< rows of the preceding record at the front
 };
 
@@ -110,32 +109,31 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
   for (const RecordPart& part : parts) {
     if (std::any_of(files.begin(), files.end(), [&](const ReadFile& f) { return is_same_file(f.path, part.file); }))
       continue;
-    ReadFile file{
-        .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
+    ReadFile file{.path = part.file};
+    Record record = read_with_target(part.file, scenario, into.notes);
     for (std::size_t k = 0; k < files.size(); ++k) {
-      if (as_read[k].time_s == file.record.time_s && as_read[k].at(target).values == file.record.at(target).values)
+      if (as_read[k].time_s == record.time_s && as_read[k].at(target).values == record.at(target).values)
         throw InputError(fmt::format("{} and {} contain the same run; one run can be trained on or judged by, once",
                                      files[k].path, file.path));
     }
     if (!scenario.study->count_from_start && part.is_whole()) {
-      compensation::RunUp run_up = compensation::with_run_up(file.record, as_read, target);
+      compensation::RunUp run_up = compensation::with_run_up(record, as_read, target);
       if (!run_up.follows.empty())
         into.findings.push_back(
             fmt::format("{} follows {}, whose rows of up to 12 h before are known to strategies, but for {}", part.file,
                         run_up.follows, target));
-      as_read.push_back(std::move(file.record));
-      file.record = std::move(run_up.record);
-      file.n_before = file.record.n_samples() - as_read.back().n_samples();
+      as_read.push_back(std::move(record));
+      record = std::move(run_up.record);
+      file.n_before = record.n_samples() - as_read.back().n_samples();
     } else {
-      as_read.push_back(file.record);
+      as_read.push_back(record);
     }
-    file.recorded = scenarios::run_of(file.record, scenario.machine ? &*scenario.machine : nullptr,
+    file.recorded = scenarios::run_of(std::move(record), scenario.machine ? &*scenario.machine : nullptr,
                                       ambient_sensors(scenario), scenarios::Reading::kLenient);
-    for (const scenarios::DataFinding& f : file.recorded.findings) {
+    for (const DataFinding& f : file.recorded.findings) {
       if (std::find(into.findings.begin(), into.findings.end(), f.what) == into.findings.end())
         into.findings.push_back(f.what);
     }
-    file.record.time_s = file.recorded.time_s;
     files.push_back(std::move(file));
   }
   // The ambient is an input if every record has it in the same channel.
@@ -148,7 +146,7 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
     into.findings.emplace_back("not every record has the ambient temperature in the same channel; it is used from none");
   }
   for (ReadFile& file : files) {
-    file.felt = {file.recorded.cyclogram, file.recorded.ambient};
+    file.felt = {.cyclogram = file.recorded.cyclogram, .ambient = file.recorded.ambient};
     if (!scenario.machine) continue;
     scenarios::MachineModel there = *scenario.machine;
     if (has_ambient) there.ambient = file.recorded.ambient;
@@ -159,17 +157,17 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
 }
 
 double hours(const ReadFile& file, std::size_t row) {
-  return file.record.time_s[row] / 3600.0;
+  return file.recorded.readings.time_s[row] / 3600.0;
 }
 
 compensation::ObservedRun observed(const ReadFile& file, const RunRows& rows, const std::string& name) {
   compensation::ObservedRun run{.cyclogram = file.felt.cyclogram,
                                 .ambient = file.felt.ambient,
-                                .readings = file.record,
+                                .readings = file.recorded.readings,
                                 .n_before = rows.first - rows.history,
                                 .history = fmt::format("{} from row {}", file.path, rows.history)};
   run.readings.source = name;
-  const std::vector<double>& t = file.record.time_s;
+  const std::vector<double>& t = run.readings.time_s;
   run.rows = {.file = std::filesystem::absolute(file.path).lexically_normal().string(),
               .first_s = t[rows.first] - t[file.n_before],
               .last_s = t[rows.last - 1] - t[file.n_before]};
@@ -220,11 +218,10 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths
     const RecordPart& part = parts[p];
     const ReadFile& file =
         *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return is_same_file(f.path, part.file); });
-    auto [first, last] = scenarios::rows_of(part, file.record);
+    auto [first, last] = scenarios::rows_of(part, file.recorded.readings);
     first += file.n_before;
-    const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.ambient};
     if (paths.train.size() == 1 && p == 0) {
-      const std::vector<RunRows> runs = scenarios::runs_between_rests(cut, first, last);
+      const std::vector<RunRows> runs = scenarios::runs_between_rests(file.recorded, first, last);
       records.notes.push_back(words_of_cut(part, file, runs));
       for (const RunRows& rows : runs) {
         const std::string name = runs.size() == 1 ? part.words
@@ -234,7 +231,7 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths
       }
     } else {
       (p < paths.train.size() ? records.train : records.test)
-          .push_back(observed(file, scenarios::whole_run(cut, first, last), part.words));
+          .push_back(observed(file, scenarios::whole_run(file.recorded, first, last), part.words));
     }
   }
   return records;

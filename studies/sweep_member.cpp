@@ -69,7 +69,7 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
                                     const std::vector<scenarios::CollectedScalar>& collect) {
   const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
   return collected(
-      scenario, machine.system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
+      scenario, machine.system.outputs, collect, [&](const MachineRun& felt, const std::vector<double>& times_s) {
         return solver::simulate(machine.system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, start);
       });
 }
@@ -80,11 +80,10 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
   solver::bind_laws(system, effects::with_radiation_as_films(effects::heat_balance(scenario.machine->effects)));
   std::optional<solver::Propagator> propagator;  // keeps its decompositions between cyclograms
   if (system.is_linear()) propagator.emplace(system);
-  return collected(
-      scenario, system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
-        if (propagator) return propagator->run(felt.cyclogram, felt.ambient, times_s, machine.start);
-        return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, machine.start);
-      });
+  return collected(scenario, system.outputs, collect, [&](const MachineRun& felt, const std::vector<double>& times_s) {
+    if (propagator) return propagator->run(felt.cyclogram, felt.ambient, times_s, machine.start);
+    return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, machine.start);
+  });
 }
 
 }  // namespace driftwright::studies

@@ -46,8 +46,7 @@ compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every
   return {.every_s = every_s, .noise_m = s.probe_noise_m, .seed = static_cast<std::uint64_t>(s.seed + 1000 * repetition)};
 }
 
-Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt, const Record& record,
-                      int repetition) {
+Record table_readings(const scenarios::Scenario& scenario, const MachineRun& felt, const Record& record, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   Record thermometers{.source = record.source, .time_s = record.time_s, .channels = {}}, result = record;
   for (const Channel& channel : record.channels) {
@@ -95,15 +94,15 @@ std::vector<double> TableTraining::at(const std::vector<double>& values) const {
   return found;
 }
 
-TableTraining train(const TableRun& run, const scenarios::TableSettings& s, int repetition) {
+TableTraining train(const TableCourse& course, const scenarios::TableSettings& s, int repetition) {
   TableTraining training;
   Random random(static_cast<std::uint64_t>(s.seed), 80 + static_cast<std::uint64_t>(repetition));
   double next_s = s.train_from_s;
-  for (std::size_t i = 0; i < run.table.time_s.size(); ++i) {
-    if (run.table.time_s[i] < next_s - 1e-6) continue;
+  for (std::size_t i = 0; i < course.table.time_s.size(); ++i) {
+    if (course.table.time_s[i] < next_s - 1e-6) continue;
     next_s += s.every_s;
     training.rows.push_back(i);
-    Eigen::Matrix3Xd measured_m = run.rings_m[i];
+    Eigen::Matrix3Xd measured_m = course.rings_m[i];
     for (double& value : measured_m.reshaped()) value += s.probe_noise_m * random.normal();
     training.rings_m.push_back(std::move(measured_m));
   }

@@ -36,8 +36,8 @@ inline constexpr const char* kFeltAmbient = "felt ambient";
 
 /// The record with its temperatures as read by the table's instrument: every `update`, averaged backwards, held.
 /// @param felt  drive and ambient of the run
-[[nodiscard]] Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt,
-                                    const Record& record, int repetition);
+[[nodiscard]] Record table_readings(const scenarios::Scenario& scenario, const MachineRun& felt, const Record& record,
+                                    int repetition);
 
 /// The instrument in a sentence.
 [[nodiscard]] std::string instrument_words(const scenarios::TableSettings& s);
@@ -51,6 +51,6 @@ struct TableTraining {
   std::vector<Eigen::Matrix3Xd> rings_m;
   [[nodiscard]] std::vector<double> at(const std::vector<double>& values) const;
 };
-[[nodiscard]] TableTraining train(const TableRun& run, const scenarios::TableSettings& s, int repetition);
+[[nodiscard]] TableTraining train(const TableCourse& course, const scenarios::TableSettings& s, int repetition);
 
 }  // namespace driftwright::studies

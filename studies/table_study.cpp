@@ -18,23 +18,24 @@ namespace {
 using compensation::TableErrors;
 using Errors = std::vector<Eigen::Matrix3Xd>;
 
-/// The run of a scattered model, in the recorded ambient.
-TableRun wrong_run(const scenarios::Scenario& scenario, const scenarios::Model& model, int repetition) {
+/// The course of a scattered model, in the recorded ambient.
+TableCourse wrong_course(const scenarios::Scenario& scenario, const scenarios::Model& model, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
+  const MachineRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
   const std::vector<double> times_s = scenarios::output_times_s(felt.cyclogram, scenario.solver.output_interval_s);
-  scenarios::SimulatedRun run;
+  solver::Trajectory trajectory;
   if (const scenarios::Machine* full = model.full()) {
     const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, *full);
-    run.trajectory = solver::simulate(wrong_system(full->system, s, repetition), felt.cyclogram, felt.ambient, times_s,
-                                      scenario.solver.transient, start);
+    trajectory = solver::simulate(wrong_system(full->system, s, repetition), felt.cyclogram, felt.ambient, times_s,
+                                  scenario.solver.transient, start);
   } else {
     const scenarios::ReducedMachine& reduced = *model.reduced();
-    run.trajectory = solver::simulate(wrong_system(reduced.system, s, repetition), felt.cyclogram, felt.ambient, times_s,
-                                      scenario.solver.transient, reduced.start);
+    trajectory = solver::simulate(wrong_system(reduced.system, s, repetition), felt.cyclogram, felt.ambient, times_s,
+                                  scenario.solver.transient, reduced.start);
   }
-  run.record = scenarios::as_recorded(*scenario.machine, run.trajectory, model.outputs(), scenario.cyclogram(s.cyclogram));
-  return table_run(scenario, std::move(run), wrong_expansions(s, repetition));
+  return table_course(
+      scenario, scenarios::as_recorded(*scenario.machine, trajectory, model.outputs(), scenario.cyclogram(s.cyclogram)),
+      wrong_expansions(s, repetition));
 }
 
 TableErrors first_rows(const TableErrors& table, std::size_t n) {
@@ -109,11 +110,11 @@ void compare_with_readings(TableStudy& study, const scenarios::Scenario& scenari
       compensation::compare_ambient_models(ambient, readings.time_s, readings.x_um, length_um * table_expansion(scenario).x,
                                            length_um * scenario.table->scale_x.expansion_1_K);
   std::vector<double> x_um;
-  for (std::size_t i = 0; i < study.run.table.time_s.size(); ++i)
-    x_um.push_back(study.run.table_only_x_um[i] - study.run.scale_only_x_um[i]);
+  for (std::size_t i = 0; i < study.course.table.time_s.size(); ++i)
+    x_um.push_back(study.course.table_only_x_um[i] - study.course.scale_only_x_um[i]);
   double square = 0.0;
   for (std::size_t i = 0; i < readings.time_s.size(); ++i) {
-    const double off = compensation::interpolate(study.run.table.time_s, x_um, readings.time_s[i]) - readings.x_um[i];
+    const double off = compensation::interpolate(study.course.table.time_s, x_um, readings.time_s[i]) - readings.x_um[i];
     square += off * off / static_cast<double>(readings.time_s.size());
   }
   study.computed_rms_um = std::sqrt(square);
@@ -121,19 +122,18 @@ void compare_with_readings(TableStudy& study, const scenarios::Scenario& scenari
 
 }  // namespace
 
-TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun run, const ExpansionFactors& factor) {
+TableCourse table_course(const scenarios::Scenario& scenario, Record record, const ExpansionFactors& factor) {
   const scenarios::TableSettings& s = *scenario.table;
   const std::vector<Eigen::Vector3d> points = scenarios::table_points(s);
-  const std::size_t n_grid = static_cast<std::size_t>(s.n_x) * static_cast<std::size_t>(s.n_y),
-                    n_times = run.record.n_samples();
-  const std::vector<double> scale_x_K = mean_K(run.record, s.scale_x.sensors);
-  const std::vector<double> scale_y_K = s.scale_y ? mean_K(run.record, s.scale_y->sensors) : std::vector<double>{};
+  const std::size_t n_grid = static_cast<std::size_t>(s.n_x) * static_cast<std::size_t>(s.n_y), n_times = record.n_samples();
+  const std::vector<double> scale_x_K = mean_K(record, s.scale_x.sensors);
+  const std::vector<double> scale_y_K = s.scale_y ? mean_K(record, s.scale_y->sensors) : std::vector<double>{};
   std::vector<const std::vector<double>*> u_um;  // three per point
   for (std::size_t p = 0; p < points.size(); ++p) {
-    for (char axis : {'x', 'y', 'z'}) u_um.push_back(&run.record.at(fmt::format("table_{}_{}", p + 1, axis)).values);
+    for (char axis : {'x', 'y', 'z'}) u_um.push_back(&record.at(fmt::format("table_{}_{}", p + 1, axis)).values);
   }
-  TableRun result;
-  result.table.time_s = run.record.time_s;
+  TableCourse result;
+  result.table.time_s = record.time_s;
   result.table.points_m.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n_grid));
   for (std::size_t i = 0; i < n_times; ++i) {
     const auto moved_m = [&](std::size_t p, std::size_t axis) { return factor.table * 1e-6 * (*u_um[3 * p + axis])[i]; };
@@ -154,8 +154,7 @@ TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun 
     result.table_only_x_um.push_back(1e6 * (moved_m(row + static_cast<std::size_t>(s.n_x) - 1, 0) - moved_m(row, 0)));
     result.scale_only_x_um.push_back(1e6 * grown_x * (s.high_m[0] - s.low_m[0]));
   }
-  result.record = std::move(run.record);
-  result.trajectory = std::move(run.trajectory);
+  result.record = std::move(record);
   return result;
 }
 
@@ -164,9 +163,9 @@ TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Mod
   const scenarios::TableSettings& s = *scenario.table;
   TableStudy study;
   const std::vector<const Cyclogram*> cyclogram = {&scenario.cyclogram(s.cyclogram)};
-  study.run =
-      table_run(scenario, std::move(scenarios::simulate_cyclograms(scenario, model, cyclogram, listener, fields).front()));
-  const TableRun& truth = study.run;
+  study.course = table_course(
+      scenario, std::move(scenarios::simulate_cyclograms(scenario, model, cyclogram, listener, fields).front().record));
+  const TableCourse& truth = study.course;
   const auto judged_end = std::upper_bound(truth.table.time_s.begin(), truth.table.time_s.end(), s.judge_until_s + 1e-6);
   const std::size_t n = static_cast<std::size_t>(judged_end - truth.table.time_s.begin());
   study.n_judged = n;
@@ -176,11 +175,11 @@ TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Mod
   for (const scenarios::TableRing& ring : s.rings) places_m.push_back(ring.at_m);
 
   listener.begin("running models that are off");
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, *cyclogram.front());
+  const MachineRun felt = scenarios::felt_run(*scenario.machine, *cyclogram.front());
   std::vector<Errors> model_m, model_table_m, warmth_m, warmth_table_m;
   std::vector<std::vector<double>> ambient_K, thermometer_K;
   for (int k = 0; k < kTableRepetitions; ++k) {
-    const TableRun wrong = wrong_run(scenario, model, k);
+    const TableCourse wrong = wrong_course(scenario, model, k);
     model_m.push_back(first_rows(wrong.rings_m, n));
     model_table_m.push_back(first_rows(wrong.table.error_m, n));
     const Record readings = table_readings(scenario, felt, truth.record, k);

@@ -9,10 +9,9 @@
 
 namespace driftwright::studies {
 
-/// Errors over the table in a simulated run, and at its rings.
-struct TableRun {
-  Record record;
-  solver::Trajectory trajectory;
+/// Errors over the table over time, and at its rings.
+struct TableCourse {
+  Record record;  ///< that they were computed from
   compensation::TableErrors table;
   std::vector<Eigen::Matrix3Xd> rings_m;                 ///< errors there, one column per ring
   std::vector<double> table_only_x_um, scale_only_x_um;  ///< growth of table and scale between the ends of the judged area
@@ -26,8 +25,8 @@ struct ExpansionFactors {
 /// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its
 /// scales' thermometers, simulated or predicted; docs/how-to/table.md has the formula. @throws InputError  for a channel
 /// that does not exist
-[[nodiscard]] TableRun table_run(const scenarios::Scenario& scenario, scenarios::SimulatedRun run,
-                                 const ExpansionFactors& factor = {});
+[[nodiscard]] TableCourse table_course(const scenarios::Scenario& scenario, Record record,
+                                       const ExpansionFactors& factor = {});
 
 /// A correction over the judged time, repeated with other noise and another scattered model.
 struct TableStrategy {
@@ -45,8 +44,8 @@ struct IntervalRow {
 };
 
 struct TableStudy {
-  TableRun run;
-  std::size_t n_judged = 0;               ///< number of the run's times that are judged, from the first
+  TableCourse course;
+  std::size_t n_judged = 0;               ///< number of the course's times that are judged, from the first
   std::vector<TableStrategy> strategies;  ///< the first is none
   std::vector<IntervalRow> intervals;
   compensation::AxisTemperature control;

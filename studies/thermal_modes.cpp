@@ -10,7 +10,7 @@ using namespace compensation;
 
 Record foretold_record(const scenarios::MachineModel& machine, const solver::Outputs& outputs, const ModalPredictor& modes,
                        const Cyclogram& cyclogram, const std::vector<double>& time_s) {
-  const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
+  const MachineRun felt = scenarios::felt_run(machine, cyclogram);
   return scenarios::as_recorded(machine, modes.predict(felt.cyclogram, felt.ambient, time_s), outputs, cyclogram);
 }
 

@@ -37,7 +37,7 @@ struct Job {
 compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
   scenarios::MachineModel machine = *scenario.machine;
   machine.ambient = scenarios::ambient_in(*job.season, machine.ambient, job.cyclogram->duration_s());
-  const scenarios::FeltRun felt = scenarios::felt_run(machine, *job.cyclogram);
+  const MachineRun felt = scenarios::felt_run(machine, *job.cyclogram);
   const std::vector<double> times_s = scenarios::output_times_s(*job.cyclogram, scenario.solver.output_interval_s);
   const auto run = [&](const auto& system, const Eigen::VectorXd& start) {
     const Eigen::VectorXd shifted = start + job.season->offset_K * system.ones;

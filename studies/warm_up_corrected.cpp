@@ -14,30 +14,31 @@ constexpr int kCorrectedTimes = 12;   // number of warm-ups, from none to the lo
 constexpr int kHalvings = 4;          // bisections between two of them
 constexpr std::size_t kNoise = 1000;  // index of the readings' noise, which no run of the validation has
 
-/// Warm-up and job as thermometers read them, with the true drift.
-struct ReadRun {
-  compensation::ObservedRun run;
-  std::size_t n_before = 0;
+/// Warm-up and job as thermometers read them, with the true drift. The warm-up is corrected like the job, so it is no
+/// lead-in.
+struct ReadJob {
+  MachineRun run;
+  std::size_t first_row = 0;  ///< of the job
 };
 
-ReadRun read_run(const scenarios::Validation& validation, const WarmUpTrials& trials, double speed_rpm, double time_s) {
-  ReadRun read;
+ReadJob read_job(const scenarios::Validation& validation, const WarmUpTrials& trials, double speed_rpm, double time_s) {
+  ReadJob read;
   std::vector<Cyclogram::Section> sections;
   if (time_s >= 1.0) sections.push_back({std::round(time_s), {.speed_rpm = speed_rpm}});
-  read.run = trials.whole_run(sections, read.n_before);
+  read.run = trials.whole_run(sections, read.first_row);
   read.run.readings = read_in_validation(validation, std::move(read.run.readings), kNoise);
   return read;
 }
 
 /// The peak of the corrected drift; the tool is set at the job's first row, with the correction in force at that moment.
-double peak_left_um(const compensation::DeployedPredictor& strategy, const ReadRun& read) {
+double peak_left_um(const compensation::DeployedPredictor& strategy, const ReadJob& read) {
   const std::vector<double>& of_target = read.run.readings.at(strategy.target).values;
   std::vector<double> drift_um;
   for (double value_um : of_target) drift_um.push_back(value_um - of_target.front());
   const std::vector<double> left_um = compensation::judge(strategy, read.run, drift_um).left_um;
   double peak_um = 0.0;
-  for (std::size_t i = read.n_before; i < left_um.size(); ++i)
-    peak_um = std::max(peak_um, std::abs(left_um[i] - left_um[read.n_before]));
+  for (std::size_t i = read.first_row; i < left_um.size(); ++i)
+    peak_um = std::max(peak_um, std::abs(left_um[i] - left_um[read.first_row]));
   return peak_um;
 }
 
@@ -60,16 +61,16 @@ std::optional<CorrectedWarmUps> corrected_warm_ups(const scenarios::Scenario& sc
   for (int i = 0; i <= kCorrectedTimes; ++i) result.times_s.push_back(longest_s * i / kCorrectedTimes);
   if (const auto& physics = training.settings.physics; physics && physics->linearised)
     result.model = compensation::words_of(*physics->linearised);
-  std::vector<ReadRun> runs(result.times_s.size());
+  std::vector<ReadJob> runs(result.times_s.size());
   listener.begin("warm-up beside correction");
-  parallel_for(runs.size(), [&](std::size_t i) { runs[i] = read_run(validation, trials, speed_rpm, result.times_s[i]); });
+  parallel_for(runs.size(), [&](std::size_t i) { runs[i] = read_job(validation, trials, speed_rpm, result.times_s[i]); });
   result.strategies.resize(strategies.size());
   parallel_for(
       strategies.size(),
       [&](std::size_t s) {
         CorrectedWarmUp& of = result.strategies[s];
         of.strategy = strategies[s].name;
-        for (const ReadRun& run : runs) of.left_um.push_back(peak_left_um(strategies[s], run));
+        for (const ReadJob& run : runs) of.left_um.push_back(peak_left_um(strategies[s], run));
         const auto first = std::find_if(of.left_um.begin(), of.left_um.end(), [&](double um) { return um <= tolerance_um; });
         of.is_enough = first != of.left_um.end();
         if (!of.is_enough) return;
@@ -78,7 +79,7 @@ std::optional<CorrectedWarmUps> corrected_warm_ups(const scenarios::Scenario& sc
         double low_s = at > 0 ? result.times_s[at - 1] : of.least_s;
         for (int i = 0; i < kHalvings && at > 0; ++i) {
           const double time_s = 0.5 * (low_s + of.least_s);
-          (peak_left_um(strategies[s], read_run(validation, trials, speed_rpm, time_s)) <= tolerance_um ? of.least_s
+          (peak_left_um(strategies[s], read_job(validation, trials, speed_rpm, time_s)) <= tolerance_um ? of.least_s
                                                                                                         : low_s) = time_s;
         }
       },

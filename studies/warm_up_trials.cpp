@@ -150,7 +150,7 @@ std::vector<double> WarmUpTrials::linear_peaks_um(const std::vector<Cyclogram::S
     }
   }
   if (!propagator) propagator = std::make_unique<solver::Propagator>(system);
-  const scenarios::FeltRun felt = scenarios::felt_run(ahead_.machine, all);
+  const MachineRun felt = scenarios::felt_run(ahead_.machine, all);
   const Eigen::MatrixXd rows =
       propagator->run(felt.cyclogram, felt.ambient, time_s, now_, false, nullptr, transient_.from_s).outputs;
   {

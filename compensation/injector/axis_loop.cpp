@@ -140,10 +140,10 @@ InjectedSeries drive_axis(const AxisLoop& loop, std::span<const double> time_s, 
   return series;
 }
 
-AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
-                          const PredictedFromReadings& predicted) {
+AxisLoopResult run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
+                             const PredictedFromReadings& predicted) {
   const Record exact = sampled(truth, loop.sampling_s);
-  AxisLoopRun run;
+  AxisLoopResult run;
   run.time_s = exact.time_s;
   const std::vector<double> drift_um = exact.at(channel).values;
   const std::vector<double> growth = growth_um(loop, exact);

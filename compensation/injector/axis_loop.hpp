@@ -100,7 +100,8 @@ struct ErrorStage {
   double peak_um = 0.0;
 };
 
-struct AxisLoopRun {
+/// What the chain leaves.
+struct AxisLoopResult {
   std::vector<double> time_s;  ///< every sampling_s
   std::vector<double> before_um, predicted_um,
       after_um;  ///< tool errors at the samples, without and with the injector; and the predicted error
@@ -122,7 +123,7 @@ struct AxisLoopRun {
 /// @param truth    record with true temperatures and the displacement
 /// @param channel  displacement in um = error of the tool
 /// @throws InputError  when a channel is missing or has a missing value, or when only the first sample is at rest
-[[nodiscard]] AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
-                                        const PredictedFromReadings& predicted);
+[[nodiscard]] AxisLoopResult run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
+                                           const PredictedFromReadings& predicted);
 
 }  // namespace driftwright::compensation

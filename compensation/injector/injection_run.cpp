@@ -26,8 +26,8 @@ std::vector<Lines> dither_rows(int n_periods) {
 
 }  // namespace
 
-InjectionRun simulate_injection(std::span<const double> time_s, std::span<const double> correction_um, double period_um,
-                                int n_dither_periods) {
+InjectionResult simulate_injection(std::span<const double> time_s, std::span<const double> correction_um, double period_um,
+                                   int n_dither_periods) {
   if (!(period_um > 0.0)) throw RangeError(fmt::format("encoder period {} um must be positive", period_um));
   if (n_dither_periods < 1) throw RangeError(fmt::format("a dither of {} periods must be 1 or more", n_dither_periods));
   if (time_s.size() != correction_um.size()) {
@@ -38,7 +38,7 @@ InjectionRun simulate_injection(std::span<const double> time_s, std::span<const 
   QuadratureCounter upstream, downstream;
   PulseInjector injector;
   std::vector<Lines> rows(dither.size() * kMostRowsPerRow);
-  InjectionRun run;
+  InjectionResult run;
   run.max_periods_per_sample = static_cast<int>(std::count(dither.begin(), dither.end(), Lines{0}));
   double longest_step_s = 0.0;
   for (std::size_t i = 0; i < correction_um.size(); ++i) {

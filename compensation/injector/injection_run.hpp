@@ -7,7 +7,8 @@
 
 namespace driftwright::compensation {
 
-struct InjectionRun {
+/// What was inserted at each sample.
+struct InjectionResult {
   std::vector<double> inserted_um;             ///< in force after each sample; residual = drift - inserted_um
   std::vector<std::int64_t> inserted_periods;  ///< the same in periods
   std::int64_t upstream_count = 0;             ///< 4x count of the encoder at the end
@@ -32,7 +33,7 @@ struct InjectionRun {
 /// @param n_dither_periods  amplitude of the dither, >= 1
 /// @throws RangeError  when the period is not positive or the dither smaller than 1
 /// @throws InputError  when the two series differ in length
-[[nodiscard]] InjectionRun simulate_injection(std::span<const double> time_s, std::span<const double> correction_um,
-                                              double period_um, int n_dither_periods = 3);
+[[nodiscard]] InjectionResult simulate_injection(std::span<const double> time_s, std::span<const double> correction_um,
+                                                 double period_um, int n_dither_periods = 3);
 
 }  // namespace driftwright::compensation

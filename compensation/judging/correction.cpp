@@ -8,15 +8,15 @@
 namespace driftwright::compensation {
 namespace {
 
-CorrectedRun judge(const JudgedRun& run, const char* actuator, std::vector<double> residual_um) {
-  CorrectedRun result{.predictor = {},
-                      .actuator = actuator,
-                      .channel = {},
-                      .residual_um = std::move(residual_um),
-                      .before = score(run.drift_um),
-                      .after = {},
-                      .inside_tolerance = false,
-                      .schedule = std::nullopt};
+CorrectedDrift judge(const DriftToCorrect& run, const char* actuator, std::vector<double> residual_um) {
+  CorrectedDrift result{.predictor = {},
+                        .actuator = actuator,
+                        .channel = {},
+                        .residual_um = std::move(residual_um),
+                        .before = score(run.drift_um),
+                        .after = {},
+                        .inside_tolerance = false,
+                        .schedule = std::nullopt};
   result.after = score(result.residual_um);
   result.inside_tolerance =
       result.after.n == static_cast<int>(run.drift_um.size()) && result.after.peak_abs <= run.tolerance_um;
@@ -25,7 +25,7 @@ CorrectedRun judge(const JudgedRun& run, const char* actuator, std::vector<doubl
 
 }  // namespace
 
-CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> predicted_um, double period_um) {
+CorrectedDrift correct_by_injector(const DriftToCorrect& run, std::span<const double> predicted_um, double period_um) {
   const std::vector<double> inserted_um = simulate_injection(run.time_s, predicted_um, period_um).inserted_um;
   std::vector<double> residual_um;
   for (std::size_t i = 0; i < run.drift_um.size();
@@ -37,8 +37,8 @@ CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> p
   return judge(run, "pulse injector", std::move(residual_um));
 }
 
-CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
-                                 SchedulePolicy policy, const CorrectionLimits& limits) {
+CorrectedDrift correct_by_schedule(const DriftToCorrect& run, std::span<const double> predicted_um, double margin_um,
+                                   SchedulePolicy policy, const CorrectionLimits& limits) {
   Schedule schedule = plan_cyclogram(run.time_s, predicted_um, run.boundaries_s,
                                      {.policy = policy,
                                       .tolerance_um = run.tolerance_um,
@@ -48,7 +48,7 @@ CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> p
   for (std::size_t i = 0; i < run.drift_um.size(); ++i) {
     residual_um.push_back(run.drift_um[i] - correction_at(schedule, run.time_s[i]));
   }
-  CorrectedRun result = judge(run, "schedule", std::move(residual_um));
+  CorrectedDrift result = judge(run, "schedule", std::move(residual_um));
   result.schedule = std::move(schedule);
   return result;
 }

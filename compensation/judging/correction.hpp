@@ -13,8 +13,8 @@
 
 namespace driftwright::compensation {
 
-/// A run that strategies are judged on: times, the true drift, the operations of the cyclogram.
-struct JudgedRun {
+/// The true drift of a run, with its times and the operations of its cyclogram.
+struct DriftToCorrect {
   std::span<const double> time_s;
   std::span<const double> drift_um;
   std::span<const double> boundaries_s;  ///< starts of the operations, and the end
@@ -22,7 +22,7 @@ struct JudgedRun {
 };
 
 /// One predictor through one actuator on one displacement channel.
-struct CorrectedRun {
+struct CorrectedDrift {
   std::string predictor;
   std::string actuator;
   std::string channel;
@@ -37,15 +37,16 @@ struct CorrectedRun {
 /// Corrects by the prediction through the pulse injector, one encoder period at a time.
 /// @param period_um  travel of one encoder period, > 0
 /// @throws RangeError, InputError  as simulate_injection()
-[[nodiscard]] CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> predicted_um, double period_um);
+[[nodiscard]] CorrectedDrift correct_by_injector(const DriftToCorrect& run, std::span<const double> predicted_um,
+                                                 double period_um);
 
 /// Corrects by a plan that plan_cyclogram() makes ahead from the prediction, with the policies of the verb `schedule`.
 /// @param margin_um  reserve for the predictor's error; limited to half of the tolerance
 /// @param limits     corrections beyond are held
 /// @throws RangeError, InputError  as plan_cyclogram()
-[[nodiscard]] CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
-                                               SchedulePolicy policy = SchedulePolicy::kMinimal,
-                                               const CorrectionLimits& limits = {});
+[[nodiscard]] CorrectedDrift correct_by_schedule(const DriftToCorrect& run, std::span<const double> predicted_um,
+                                                 double margin_um, SchedulePolicy policy = SchedulePolicy::kMinimal,
+                                                 const CorrectionLimits& limits = {});
 
 /// Starts of a run's operations and its end [s], from the sections of its cyclogram.
 [[nodiscard]] std::vector<double> operation_boundaries_s(std::span<const double> section_durations_s);

@@ -131,9 +131,9 @@ std::vector<FailSafe> fail_safes_of(const Seen& seen, const std::vector<std::str
 }
 
 /// The runs of a fold that have hidden rows, as a predictor follows them.
-std::vector<std::pair<std::size_t, PredictedRun>> followed(const Predictor& predictor, const FailSafe& safe,
-                                                           const FoldedRuns& folds, std::size_t fold) {
-  std::vector<std::pair<std::size_t, PredictedRun>> runs;
+std::vector<std::pair<std::size_t, PredictedDrift>> followed(const Predictor& predictor, const FailSafe& safe,
+                                                             const FoldedRuns& folds, std::size_t fold) {
+  std::vector<std::pair<std::size_t, PredictedDrift>> runs;
   for (std::size_t r = 0; r < folds.runs.size(); ++r) {
     const std::vector<bool>& hidden = folds.folds[fold].hidden[r];
     if (std::find(hidden.begin(), hidden.end(), true) != hidden.end())
@@ -143,7 +143,7 @@ std::vector<std::pair<std::size_t, PredictedRun>> followed(const Predictor& pred
 }
 
 /// What a correction leaves in the hidden rows.
-std::vector<double> left_um(const std::vector<std::pair<std::size_t, PredictedRun>>& runs, const FailSafe& safe,
+std::vector<double> left_um(const std::vector<std::pair<std::size_t, PredictedDrift>>& runs, const FailSafe& safe,
                             const FoldedRuns& folds, std::size_t fold) {
   std::vector<double> left;
   for (const auto& [r, run] : runs) {
@@ -192,7 +192,7 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
   std::vector<DeployedPredictor> tried(std::size(kRooms));
   for (std::size_t k = 0; k < predictors.size(); ++k) {
     const std::vector<FailSafe> safes = fail_safes_of(seen_in(*predictors[k], folds, k, s), inputs, s);
-    std::vector<std::pair<std::size_t, PredictedRun>> runs;
+    std::vector<std::pair<std::size_t, PredictedDrift>> runs;
     for (std::size_t n = 0; n < tried.size(); ++n) {
       // without inputs to repair the prediction does not depend on the room
       if (n == 0 || !inputs.empty()) runs = followed(*predictors[k], safes[n], folds, k);

@@ -23,8 +23,8 @@ std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, do
   return std::max(*deployed.interval_um / trust, kNormal95 * own_um.value_or(0.0));
 }
 
-PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run) {
-  PredictedRun p{.readings = repaired(safe, run.readings), .drift_um = {}, .deviation_um = {}};
+PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run) {
+  PredictedDrift p{.readings = repaired(safe, run.readings), .drift_um = {}, .deviation_um = {}};
   ObservedRun mended = run;
   mended.readings = p.readings.readings;
   const std::unique_ptr<Follower> follower = predictor.follow();
@@ -37,7 +37,7 @@ PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const Obs
 }
 
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
-  PredictedRun p;
+  PredictedDrift p;
   GuardedCorrection c;
   if (deployed.fail_safe) {
     p = predict(*deployed.predictor, *deployed.fail_safe, run);

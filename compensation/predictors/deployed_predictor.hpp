@@ -52,12 +52,12 @@ struct DeployedPredictor {
                                                          std::optional<double> own_um = {});
 
 /// The drift of a run as predicted from repaired readings, before clamp and slew limit.
-struct PredictedRun {
+struct PredictedDrift {
   Repaired readings;                                ///< with the trust that readings and predictor deserve
   std::vector<double> drift_um;                     ///< per row; NaN without a prediction
   std::vector<std::optional<double>> deviation_um;  ///< per row: Follower::deviation_um()
 };
-[[nodiscard]] PredictedRun predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run);
+[[nodiscard]] PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run);
 
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
 /// prediction, or 0 without one. Its interval is that in force, plus the distance from the prediction to the correction.

@@ -56,7 +56,7 @@ class HeidenhainDin final : public Heidenhain {
  public:
   std::string name() const override { return "Heidenhain DIN/ISO"; }
   bool recognises(const std::vector<std::string>& /*lines*/) const override { return true; }
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     run_heidenhain_program(path, lines, run);
   }
   std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {
@@ -80,7 +80,7 @@ class Klartext final : public Heidenhain {
  public:
   std::string name() const override { return "Heidenhain plain language"; }
   bool recognises(const std::vector<std::string>& lines) const override { return is_klartext(lines); }
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     run_klartext_program(path, lines, run);
   }
   std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {

@@ -10,7 +10,7 @@
 
 #include "base/characters.hpp"
 #include "nc/arc.hpp"
-#include "nc/heidenhain/run.hpp"
+#include "nc/heidenhain/execution.hpp"
 #include "nc/units.hpp"
 #include "nc/words.hpp"
 
@@ -68,7 +68,7 @@ struct IsoWord {
 
 class HeidenhainReader {
  public:
-  HeidenhainReader(const std::string& path, const std::vector<std::string>& lines, NcRun& run)
+  HeidenhainReader(const std::string& path, const std::vector<std::string>& lines, NcExecution& run)
       : path_(path), run_(run), lines_(blocks_of(path, lines)), tnc_(run, lines_) {}
 
   void run() {
@@ -489,16 +489,16 @@ class HeidenhainReader {
   }
 
   std::string path_;
-  NcRun& run_;
+  NcExecution& run_;
   std::vector<HeidenhainLine> lines_;
-  HeidenhainRun tnc_;
+  HeidenhainExecution tnc_;
   bool begun_ = false;
   std::optional<bool> last_clockwise_;
 };
 
 }  // namespace
 
-void run_heidenhain_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run) {
+void run_heidenhain_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) {
   HeidenhainReader(path, lines, run).run();
 }
 

@@ -23,7 +23,7 @@ std::size_t title_end(const std::string& t, std::size_t i) {
   return t.size();
 }
 
-double last_number(const HeidenhainRun& tnc, const HeidenhainLine& line, std::size_t i) {
+double last_number(const HeidenhainExecution& tnc, const HeidenhainLine& line, std::size_t i) {
   const std::string& t = line.text;
   const std::size_t begin = t.find_first_of("+-0123456789", i);
   if (begin == std::string::npos) tnc.fail(line, "the cycle has no number");
@@ -33,7 +33,7 @@ double last_number(const HeidenhainRun& tnc, const HeidenhainLine& line, std::si
 }
 
 /// The words of cycle 7, such as X+10 IY-5.
-void shift_by_words(const HeidenhainLine& line, HeidenhainRun& tnc, double unit_m, std::size_t i) {
+void shift_by_words(const HeidenhainLine& line, HeidenhainExecution& tnc, double unit_m, std::size_t i) {
   const std::string& t = line.text;
   i = title_end(t, i);
   bool any = false;
@@ -55,7 +55,7 @@ void shift_by_words(const HeidenhainLine& line, HeidenhainRun& tnc, double unit_
 
 }  // namespace
 
-void define_klartext_cycle(const HeidenhainLine& line, HeidenhainRun& tnc, NcRun& run) {
+void define_klartext_cycle(const HeidenhainLine& line, HeidenhainExecution& tnc, NcExecution& run) {
   const std::string& t = line.text;
   std::size_t i = 9;
   int number = 0;

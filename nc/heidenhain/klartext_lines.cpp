@@ -85,7 +85,7 @@ std::vector<HeidenhainLine> klartext_blocks(const std::string& path, const std::
   return blocks;
 }
 
-KlartextPath klartext_path(const HeidenhainRun& tnc, const HeidenhainLine& line, std::size_t i) {
+KlartextPath klartext_path(const HeidenhainExecution& tnc, const HeidenhainLine& line, std::size_t i) {
   const std::string& t = line.text;
   KlartextPath p;
   const auto is = [&](const char* word) {

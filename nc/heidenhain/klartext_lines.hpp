@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/heidenhain/run.hpp"
+#include "nc/heidenhain/execution.hpp"
 
 namespace driftwright {
 
@@ -30,6 +30,6 @@ struct KlartextPath {
 };
 
 /// The words of a path block from text[i] on. @throws InputError  for text that is not a word, for an axis named twice
-[[nodiscard]] KlartextPath klartext_path(const HeidenhainRun& tnc, const HeidenhainLine& line, std::size_t i);
+[[nodiscard]] KlartextPath klartext_path(const HeidenhainExecution& tnc, const HeidenhainLine& line, std::size_t i);
 
 }  // namespace driftwright

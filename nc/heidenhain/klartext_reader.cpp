@@ -17,7 +17,7 @@ namespace {
 
 class KlartextReader {
  public:
-  KlartextReader(const std::string& path, const std::vector<std::string>& lines, NcRun& run)
+  KlartextReader(const std::string& path, const std::vector<std::string>& lines, NcExecution& run)
       : path_(path), run_(run), lines_(klartext_blocks(path, lines)), tnc_(run, lines_) {}
 
   void run() {
@@ -389,16 +389,16 @@ class KlartextReader {
   }
 
   std::string path_;
-  NcRun& run_;
+  NcExecution& run_;
   std::vector<HeidenhainLine> lines_;
-  HeidenhainRun tnc_;
+  HeidenhainExecution tnc_;
   std::optional<bool> last_clockwise_;
   std::optional<double> automatic_feed_;  // of TOOL CALL, as NcMotion::feed
 };
 
 }  // namespace
 
-void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run) {
+void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) {
   KlartextReader(path, lines, run).run();
 }
 

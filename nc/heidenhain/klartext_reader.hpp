@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 namespace driftwright {
 
 /// Runs the program. @throws InputError  as read_nc_program()
-void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run);
+void run_klartext_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run);
 
 }  // namespace driftwright

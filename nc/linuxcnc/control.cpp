@@ -20,7 +20,7 @@ class LinuxCnc final : public NcLanguage {
  public:
   std::string name() const override { return "LinuxCNC"; }
   bool recognises(const std::vector<std::string>& /*lines*/) const override { return true; }
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     run_iso_program(path, lines, run, {});
   }
 

@@ -56,7 +56,7 @@ class SiemensLanguage final : public Siemens {
  public:
   std::string name() const override { return "Siemens (G290)"; }
   bool recognises(const std::vector<std::string>& /*lines*/) const override { return true; }
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     run_siemens_program(path, lines, run);
   }
   std::string remark_line(const std::string& text) const override { return "; " + text; }
@@ -78,7 +78,7 @@ class SiemensIso final : public Siemens {
     }
     return false;
   }
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     run_iso_program(path, lines, run, {.has_g291 = true, .work_offset_resets = true});
   }
   std::vector<std::string> offset_lines(const NcOffsetOptions& options, const NcShift& shift) const override {

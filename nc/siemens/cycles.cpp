@@ -19,7 +19,7 @@ std::optional<double> of(const SiemensCycle& c, std::size_t i) {
 /// CYCLE83(RTP, RFP, SDIS, DP, DPR, FDEP, FDPR, DAM, DTB, DTS, FRF, VARI): each depth is smaller by DAM than the previous,
 /// but at least DAM.
 template <class At>
-void drill_deep(NcRun& run, const SiemensCycle& c, double reference_m, double safe_m, double bottom_m, const At& at) {
+void drill_deep(NcExecution& run, const SiemensCycle& c, double reference_m, double safe_m, double bottom_m, const At& at) {
   NcMotion& motion = run.motion;
   double depth_m = reference_m;
   if (of(c, 5)) {
@@ -68,7 +68,7 @@ std::optional<int> siemens_cycle_code(const std::string& name) {
   return found == kCycles.end() ? std::nullopt : std::optional(found->second);
 }
 
-void run_siemens_cycle(NcRun& run, const SiemensCycle& c) {
+void run_siemens_cycle(NcExecution& run, const SiemensCycle& c) {
   const auto need = [&](std::size_t i, const char* name) {
     const auto x = of(c, i);
     if (!x) run.fail(fmt::format("CYCLE{} has no {}", c.code, name));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 namespace driftwright {
 
@@ -21,6 +21,6 @@ struct SiemensCycle {
 /// The drill moves down along the axis normal to the plane, from its present position.
 /// @throws InputError  for an argument that is missing, for planes in another order, without a feed
 /// Source: Siemens, SINUMERIK 840D sl / 828D, Programming Manual Fundamentals (6FC5398-1BP40), drilling cycles.
-void run_siemens_cycle(NcRun& run, const SiemensCycle& cycle);
+void run_siemens_cycle(NcExecution& run, const SiemensCycle& cycle);
 
 }  // namespace driftwright

@@ -20,7 +20,7 @@ namespace {
 
 class SiemensReader {
  public:
-  SiemensReader(const std::string& path, const std::vector<std::string>& text, NcRun& run)
+  SiemensReader(const std::string& path, const std::vector<std::string>& text, NcExecution& run)
       : path_(path), run_(run), source_(path, text, run) {}
 
   void run() {
@@ -469,7 +469,7 @@ class SiemensReader {
   }
 
   std::string path_;
-  NcRun& run_;
+  NcExecution& run_;
   SiemensSource source_;
   std::optional<SiemensCycle> modal_cycle_;
   std::optional<int> system_;
@@ -479,7 +479,7 @@ class SiemensReader {
 
 }  // namespace
 
-void run_siemens_program(const std::string& path, const std::vector<std::string>& lines, NcRun& run) {
+void run_siemens_program(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) {
   SiemensReader(path, lines, run).run();
 }
 

@@ -50,7 +50,7 @@ struct Repetition {
 
 class SiemensSource::Impl {
  public:
-  Impl(const std::string& path, const std::vector<std::string>& text, NcRun& run)
+  Impl(const std::string& path, const std::vector<std::string>& text, NcExecution& run)
       : run_(run), lines_(siemens_lines(path, text)) {}
 
   const SiemensLine* next() {
@@ -297,14 +297,14 @@ class SiemensSource::Impl {
     }
   }
 
-  NcRun& run_;
+  NcExecution& run_;
   std::vector<SiemensLine> lines_;
   std::size_t at_ = 0;
   std::map<std::string, double> variables_;
   std::vector<Repetition> repetitions_;
 };
 
-SiemensSource::SiemensSource(const std::string& path, const std::vector<std::string>& text, NcRun& run)
+SiemensSource::SiemensSource(const std::string& path, const std::vector<std::string>& text, NcExecution& run)
     : impl_(std::make_unique<Impl>(path, text, run)) {}
 SiemensSource::~SiemensSource() = default;
 const SiemensLine* SiemensSource::next() {

@@ -5,19 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 #include "nc/siemens/lines.hpp"
 
 namespace driftwright {
 
-/// Runs a program line by line: IF ELSE ENDIF, WHILE, FOR, LOOP, REPEAT UNTIL, GOTOF GOTOB GOTO, REPEAT A B P=n, REPEATB,
-/// DEF.
-/// @throws InputError  file, line and column; also for a loop without end (NcRun::count())
+/// Runs a program line by line: IF ELSE ENDIF, WHILE, FOR, LOOP, REPEAT UNTIL, GOTOF GOTOB GOTO, REPEAT A B P=n, REPEATB, DEF.
+/// @throws InputError  file, line and column; also for a loop without end (NcExecution::count())
 /// Source: Siemens, SINUMERIK 840D sl / 828D, Programming Manual Job Planning (6FC5398-2BP40), program jumps and branches,
 /// program part repetition, control structures.
 class SiemensSource {
  public:
-  SiemensSource(const std::string& path, const std::vector<std::string>& text, NcRun& run);
+  SiemensSource(const std::string& path, const std::vector<std::string>& text, NcExecution& run);
   ~SiemensSource();
 
   /// The next line that is a block; null after the last line.

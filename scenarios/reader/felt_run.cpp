@@ -92,14 +92,14 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
   });
 }
 
-FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
+MachineRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
   require_columns(model, recorded);
   return felt_run_as_far_as_known(model, recorded);
 }
 
-FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
+MachineRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
-  FeltRun felt{.cyclogram = effects::true_cyclogram(change, recorded), .ambient = {}};
+  MachineRun felt{.cyclogram = effects::true_cyclogram(change, recorded), .ambient = {}};
   felt.ambient = effects::true_ambient(change, model.ambient, felt.cyclogram);
   felt.before = effects::driven_before(change, felt.cyclogram);
   return felt;

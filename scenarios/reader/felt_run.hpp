@@ -2,7 +2,7 @@
 // Drive and ambient that a machine really had, as opposed to its record, and checks of the instruments and columns that
 // effects name.
 
-#include "base/record.hpp"
+#include "base/machine_run.hpp"
 #include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::scenarios {
@@ -10,18 +10,12 @@ namespace driftwright::scenarios {
 /// Channel of the recorded ambient temperature.
 inline constexpr const char* kAmbient = "ambient";
 
-/// Drive and ambient that the machine has.
-struct FeltRun {
-  Cyclogram cyclogram;
-  TimeSeries ambient;  ///< minus the reference temperature [K]
-  Cyclogram before{};  ///< the drive between its start and t = 0; usually no section
-};
-/// Drive and ambient of the machine while the record says `recorded` and the scenario's ambient; they differ by its
-/// effects.
+/// The run that the machine really has while the record says `recorded` and the scenario's ambient: drive, ambient and what
+/// drove the machine before, as its effects change them. It has no readings.
 /// @throws InputError  if an effect requires a column that the cyclogram does not have
-[[nodiscard]] FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded);
+[[nodiscard]] MachineRun felt_run(const MachineModel& model, const Cyclogram& recorded);
 /// The same for a cyclogram that is only examined: a missing column counts as 0.
-[[nodiscard]] FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded);
+[[nodiscard]] MachineRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded);
 /// The columns that effects of the machine require of a cyclogram of that name, as the effects call them, without
 /// channels of the drive.
 [[nodiscard]] std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram);

@@ -273,8 +273,8 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   } else if (kind == "csv") {
     std::optional<ColumnMap> columns;
     if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
-    RecordedRun recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {},
-                                  in.flag("measured") ? Reading::kStrict : Reading::kPlan);
+    MachineRun recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {},
+                                 in.flag("measured") ? Reading::kStrict : Reading::kPlan);
     cyclogram.sections = std::move(recorded.cyclogram.sections);
     cyclogram.columns = std::move(recorded.cyclogram.columns);
     for (DataFinding& finding : recorded.findings) {

@@ -26,15 +26,15 @@ bool rests(const Drive& drive, double still_rpm) {
 }
 
 /// Rests between two stretches in which the drive does not rest.
-std::vector<Rest> rests_of(const CutRecord& cut, std::size_t first, std::size_t last) {
-  const std::vector<double>& t = cut.record.time_s;
+std::vector<Rest> rests_of(const MachineRun& run, std::size_t first, std::size_t last) {
+  const std::vector<double>& t = run.readings.time_s;
   const double from_s = t[first] - t.front(), until_s = t[last - 1] - t.front();
   double top_rpm = 0.0;
-  for (const Cyclogram::Section& s : cut.cyclogram.sections) top_rpm = std::max(top_rpm, s.drive.speed_rpm);
+  for (const Cyclogram::Section& s : run.cyclogram.sections) top_rpm = std::max(top_rpm, s.drive.speed_rpm);
   std::vector<Rest> list;
   double start_s = 0.0, rest_s = 0.0;
   bool has_moved = false;
-  for (const Cyclogram::Section& section : cut.cyclogram.sections) {
+  for (const Cyclogram::Section& section : run.cyclogram.sections) {
     const double end_s = start_s + section.duration_s, length_s = std::min(end_s, until_s) - std::max(start_s, from_s);
     if (length_s > 0.0 && rests(section.drive, kStill * top_rpm)) {
       rest_s += length_s;
@@ -52,10 +52,10 @@ std::vector<Rest> rests_of(const CutRecord& cut, std::size_t first, std::size_t 
 }
 
 /// A channel; a temperature minus the ambient, if that is known.
-std::vector<double> over_ambient(const CutRecord& cut, const Channel& channel, bool is_temperature) {
+std::vector<double> over_ambient(const MachineRun& run, const Channel& channel, bool is_temperature) {
   std::vector<double> x = channel.values;
-  if (!is_temperature || cut.ambient.time_s.empty()) return x;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cut.ambient.at(cut.record.time_s[i] - cut.record.time_s.front());
+  if (!is_temperature || run.ambient.time_s.empty()) return x;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= run.ambient.at(run.readings.time_s[i] - run.readings.time_s.front());
   return x;
 }
 
@@ -71,12 +71,12 @@ double mean_of(const std::vector<double>& x, std::size_t first, std::size_t last
 }
 
 /// Those of the given rows, in rising order, at which the machine is back in balance; in one pass through the record.
-std::vector<std::size_t> in_balance(const CutRecord& cut, const std::vector<std::size_t>& rows) {
+std::vector<std::size_t> in_balance(const MachineRun& run, const std::vector<std::size_t>& rows) {
   std::vector<bool> is_back(rows.size(), true);
-  for (const Channel& c : cut.record.channels) {
+  for (const Channel& c : run.readings.channels) {
     const bool is_temperature = is_temperature_unit(c.unit);
     if (!is_temperature && c.unit != "um") continue;
-    const std::vector<double> x = over_ambient(cut, c, is_temperature);
+    const std::vector<double> x = over_ambient(run, c, is_temperature);
     const double begin = mean_of(x, 0, std::min(kMeanRows, x.size()));
     if (std::isnan(begin)) continue;
     double way = 0.0;
@@ -105,22 +105,22 @@ RunRows run_from(const std::vector<std::size_t>& balanced, std::size_t first, st
 
 }  // namespace
 
-std::vector<std::size_t> starts_after_rests(const CutRecord& cut, std::size_t first, std::size_t last) {
+std::vector<std::size_t> starts_after_rests(const MachineRun& run, std::size_t first, std::size_t last) {
   std::vector<std::size_t> starts;
-  for (const Rest& rest : rests_of(cut, first, last)) starts.push_back(rest.start);
+  for (const Rest& rest : rests_of(run, first, last)) starts.push_back(rest.start);
   return starts;
 }
 
-bool is_back_in_balance(const CutRecord& cut, std::size_t row) {
-  return !in_balance(cut, {row}).empty();
+bool is_back_in_balance(const MachineRun& run, std::size_t row) {
+  return !in_balance(run, {row}).empty();
 }
 
-RunRows whole_run(const CutRecord& cut, std::size_t first, std::size_t last) {
-  return run_from(in_balance(cut, starts_after_rests(cut, 0, last)), first, last);
+RunRows whole_run(const MachineRun& run, std::size_t first, std::size_t last) {
+  return run_from(in_balance(run, starts_after_rests(run, 0, last)), first, last);
 }
 
-std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first, std::size_t last) {
-  std::vector<Rest> by_length = rests_of(cut, first, last);
+std::vector<RunRows> runs_between_rests(const MachineRun& run, std::size_t first, std::size_t last) {
+  std::vector<Rest> by_length = rests_of(run, first, last);
   std::stable_sort(by_length.begin(), by_length.end(), [](const Rest& a, const Rest& b) { return a.length_s > b.length_s; });
   std::vector<std::size_t> cuts = {first, last};
   for (const Rest& rest : by_length) {
@@ -131,7 +131,7 @@ std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first,
     if (leaves_rows) cuts.push_back(rest.start);
   }
   std::sort(cuts.begin(), cuts.end());
-  const std::vector<std::size_t> balanced = in_balance(cut, starts_after_rests(cut, 0, last));
+  const std::vector<std::size_t> balanced = in_balance(run, starts_after_rests(run, 0, last));
   std::vector<RunRows> runs;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) runs.push_back(run_from(balanced, cuts[i], cuts[i + 1]));
   return runs;

@@ -1,8 +1,7 @@
 #pragma once
 // Splits a long record into runs: where the drive restarts after a rest, and from which row on the history matters.
 
-#include "base/cyclogram.hpp"
-#include "base/record.hpp"
+#include "base/machine_run.hpp"
 
 namespace driftwright::scenarios {
 
@@ -12,28 +11,21 @@ struct RunRows {
   bool operator==(const RunRows&) const = default;
 };
 
-/// The data of a record that is to be split.
-struct CutRecord {
-  const Record& record;
-  const Cyclogram& cyclogram;  ///< the drive, from the record's first row on; no section: unknown
-  const TimeSeries& ambient;   ///< the same; no knot: unknown
-};
-
 /// The rows in [first, last) at which the drive restarts after a rest of at least ten minutes. At rest the spindle turns
 /// at most at 1 % of its top speed, and nothing feeds or cuts.
-[[nodiscard]] std::vector<std::size_t> starts_after_rests(const CutRecord& cut, std::size_t first, std::size_t last);
+[[nodiscard]] std::vector<std::size_t> starts_after_rests(const MachineRun& run, std::size_t first, std::size_t last);
 
 /// True if at `row` all temperatures (over the ambient, where it is known) and displacements are back at their values in
 /// the record's first rows: within 5 % of their range in between, or within 0.2 K and 0.5 um.
-[[nodiscard]] bool is_back_in_balance(const CutRecord& cut, std::size_t row);
+[[nodiscard]] bool is_back_in_balance(const MachineRun& run, std::size_t row);
 
 /// The rows [first, last) as one run. Its history begins at the last restart after a rest in which the machine came back
 /// to balance, otherwise at the record's first row.
-[[nodiscard]] RunRows whole_run(const CutRecord& cut, std::size_t first, std::size_t last);
+[[nodiscard]] RunRows whole_run(const MachineRun& run, std::size_t first, std::size_t last);
 
 /// The rows [first, last) as runs that begin where the drive restarts after a rest; at most eight, split at the longest
 /// rests. One run if there is no such rest, or the drive is not known.
-[[nodiscard]] std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first, std::size_t last);
+[[nodiscard]] std::vector<RunRows> runs_between_rests(const MachineRun& run, std::size_t first, std::size_t last);
 
 /// The part of a cyclogram between two times; it keeps its name.
 [[nodiscard]] Cyclogram part_of(const Cyclogram& cyclogram, double from_s, double until_s);

@@ -166,7 +166,7 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
 
 /// Notes rows that are too far apart to know the drive between them.
 void note_coarse_rows(RecordedRun& run) {
-  if (const auto what = beyond_usual(Usual::kRowInterval, usual_step_s(run.time_s)))
+  if (const auto what = beyond_usual(Usual::kRowInterval, usual_step_s(run.readings.time_s)))
     run.findings.push_back(
         {"speed",
          fmt::format(
@@ -191,10 +191,10 @@ bool is_of_column(const std::string& unit) {
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }
 
-RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_ambient,
-                   Reading reading) {
+RecordedRun run_of(Record record, const MachineModel* machine, const std::vector<std::string>& on_ambient, Reading reading) {
   RecordedRun run;
-  for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
+  std::vector<double>& time_s = run.readings.time_s;
+  for (double t_s : record.time_s) time_s.push_back(t_s - record.time_s.front());
   const auto attempt = [&](const std::string& channel, const auto& read) {
     try {
       read();
@@ -211,13 +211,13 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
            fmt::format("{} has no reading in {:.0f} % of the rows; its last one is held", channel.name, 100.0 * missing),
            false});
   };
-  attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
+  attempt("speed", [&] { run.cyclogram = drive_of(record, time_s, reading == Reading::kPlan); });
   if (!run.cyclogram.sections.empty()) {
     note_gaps(record.at("speed"));
     if (reading != Reading::kPlan) note_coarse_rows(run);
   }
   run.cyclogram.name = name_of(record.source);
-  run.cyclogram.columns = columns_of(record, run.time_s, machine, on_ambient);
+  run.cyclogram.columns = columns_of(record, time_s, machine, on_ambient);
   if (machine) run.ambient = machine->ambient;
   std::vector<std::string> names = {kAmbient};
   names.insert(names.end(), on_ambient.begin(), on_ambient.end());
@@ -225,19 +225,21 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
     const Channel* channel = record.find(name);
     if (!channel || n_readings(*channel) == 0) continue;
     attempt(name, [&] {
-      run.ambient = ambient_of(record, *channel, run.time_s, (machine ? machine->reference_K : kRoom_K) - kZeroCelsius_K,
+      run.ambient = ambient_of(record, *channel, time_s, (machine ? machine->reference_K : kRoom_K) - kZeroCelsius_K,
                                machine ? &machine->ambient : nullptr);
       run.ambient_channel = name;
     });
-    if (run.has_ambient()) note_gaps(*channel);
+    if (run.has_recorded_ambient()) note_gaps(*channel);
     break;
   }
-  if (!run.has_ambient()) {
+  if (!run.has_recorded_ambient()) {
     run.findings.push_back(
         {kAmbient,
          fmt::format("the record has no ambient temperature (ambient_degC){}", machine ? "; the scenario's is taken" : ""),
          false});
   }
+  run.readings.source = std::move(record.source);
+  run.readings.channels = std::move(record.channels);
   return run;
 }
 

@@ -49,7 +49,7 @@ TEST(AxisLoop, TheSignIsRightSemiClosedAndFullClosed) {
     loop.growing_part = feedback == Feedback::kMotor ? GrowingPart::kScrew : GrowingPart::kScale;
     loop.expansion_1_K = 10e-6;
     loop.at_um = 500e3;
-    const AxisLoopRun run = run_axis_loop(loop, record, "nose", [](const Record& readings) {
+    const AxisLoopResult run = run_axis_loop(loop, record, "nose", [](const Record& readings) {
       std::vector<double> error_um;
       for (double t : readings.at("screw").values) error_um.push_back(5.0 * (t - 20.0));
       return error_um;
@@ -273,7 +273,7 @@ std::vector<double> four_um_per_K(const Record& readings) {
   for (double t : readings.at("head").values) um.push_back(4.0 * (t - 20.0));
   return um;
 }
-const ErrorStage& stage_of(const AxisLoopRun& run, const std::string& cause) {
+const ErrorStage& stage_of(const AxisLoopResult& run, const std::string& cause) {
   for (const ErrorStage& s : run.stages) {
     if (s.cause == cause) return s;
   }
@@ -283,7 +283,7 @@ const ErrorStage& stage_of(const AxisLoopRun& run, const std::string& cause) {
 TEST(AxisLoop, EachCauseLeavesWhatItMust) {
   AxisLoop loop = plain_loop();
   loop.sampling_s = 10.0;
-  const AxisLoopRun perfect = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
+  const AxisLoopResult perfect = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
   EXPECT_NEAR(stage_of(perfect, "none").peak_um, 12.0 * (1.0 - std::exp(-4.0)), 1e-9);
   EXPECT_NEAR(stage_of(perfect, "model").peak_um, 0.0, 1e-9);
   EXPECT_NEAR(stage_of(perfect, "thermometers").peak_um, 0.0, 1e-9);
@@ -296,10 +296,10 @@ TEST(AxisLoop, EachCauseLeavesWhatItMust) {
   EXPECT_EQ(perfect.with.control_quarters, perfect.with.encoder_quarters + perfect.with.inserted_quarters.back());
 
   loop.thermometers = {.noise_K = 0.1, .resolution_K = 0.0};  // 0.4 um RMS
-  const AxisLoopRun noisy = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
+  const AxisLoopResult noisy = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
   EXPECT_NEAR(stage_of(noisy, "thermometers").rms_um, 0.4, 0.05);  // of 360 draws: 4 % at one sigma
   loop.injector.largest_slew_um_s = 0.001;                         // 0.01 um a sample against 0.13 um of growth
-  const AxisLoopRun slow = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
+  const AxisLoopResult slow = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
   EXPECT_GT(stage_of(slow, "rate limit").peak_um, 6.0);
   EXPECT_NEAR(stage_of(slow, "axis").peak_um, stage_of(slow, "rate limit").peak_um,
               1.75);  // the first insertion comes at once, each is rounded by half of one, and a count
@@ -308,7 +308,7 @@ TEST(AxisLoop, EachCauseLeavesWhatItMust) {
 TEST(AxisLoop, SamplesDuringAPassDoNotCount) {
   AxisLoop loop = plain_loop();
   loop.motion = {.stroke_um = 1000.0, .feed_um_s = 10e3, .every_s = 60.0};
-  const AxisLoopRun run = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
+  const AxisLoopResult run = run_axis_loop(loop, warm_up(), "nose", four_um_per_K);
   EXPECT_EQ(std::count(run.at_rest.begin(), run.at_rest.end(), false), 60);  // at 30, 90, ... s; 0.1 s way, 0.3 s to settle
   EXPECT_LT(run.stages.back().peak_um, 1.0);
   EXPECT_EQ(run.with.control_jumps, 0);

@@ -17,9 +17,9 @@ using ::testing::ThrowsMessage;
 // 10 um at 0.5 um per period are 20 periods. A dither of +-3 periods passes 00 at 1, 2, 3, 2, 1, 0, -1, -2,
 // -3, -2, -1, 0: twelve windows a sample, so 12 periods after the first sample and 20 after the second. Then
 // -1 um: -2 periods, 22 back.
-TEST(InjectionRun, FollowsAStepAsFastAsLowWindowsAllow) {
+TEST(SimulatedInjection, FollowsAStepAsFastAsLowWindowsAllow) {
   const std::vector<double> t_s = {0, 60, 180, 240, 300};
-  const InjectionRun run = simulate_injection(t_s, std::vector<double>{10, 10, -1, -1, NAN}, 0.5);
+  const InjectionResult run = simulate_injection(t_s, std::vector<double>{10, 10, -1, -1, NAN}, 0.5);
   EXPECT_THAT(run.inserted_periods, ElementsAre(12, 20, 8, -2, -2));  // a missing value keeps the target
   EXPECT_THAT(run.inserted_um, ElementsAre(6.0, 10.0, 4.0, -1.0, -1.0));
   EXPECT_EQ(run.max_periods_per_sample, 12);
@@ -29,20 +29,20 @@ TEST(InjectionRun, FollowsAStepAsFastAsLowWindowsAllow) {
   EXPECT_EQ(run.n_illegal, 0);
 }
 
-TEST(InjectionRun, ASmallerDitherIsSlower) {
-  const InjectionRun run = simulate_injection(std::vector<double>{0, 1}, std::vector<double>{10, 10}, 1.0, 1);
+TEST(SimulatedInjection, ASmallerDitherIsSlower) {
+  const InjectionResult run = simulate_injection(std::vector<double>{0, 1}, std::vector<double>{10, 10}, 1.0, 1);
   EXPECT_THAT(run.inserted_periods, ElementsAre(4, 8));
 }
 
 // A drift within the rate limit is followed to the nearest period: the residual never exceeds half of one.
-TEST(InjectionRun, LeavesHalfAPeriodAtMostOfASlowDrift) {
+TEST(SimulatedInjection, LeavesHalfAPeriodAtMostOfASlowDrift) {
   std::vector<double> t_s, drift_um;
   for (int i = 0; i < 600; ++i) {
     t_s.push_back(30.0 * i);
     drift_um.push_back(45.0 * (1.0 - std::exp(-t_s.back() / 3000.0)) - 3.0);
   }
   const double period_um = 0.4;
-  const InjectionRun run = simulate_injection(t_s, drift_um, period_um);
+  const InjectionResult run = simulate_injection(t_s, drift_um, period_um);
   double worst_um = 0.0;
   for (std::size_t i = 0; i < t_s.size(); ++i) worst_um = std::max(worst_um, std::abs(drift_um[i] - run.inserted_um[i]));
   EXPECT_LE(worst_um, 0.5 * period_um + 1e-12);
@@ -50,7 +50,7 @@ TEST(InjectionRun, LeavesHalfAPeriodAtMostOfASlowDrift) {
   EXPECT_EQ(run.downstream_count - run.upstream_count, 4 * run.inserted_periods.back());
 }
 
-TEST(InjectionRun, RefusesBadInput) {
+TEST(SimulatedInjection, RefusesBadInput) {
   const std::vector<double> two = {0, 1};
   EXPECT_THROW((void)simulate_injection(two, two, 0.0), RangeError);
   EXPECT_THROW((void)simulate_injection(two, two, NAN), RangeError);

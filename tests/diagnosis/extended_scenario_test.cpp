@@ -137,7 +137,7 @@ Eigen::MatrixXd by_simulation(const std::string& path) {
   const scenarios::MachineModel& model = *s.machine;
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
   const Cyclogram& cyclogram = s.cyclograms.front();
-  const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
+  const MachineRun felt = scenarios::felt_run(model, cyclogram);
   const solver::Trajectory run = solver::simulate(
       machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(cyclogram, s.solver.output_interval_s), kTight,
       scenarios::after_what_was_before(machine.system, felt, kTight, scenarios::start_state(model, machine)));

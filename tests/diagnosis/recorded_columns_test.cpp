@@ -73,7 +73,7 @@ std::string scenario_with(const std::string& entry, bool with_columns = true) {
 
 Record simulated(const scenarios::MachineModel& model, const Cyclogram& cyclogram) {
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
-  const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
+  const MachineRun felt = scenarios::felt_run(model, cyclogram);
   return scenarios::as_recorded(
       model,
       solver::simulate(machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(cyclogram, 60.0),

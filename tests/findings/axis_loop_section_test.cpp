@@ -25,8 +25,8 @@ scenarios::AxisLoopSettings settings() {
 }
 
 /// A run of two samples, sound or not.
-compensation::AxisLoopRun small_run(const compensation::AxisFaults& faults) {
-  compensation::AxisLoopRun run;
+compensation::AxisLoopResult small_run(const compensation::AxisFaults& faults) {
+  compensation::AxisLoopResult run;
   run.time_s = {0, 1};
   run.before_um = run.predicted_um = run.inserted_um = {0, 4};
   run.after_um = {0, 1};
@@ -40,16 +40,16 @@ compensation::AxisLoopRun small_run(const compensation::AxisFaults& faults) {
   return run;
 }
 
-output::Section section(const compensation::AxisLoopRun& run) {
+output::Section section(const compensation::AxisLoopResult& run) {
   return axis_loop_section(settings(), run, 10.0, {});
 }
 
-std::string terminal(const compensation::AxisLoopRun& run, bool details) {
+std::string terminal(const compensation::AxisLoopResult& run, bool details) {
   return output::section_text(section(run), {.details = details});
 }
 
 TEST(AxisLoopSection, TellsTheFaultsOfTheAxis) {
-  const compensation::AxisLoopRun run = small_run({.n_jumps = 2, .n_too_fast = 345, .n_glitches = 6, .swapped = true});
+  const compensation::AxisLoopResult run = small_run({.n_jumps = 2, .n_too_fast = 345, .n_glitches = 6, .swapped = true});
   const auto harmful = AllOf(HasSubstr("2 jumps of both lines"), HasSubstr("345 edges faster than the control counts"),
                              HasSubstr("counts against the command"));
   EXPECT_THAT(terminal(run, false), harmful);
@@ -65,7 +65,7 @@ TEST(AxisLoopSection, ASoundAxisHasNone) {
 
 // Inserted is what the injector says, not what the other three would make of it.
 TEST(AxisLoopSection, TheLedgerIsTheInjectorsOwn) {
-  compensation::AxisLoopRun run = small_run({});
+  compensation::AxisLoopResult run = small_run({});
   run.with.total_quarters = 5;
   EXPECT_EQ(output::section_json(section(run))["counts"]["inserted_quarters"], 5);
   EXPECT_THAT(terminal(run, true), HasSubstr("inserted +5"));

@@ -46,7 +46,7 @@ Record record_of(const std::string& text, const std::string& cyclogram) {
   const MachineModel& model = *scenario.machine;
   const Machine machine = build(model, place(model));
   const Cyclogram& recorded = scenario.cyclogram(cyclogram);
-  const FeltRun felt = felt_run(model, recorded);
+  const MachineRun felt = felt_run(model, recorded);
   const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.ambient,
                                                   output_times_s(recorded, scenario.solver.output_interval_s),
                                                   scenario.solver.transient, start_state(model, machine));
@@ -252,7 +252,7 @@ TEST(ReducedMachines, FollowWhatTheFullOneFeels) {
   const Cyclogram& recorded = scenario.cyclograms.front();
   const Machine full = build(model, place(model));
   const ReducedMachine reduced = reduce(model, full, reduction_plan(scenario, {&recorded}));
-  const FeltRun felt = felt_run(model, recorded);
+  const MachineRun felt = felt_run(model, recorded);
   const std::vector<double> times_s = output_times_s(recorded, 300.0);
   const solver::TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
   const Record a = as_recorded(

@@ -15,7 +15,7 @@ const TimeSeries kWarming{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
 
 RecordedRun morning(double ambient_at_end_K, bool has_ambient) {
   RecordedRun run;
-  run.time_s = {0.0, 60.0, 120.0};
+  run.readings.time_s = {0.0, 60.0, 120.0};
   run.cyclogram = {.name = "morning", .sections = {{120.0, {.speed_rpm = 1000.0}}}};
   run.ambient = {{0.0, 120.0}, {5.0, ambient_at_end_K}};
   run.ambient_channel = has_ambient ? "ambient" : "";

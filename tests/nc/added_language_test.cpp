@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "nc/correction.hpp"
+#include "nc/execution.hpp"
 #include "nc/places.hpp"
 #include "nc/program.hpp"
-#include "nc/run.hpp"
 #include "nc/units.hpp"
 #include "nc/written_words.hpp"
 #include "tests/nc/program_sums.hpp"
@@ -36,7 +36,7 @@ class Marker final : public NcLanguage {
     return !lines.empty() && lines.front().find("MARK") != std::string::npos;
   }
 
-  void read(const std::string& path, const std::vector<std::string>& lines, NcRun& run) const override {
+  void read(const std::string& path, const std::vector<std::string>& lines, NcExecution& run) const override {
     std::array<double, 3> shift_m = {0, 0, 0};
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const Where where{path, static_cast<int>(i) + 1, 1, "", lines[i]};
@@ -69,7 +69,7 @@ class Marker final : public NcLanguage {
 
  private:
   /// @returns true  if it ends the program
-  static bool block(const std::string& line, NcRun& run, std::array<double, 3>& shift_m) {
+  static bool block(const std::string& line, NcExecution& run, std::array<double, 3>& shift_m) {
     std::istringstream stream(line.substr(0, std::min(line.find('!'), line.find(" ."))));
     std::string verb;
     stream >> verb;

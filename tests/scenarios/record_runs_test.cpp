@@ -54,8 +54,7 @@ Record record_of(const std::vector<Stretch>& stretches) {
 struct Cut {
   explicit Cut(const std::vector<Stretch>& stretches)
       : record(record_of(stretches)), run(run_of(record, nullptr, {}, Reading::kStrict)) {}
-  [[nodiscard]] CutRecord cut() const { return {record, run.cyclogram, run.ambient}; }
-  [[nodiscard]] std::vector<RunRows> runs() const { return runs_between_rests(cut(), 0, record.n_samples()); }
+  [[nodiscard]] std::vector<RunRows> runs() const { return runs_between_rests(run, 0, record.n_samples()); }
   Record record;
   RecordedRun run;
 };
@@ -65,8 +64,8 @@ TEST(RecordRuns, AreCutWhereTheDriveStartsAnewAfterARest) {
   const Cut c({{0.5, 0}, {2, 1000}, {1, 0}, {2, 500}, {5, 0}, {2, 1000}, {1, 0}, {1, 400}});
   EXPECT_THAT(c.runs(),
               ElementsAre(RunRows{0, 0, 210}, RunRows{0, 210, 630}, RunRows{630, 630, 810}, RunRows{630, 810, 870}));
-  EXPECT_FALSE(is_back_in_balance(c.cut(), 210));
-  EXPECT_TRUE(is_back_in_balance(c.cut(), 630));
+  EXPECT_FALSE(is_back_in_balance(c.run, 210));
+  EXPECT_TRUE(is_back_in_balance(c.run, 630));
 }
 
 TEST(RecordRuns, ShortRestsAndJitterDoNotCut) {
@@ -97,7 +96,7 @@ TEST(RecordRuns, AFeedIsNoRest) {
   Record r = record_of({{2, 1000}, {1, 0}, {2, 500}});
   r.channels.push_back({"feed_x", "mm_min", std::vector<double>(r.n_samples(), -600.0)});
   const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_THAT(runs_between_rests({r, run.cyclogram, run.ambient}, 0, r.n_samples()), SizeIs(1));
+  EXPECT_THAT(runs_between_rests(run, 0, r.n_samples()), SizeIs(1));
 }
 
 // The machine came back to its ambient, which is warmer by now; without the ambient it has not come back.
@@ -110,10 +109,10 @@ TEST(RecordRuns, BalanceIsWithTheAmbient) {
     r.channels[1].values[i] += rise_K;
   }
   const RecordedRun alone = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_FALSE(is_back_in_balance({r, alone.cyclogram, alone.ambient}, 420));
+  EXPECT_FALSE(is_back_in_balance(alone, 420));
   r.channels.push_back(ambient);
   const RecordedRun with_ambient = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_TRUE(is_back_in_balance({r, with_ambient.cyclogram, with_ambient.ambient}, 420));
+  EXPECT_TRUE(is_back_in_balance(with_ambient, 420));
 }
 
 TEST(RecordPart, NamesRowsByTimeSinceTheFirst) {

@@ -32,7 +32,7 @@ const double kMissing = std::nan("");
 
 TEST(RecordedRun, IsDrivenFromEachRowOnAndCountsFromTheFirst) {
   const RecordedRun run = run_of(record(), nullptr, {}, Reading::kStrict);
-  EXPECT_EQ(run.time_s, (std::vector<double>{0, 60, 120, 180, 240}));
+  EXPECT_EQ(run.readings.time_s, (std::vector<double>{0, 60, 120, 180, 240}));
   ASSERT_THAT(run.cyclogram.sections, SizeIs(2));  // 0.4 % of the top speed is no other speed
   EXPECT_EQ(run.cyclogram.sections[0].duration_s, 180.0);
   EXPECT_EQ(run.cyclogram.sections[0].drive.speed_rpm, 1000.0);
@@ -67,12 +67,12 @@ TEST(RecordedRun, KnowsTheAmbientFromAmbientFromASensorOnItOrFromTheMachine) {
   const Channel ambient{"ambient", "degC", {22, 22, kMissing, 22, 22}};
   const Channel sensor{"t_air", "degC", {24, 24, 24, 24, 24}};
   const RecordedRun by_ambient = run_of(with(with(record(), sensor), ambient), &machine, {"t_air"}, Reading::kStrict);
-  EXPECT_TRUE(by_ambient.has_ambient());
+  EXPECT_TRUE(by_ambient.has_recorded_ambient());
   EXPECT_THAT(by_ambient.ambient.value, Each(DoubleNear(2.0, 1e-9)));  // over 20 degC
   EXPECT_THAT(run_of(with(record(), sensor), &machine, {"t_air"}, Reading::kStrict).ambient.value,
               Each(DoubleNear(4.0, 1e-9)));
   const RecordedRun without = run_of(record(), &machine, {}, Reading::kStrict);
-  EXPECT_FALSE(without.has_ambient());
+  EXPECT_FALSE(without.has_recorded_ambient());
   EXPECT_EQ(without.ambient.value, machine.ambient.value);
   // it is unknown: it has no knot and must not be read
   const RecordedRun unknown = run_of(record(), nullptr, {}, Reading::kStrict);
@@ -114,7 +114,7 @@ TEST(RecordedRun, HoldsFeedsThatAreMissingAndRefusesForeignOnes) {
 TEST(RecordedRun, AnEmptyAmbientIsNone) {
   const Channel ambient{"ambient", "degC", std::vector<double>(5, kMissing)};
   const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
-  EXPECT_FALSE(run.has_ambient());
+  EXPECT_FALSE(run.has_recorded_ambient());
   ASSERT_THAT(run.findings, SizeIs(1));
   EXPECT_THAT(run.findings[0].what, HasSubstr("no ambient temperature"));
 }

@@ -60,7 +60,7 @@ inline std::vector<std::string> noisy_records(const std::string& scenario, const
   Random random(seed, 0);
   std::vector<std::string> paths;
   for (const Cyclogram& c : s.cyclograms) {
-    const scenarios::FeltRun felt = scenarios::felt_run(model, c);
+    const MachineRun felt = scenarios::felt_run(model, c);
     Record r = scenarios::as_recorded(
         model,
         solver::simulate(

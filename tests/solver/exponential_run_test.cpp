@@ -105,7 +105,7 @@ double miss_K(const Machine& m, const Eigen::MatrixXd& expected, double every_s,
   return states ? (*states - expected).cwiseAbs().maxCoeff() : INFINITY;
 }
 
-TEST(ExponentialRun, MeetsTheIntegratorWithinItsTolerance) {
+TEST(ExponentialIntegrator, MeetsTheIntegratorWithinItsTolerance) {
   for (const auto& change : std::vector<std::function<void(Machine&)>>{
            [](Machine&) {}, [](Machine& m) { m.decay_1_K = 0.05; }, [](Machine& m) { m.film_W_K = 60.0; },
            [](Machine& m) { m.capacity_J_K[1] = 200.0; },  // a time constant of 4 s beside rows of 150 s
@@ -122,7 +122,8 @@ TEST(ExponentialRun, MeetsTheIntegratorWithinItsTolerance) {
   }
 }
 
-TEST(ExponentialRun, SwitchesThermostatsWhenTheIntegratorDoes) {  // a chiller at the bearing, which cycles every few minutes
+TEST(ExponentialIntegrator,
+     SwitchesThermostatsWhenTheIntegratorDoes) {  // a chiller at the bearing, which cycles every few minutes
   Machine m;
   m.chiller_W = 600.0;
   const Eigen::MatrixXd expected = integrated(m, 30.0);
@@ -131,7 +132,7 @@ TEST(ExponentialRun, SwitchesThermostatsWhenTheIntegratorDoes) {  // a chiller a
   EXPECT_LT(miss_K(m, expected, 30.0, 1e-7), 1e-4);
 }
 
-TEST(ExponentialRun, IsExactWhereNothingLooksAtTemperatures) {
+TEST(ExponentialIntegrator, IsExactWhereNothingLooksAtTemperatures) {
   Machine m;
   m.decay_1_K = 0.0;
   m.film_W_K = 0.0;
@@ -199,7 +200,7 @@ TEST(KeptSteps, AreNotForThermostatsAndOtherUnknowns) {
   EXPECT_FALSE(kept->states_of(more, kCycle, machine.ambient, Eigen::VectorXd::Zero(4)));
 }
 
-TEST(ExponentialRun, LeavesToTheIntegratorWhatHasNoStepsOfItsOwn) {
+TEST(ExponentialIntegrator, LeavesToTheIntegratorWhatHasNoStepsOfItsOwn) {
   const Machine m;
   const auto has_states = [&](const ReducedSystem& s) {
     return exponential_states(s, kCycle, m.ambient, times_s(150.0), {}, m.start_K).has_value();
@@ -219,7 +220,8 @@ TEST(ExponentialRun, LeavesToTheIntegratorWhatHasNoStepsOfItsOwn) {
   EXPECT_FALSE(has_states(away));
 }
 
-TEST(ExponentialRun, HasTheExponentialsOfAMatrix) {  // of a 2 x 2 block with known ones, and of large and zero arguments
+TEST(ExponentialIntegrator,
+     HasTheExponentialsOfAMatrix) {  // of a 2 x 2 block with known ones, and of large and zero arguments
   Eigen::Matrix2d x;
   x << -3.0, 1.0, 0.0, -3.0;
   const Exponentials e = exponentials(x);
@@ -235,7 +237,7 @@ TEST(ExponentialRun, HasTheExponentialsOfAMatrix) {  // of a 2 x 2 block with kn
   EXPECT_EQ(exponentials(Eigen::MatrixXd::Zero(1, 1)).phi2(0, 0), 0.5);
 }
 
-TEST(ExponentialRun, HasTheExponentialsOfEveryHalf) {  // of V Λ V⁻¹, from rates of 1e-3 to 300 of a step
+TEST(ExponentialIntegrator, HasTheExponentialsOfEveryHalf) {  // of V Λ V⁻¹, from rates of 1e-3 to 300 of a step
   const Eigen::Vector4d rates(-1e-3, -0.7, -20.0, -300.0);
   Eigen::Matrix4d v;
   v << 2.0, 1.0, 0.0, 0.5, 0.0, 1.0, -1.0, 0.0, 1.0, 0.0, 3.0, 1.0, 0.0, -1.0, 0.0, 2.0;

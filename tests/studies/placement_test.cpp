@@ -63,7 +63,7 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
   const PlacementModel model = model_of(scenario);
   ASSERT_EQ(model.n_candidates, 2);
   ASSERT_EQ(model.spots[0].region, "head");
-  const std::vector<PlacementRun> runs =
+  const std::vector<MachineRun> runs =
       runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
   ASSERT_EQ(runs.size(), 1u);
   const double noise_K = 0.1, scatter = 0.3, row_s = 300.0;
@@ -132,12 +132,12 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
   for (int seed = 1; seed <= 6; ++seed) {
     const scenarios::Scenario scenario = scenario_of(chain(seed));
     const PlacementModel model = model_of(scenario);
-    const std::vector<PlacementRun> runs =
+    const std::vector<MachineRun> runs =
         runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
     const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows),
                                               {0.1, 0.3});
     const compensation::RegressionLeft regression(
-        scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
+        scattered_runs(model, runs, 1, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
     const compensation::LeftOfBoth both(observer, regression);
     const compensation::LeftWithLoss with_loss(both);
     for (const compensation::DriftLeft* left :
@@ -301,10 +301,8 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const scenarios::Model again = scenarios::open_model(placed, {}, {}, false);
   const std::vector<scenarios::SimulatedRun> runs =
       scenarios::simulate_cyclograms(placed, again, {&placed.cyclogram("cycle")}, {});
-  const PlacementRun run{.cyclogram = "cycle",
-                         .ambient = "",
-                         .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")),
-                         .times_s = runs[0].record.time_s};
+  MachineRun run = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle"));
+  run.readings.time_s = runs[0].record.time_s;
   const Eigen::MatrixXd states = states_of(model, model.system, run);
   for (std::size_t i = 0; i < 2; ++i) {
     const int node = p.spots[static_cast<std::size_t>(p.chosen.sets[1][i])].node;

@@ -29,8 +29,8 @@ TEST(Planner, ThePolicyOfTheScenarioPlans) {
     drift_um.push_back(0.5 * i);
   }
   const std::vector<double> boundaries_s = {0.0, 5400.0};
-  const compensation::CorrectedRun paper = compensation::correct_by_schedule({time_s, drift_um, boundaries_s, 10.0},
-                                                                             drift_um, 0.0, studies::planner_of(scenario));
+  const compensation::CorrectedDrift paper = compensation::correct_by_schedule({time_s, drift_um, boundaries_s, 10.0},
+                                                                               drift_um, 0.0, studies::planner_of(scenario));
   ASSERT_TRUE(paper.schedule);
   double corrected_um = 0.0;
   for (const compensation::Correction& c : paper.schedule->operations.front().corrections) {

@@ -11,7 +11,7 @@ namespace {
 
 struct Case {
   scenarios::Scenario scenario;
-  scenarios::FeltRun felt;
+  MachineRun felt;
   Record record{.source = "truth", .time_s = {}, .channels = {{"a", "degC", {}}, {"b", "degC", {}}, {"u", "um", {}}}};
 };
 

@@ -1,4 +1,4 @@
-#include "nc/heidenhain/run.hpp"
+#include "nc/heidenhain/execution.hpp"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ const NcSyntax& heidenhain_syntax() {
 
 }  // namespace
 
-double HeidenhainRun::value(const HeidenhainLine& line, const std::string& text, std::size_t& i, bool whole) const {
+double HeidenhainExecution::value(const HeidenhainLine& line, const std::string& text, std::size_t& i, bool whole) const {
   const NcLookup lookup = [this](const std::string& name) -> NcValue {
     const auto found = q_.find(name);
     if (found == q_.end())
@@ -56,7 +56,7 @@ double HeidenhainRun::value(const HeidenhainLine& line, const std::string& text,
   }
 }
 
-bool HeidenhainRun::function(const HeidenhainLine& line, int n, const std::string& q, double a, double b) {
+bool HeidenhainExecution::function(const HeidenhainLine& line, int n, const std::string& q, double a, double b) {
   double x = 0.0;
   switch (n) {
     case 0:
@@ -98,7 +98,7 @@ bool HeidenhainRun::function(const HeidenhainLine& line, int n, const std::strin
   return true;
 }
 
-bool HeidenhainRun::compares(const HeidenhainLine& line, int n, double a, double b) const {
+bool HeidenhainExecution::compares(const HeidenhainLine& line, int n, double a, double b) const {
   switch (n) {
     case 9:
       return a == b;
@@ -113,14 +113,14 @@ bool HeidenhainRun::compares(const HeidenhainLine& line, int n, double a, double
   }
 }
 
-void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) {
+void HeidenhainExecution::go_to(const HeidenhainLine& line, const std::string& label) {
   const auto is_it = [&](const HeidenhainLine& l) { return l.label == label; };
   const auto found = std::find_if(lines_.begin(), lines_.end(), is_it);
   if (found == lines_.end() || label == "0") fail(line, fmt::format("there is no label {} in the program", label));
   at = static_cast<std::size_t>(found - lines_.begin());
 }
 
-void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, int times) {
+void HeidenhainExecution::call(const HeidenhainLine& line, const std::string& label, int times) {
   const std::size_t own = at - 1;  // the reader is one line after it
   if (times == 0) {
     if (returns_.size() >= kDeepestSubprogram)
@@ -139,13 +139,13 @@ void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, i
   go_to(line, label);
 }
 
-void HeidenhainRun::end_subprogram() {
+void HeidenhainExecution::end_subprogram() {
   if (returns_.empty()) return;
   at = returns_.back();
   returns_.pop_back();
 }
 
-void HeidenhainRun::shift_datum(int axis, double x_m, bool incremental) {
+void HeidenhainExecution::shift_datum(int axis, double x_m, bool incremental) {
   const double to_m = incremental ? shift_m_[axis] + x_m : x_m;
   run_.motion.position_m[axis] += shift_m_[axis] - to_m;
   shift_m_[axis] = to_m;
@@ -153,7 +153,7 @@ void HeidenhainRun::shift_datum(int axis, double x_m, bool incremental) {
   if (run_.transformed) run_.forget();
 }
 
-void HeidenhainRun::other_datum(const std::string& word) {
+void HeidenhainExecution::other_datum(const std::string& word) {
   run_.note(word, "this is another datum; positions are counted as if in the one before");
   run_.step().resets = {true, true, true};
   shift_m_ = {0, 0, 0};
@@ -162,26 +162,26 @@ void HeidenhainRun::other_datum(const std::string& word) {
   run_.forget();
 }
 
-void HeidenhainRun::mirror(bool on, const std::string& word) {
+void HeidenhainExecution::mirror(bool on, const std::string& word) {
   if (on) run_.note(word, "this mirrors the path; it is counted as written, and no correction changes while it is in force");
   mirrored_ = on;
   update_transformed();
   run_.forget();
 }
 
-void HeidenhainRun::turn(bool on, const std::string& word) {
+void HeidenhainExecution::turn(bool on, const std::string& word) {
   if (on) run_.note(word, "this turns the path; it is counted as written, and no correction changes while it is in force");
   turned_ = on;
   update_transformed();
   run_.forget();
 }
 
-void HeidenhainRun::change_tool() {
+void HeidenhainExecution::change_tool() {
   run_.change_tool("a tool call");
   run_.forget();
 }
 
-bool HeidenhainRun::m_word(int m) {
+bool HeidenhainExecution::m_word(int m) {
   static const std::set<int> kWithoutEffect = {7, 8, 9, 90, 97, 98, 101, 102, 107, 108, 120, 126, 127, 129, 148, 149};
   if (kWithoutEffect.contains(m)) return false;
   switch (m) {
@@ -227,7 +227,7 @@ bool HeidenhainRun::m_word(int m) {
   }
 }
 
-void HeidenhainRun::line_to(const std::array<double, 3>& target_m, bool rapid) {
+void HeidenhainExecution::line_to(const std::array<double, 3>& target_m, bool rapid) {
   const auto [u, v] = plane_axes(run_.normal);
   const double du = target_m[u] - run_.motion.position_m[u], dv = target_m[v] - run_.motion.position_m[v],
                length_m = std::hypot(du, dv);
@@ -236,8 +236,8 @@ void HeidenhainRun::line_to(const std::array<double, 3>& target_m, bool rapid) {
   run_.motion_word = rapid ? 0 : 10;
 }
 
-void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise,
-                              int turns) {
+void HeidenhainExecution::circle_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m,
+                                    bool clockwise, int turns) {
   run_.arc_to(target_m, centre_m, clockwise, turns);
   run_.motion_word = 10;  // an inserted line continues at the feed
   const auto [u, v] = plane_axes(run_.normal);
@@ -245,14 +245,14 @@ void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::
   direction = clockwise ? std::array<double, 2>{rv / r, -ru / r} : std::array<double, 2>{-rv / r, ru / r};
 }
 
-int HeidenhainRun::turns_of(double angle_deg) const {
+int HeidenhainExecution::turns_of(double angle_deg) const {
   constexpr double kMostTurns = 1e5;
   if (!(std::abs(angle_deg) <= 360.0 * kMostTurns))
     run_.fail(fmt::format("the polar angle is {:g} degrees; at most {:.0f} are allowed", angle_deg, 360.0 * kMostTurns));
   return std::max(1, static_cast<int>(std::ceil(std::abs(angle_deg) / 360.0 - 1e-9)));
 }
 
-void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
+void HeidenhainExecution::tangent_arc_to(const std::array<double, 3>& target_m) {
   if (!direction) run_.fail("the tangential arc has no motion before it");
   const auto [u, v] = plane_axes(run_.normal);
   const std::array<double, 3>& start_m = run_.motion.position_m;
@@ -270,14 +270,14 @@ void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
   circle_to(target_m, centre_m, radius_m < 0.0, 1);
 }
 
-void HeidenhainRun::call_cycle() {
+void HeidenhainExecution::call_cycle() {
   if (!cycle_) run_.fail("no cycle is defined before this call");
   drill(*cycle_);
   run_.step().kind = NcStepKind::kDrilling;
   run_.step().named[run_.normal] = true;
 }
 
-void HeidenhainRun::drill(const HeidenhainCycle& c) {
+void HeidenhainExecution::drill(const HeidenhainCycle& c) {
   const auto q = [&](int n) {
     const auto found = c.q.find(n);
     if (found == c.q.end()) run_.fail(fmt::format("cycle {} has no Q{}", c.number, n));

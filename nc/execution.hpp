@@ -17,9 +17,9 @@ namespace driftwright {
 inline constexpr int kMostRuns = 500'000;
 
 /// The running program.
-class NcRun {
+class NcExecution {
  public:
-  explicit NcRun(const NcSettings& settings) : motion(settings.rapid_m_s), settings_(settings) {}
+  explicit NcExecution(const NcSettings& settings) : motion(settings.rapid_m_s), settings_(settings) {}
 
   NcMotion motion;
   double unit_m = 1e-3;            ///< of lengths

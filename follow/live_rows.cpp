@@ -1,4 +1,4 @@
-#include "follow/live_run.hpp"
+#include "follow/live_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr double kJitter = 0.01;  // share of the top speed so far; a smaller change is no change of drive, as in records
-constexpr std::size_t kMostKept = 8 * compensation::kRowsBack;
+constexpr std::size_t kMostKept = 8 * kRowsBack;
 
 }  // namespace
 
-LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive)
+LiveRows::LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive)
     : reference_C_(reference_K - kZeroCelsius_K),
       ambient_K_(ambient.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN()),
       wants_drive_(wants_drive) {
@@ -32,7 +32,7 @@ LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& ambien
   ambient_ = find(ambient, "degC");
 }
 
-void LiveRun::hear(double run_s, const std::vector<double>& values) {
+void LiveRows::hear(double run_s, const std::vector<double>& values) {
   const auto value = [&](std::size_t channel) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
@@ -56,19 +56,19 @@ void LiveRun::hear(double run_s, const std::vector<double>& values) {
 }
 
 /// A section of the drive before the last values, up to a time.
-void LiveRun::add_section(double time_s) {
+void LiveRows::add_section(double time_s) {
   if (!(time_s > section_end_s_)) return;
   run_.cyclogram.sections.push_back({time_s - section_end_s_, before_});
   section_end_s_ = time_s;
   ++n_new_sections_;
 }
 
-void LiveRun::between(double run_s, const std::vector<double>& values) {
+void LiveRows::between(double run_s, const std::vector<double>& values) {
   hear(run_s, values);
   add_section(run_s - start_s_);
 }
 
-bool LiveRun::add(double run_s, const std::vector<double>& values) {
+bool LiveRows::add(double run_s, const std::vector<double>& values) {
   hear(run_s, values);
   Record& readings = run_.readings;
   if (readings.time_s.empty()) {
@@ -90,21 +90,21 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   return true;
 }
 
-double LiveRun::drive_age_s() const {
+double LiveRows::drive_age_s() const {
   return std::max(wants_drive_ ? now_s_ - speed_at_s_ : 0.0, ambient_ == kNone ? 0.0 : now_s_ - ambient_at_s_);
 }
 
-std::vector<std::string> LiveRun::older_than(double age_s) const {
+std::vector<std::string> LiveRows::older_than(double age_s) const {
   std::vector<std::string> names;
   if (wants_drive_ && now_s_ - speed_at_s_ > age_s) names.emplace_back("speed");
   if (ambient_ != kNone && now_s_ - ambient_at_s_ > age_s) names.push_back(run_.readings.channels[ambient_].name);
   return names;
 }
 
-void LiveRun::forget() {
+void LiveRows::forget() {
   Record& readings = run_.readings;
   if (readings.n_samples() < kMostKept) return;
-  const auto n = static_cast<std::ptrdiff_t>(readings.n_samples() - compensation::kRowsBack - 1);
+  const auto n = static_cast<std::ptrdiff_t>(readings.n_samples() - kRowsBack - 1);
   const auto drop = [&](auto& list) { list.erase(list.begin(), list.begin() + n); };
   drop(readings.time_s);
   for (Channel& c : readings.channels) drop(c.values);
@@ -120,7 +120,7 @@ void LiveRun::forget() {
   run_.cyclogram_from_s = readings.time_s.front();
 }
 
-LiveRun::State LiveRun::state() const {
+LiveRows::State LiveRows::state() const {
   State s{.start_s = start_s_,
           .n_rows = n_rows(),
           .time_s = run_.readings.time_s.back(),
@@ -134,7 +134,7 @@ LiveRun::State LiveRun::state() const {
   return s;
 }
 
-void LiveRun::recall(const State& s) {
+void LiveRows::recall(const State& s) {
   start_s_ = s.start_s;
   now_s_ = s.start_s + s.time_s;
   speed_at_s_ = now_s_ - s.speed_age_s;

@@ -1,4 +1,4 @@
-#include "nc/run.hpp"
+#include "nc/execution.hpp"
 
 #include <fmt/format.h>
 
@@ -8,14 +8,14 @@
 
 namespace driftwright {
 
-void NcRun::count(const Where& where) {
+void NcExecution::count(const Where& where) {
   if (++n_runs_ > most_runs_)
     throw InputError(where, fmt::format("the program has run {} blocks and is still not at its end; a loop without end is "
                                         "not planned for",
                                         most_runs_));
 }
 
-void NcRun::begin(const Where& where, bool deletable) {
+void NcExecution::begin(const Where& where, bool deletable) {
   motion.where = where;
   motion.demand = {};
   forgets_ = false;
@@ -35,7 +35,7 @@ void NcRun::begin(const Where& where, bool deletable) {
   first_move_.push_back(motion.moves().size());
 }
 
-void NcRun::end() {
+void NcExecution::end() {
   for (; n_timed_ < motion.moves().size(); ++n_timed_) time_s_ += motion.moves()[n_timed_].duration_s;
   NcStep& step = steps_.back();
   step.end_s = time_s_;
@@ -59,15 +59,15 @@ void NcRun::end() {
   }
 }
 
-void NcRun::note_at(const Where& where, const std::string& word, const std::string& message) {
+void NcExecution::note_at(const Where& where, const std::string& word, const std::string& message) {
   if (noted_.insert(word).second) notes_.push_back(fmt::format("line {}: {}: {}", where.line, word, message));
 }
 
-void NcRun::pass_over(const std::string& word) {
+void NcExecution::pass_over(const std::string& word) {
   note(word, "it is not known here; it stays in the program and is timed as zero");
 }
 
-void NcRun::set_feed(double f) {
+void NcExecution::set_feed(double f) {
   if (f < 0.0) fail(fmt::format("the feed is {:g}; it must be zero or above", f));
   switch (motion.feed_mode) {
     case NcFeedMode::PerMinute:
@@ -82,12 +82,12 @@ void NcRun::set_feed(double f) {
   }
 }
 
-void NcRun::set_feed_mode(NcFeedMode mode) {
+void NcExecution::set_feed_mode(NcFeedMode mode) {
   if (mode != motion.feed_mode) motion.feed = 0.0;
   motion.feed_mode = mode;
 }
 
-void NcRun::change_tool(const std::string& word) {
+void NcExecution::change_tool(const std::string& word) {
   if (!settings_.tool_change_s)
     fail(
         fmt::format("{} changes the tool, but the time that this takes is missing; state `tool_change`, such as 8 s", word));
@@ -96,22 +96,23 @@ void NcRun::change_tool(const std::string& word) {
   step().tool_change = true;
 }
 
-void NcRun::halt(const std::string& word) {
+void NcExecution::halt(const std::string& word) {
   step().halts = true;
   note(word, "a halt counts as no time; all that comes later is timed as if nobody waited");
 }
 
-void NcRun::go(NcStepKind kind, const std::array<double, 3>& target_m) {
+void NcExecution::go(NcStepKind kind, const std::array<double, 3>& target_m) {
   step().kind = kind;
   kind == NcStepKind::kRapid ? motion.rapid_to(target_m) : motion.feed_to(target_m);
 }
 
-void NcRun::arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise, int turns) {
+void NcExecution::arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise,
+                         int turns) {
   step().kind = NcStepKind::kArc;
   motion.arc_to(target_m, centre_m, normal, clockwise, turns, rounding_m());
 }
 
-std::array<double, 3> NcRun::centre_of(const std::array<double, 3>& target_m, double radius_m, bool clockwise) const {
+std::array<double, 3> NcExecution::centre_of(const std::array<double, 3>& target_m, double radius_m, bool clockwise) const {
   try {
     return arc_centre(motion.position_m, target_m, radius_m, normal, clockwise, rounding_m());
   } catch (const RangeError& e) {
@@ -119,13 +120,13 @@ std::array<double, 3> NcRun::centre_of(const std::array<double, 3>& target_m, do
   }
 }
 
-const std::array<double, 3>& NcRun::machine_zero(const std::string& word) const {
+const std::array<double, 3>& NcExecution::machine_zero(const std::string& word) const {
   if (!settings_.machine_zero_m)
     fail(word + " needs the machine's zero; state `machine_zero`, its position in the coordinates of the program");
   return *settings_.machine_zero_m;
 }
 
-NcProgram NcRun::result(const std::string& path, const NcLanguage& language) && {
+NcProgram NcExecution::result(const std::string& path, const NcLanguage& language) && {
   std::map<std::pair<std::string, int>, int> runs;  // of each line
   for (NcStep& step : steps_) step.nth_run = ++runs[{step.where.file, step.where.line}];
   for (NcStep& step : steps_) {

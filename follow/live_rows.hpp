@@ -8,13 +8,13 @@
 
 namespace driftwright::follow {
 
-class LiveRun {
+class LiveRows {
  public:
   /// @param channels     of the stream
   /// @param ambient      channel in degC that reads the ambient; "": not needed
   /// @param reference_K  reference temperature that the ambient is counted from
   /// @param wants_drive  whether the rows must contain the spindle speed
-  LiveRun(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive);
+  LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive);
 
   /// Takes a row; a missing drive or ambient keeps its last value.
   /// @return false if drive or ambient is still unknown, so that the run has not begun

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "nc/execution.hpp"
 #include "nc/expression.hpp"
-#include "nc/run.hpp"
 
 namespace driftwright {
 
@@ -26,9 +26,9 @@ struct HeidenhainLine {
 };
 
 /// The state of a running program, which the two readers act on.
-class HeidenhainRun {
+class HeidenhainExecution {
  public:
-  HeidenhainRun(NcRun& run, const std::vector<HeidenhainLine>& lines) : run_(run), lines_(lines) {}
+  HeidenhainExecution(NcExecution& run, const std::vector<HeidenhainLine>& lines) : run_(run), lines_(lines) {}
 
   /// Index of the line to run next.
   std::size_t at = 0;
@@ -79,7 +79,7 @@ class HeidenhainRun {
   void update_transformed() { run_.transformed = mirrored_ || turned_; }
   void drill(const HeidenhainCycle& cycle);
 
-  NcRun& run_;
+  NcExecution& run_;
   const std::vector<HeidenhainLine>& lines_;
   std::map<std::string, double> q_;
   std::vector<std::size_t> returns_;
