@@ -66,7 +66,7 @@ void add_machine_reference(output::FmuOrder& order, const Record& record, const 
 /// The reference output: the observer run on a machine that equals its model.
 void add_observer_reference(output::FmuOrder& order, const compensation::Observer& observer,
                             const scenarios::Scenario& scenario, const Record& record, const Cyclogram& cyclogram) {
-  compensation::ObservedRun run{.cyclogram = cyclogram, .ambient = {}, .readings = record};
+  MachineRun run{.cyclogram = cyclogram, .ambient = {}, .readings = record};
   Columns in = drive_columns(order.model, cyclogram, record.time_s), out;
   std::vector<double> ambient_degC;
   for (double t_s : record.time_s) {

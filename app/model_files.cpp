@@ -35,14 +35,14 @@ std::optional<output::Covered> covered_by(const JudgedStrategy& s, const Strateg
   if (!s.fitted.predictor->is_driven()) return std::nullopt;
   const double zero_degC = s.fitted.predictor->reference_K() - kZeroCelsius_K;
   output::Covered c{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  const auto take = [&](const ObservedRun& run) {
+  const auto take = [&](const MachineRun& run) {
     for (const auto& section : run.cyclogram.sections) c.most_rpm = std::max(c.most_rpm, section.drive.speed_rpm);
     for (double K : run.ambient.value) {
       c.low_degC = std::min(c.low_degC, K + zero_degC);
       c.high_degC = std::max(c.high_degC, K + zero_degC);
     }
   };
-  for (const ObservedRun& run : m.training) take(run);
+  for (const MachineRun& run : m.training) take(run);
   for (const JudgedRunOfMachine& r : m.runs) take(r.run);
   return c.high_degC >= c.low_degC ? std::optional(c) : std::nullopt;
 }

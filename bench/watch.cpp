@@ -30,11 +30,11 @@ using Kind = TrialFault::Kind;
 constexpr double kDay_s = 86400.0, kMonth_days = 30.0;
 
 /// Times at which alarms were raised.
-std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimits& limits,
-                           const compensation::ObservedRun& run, double* highest) {
+std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimits& limits, const MachineRun& run,
+                           double* highest) {
   follow::Watch watch(machine.observer(), limits);
   std::vector<double> raised;
-  compensation::ObservedRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
+  MachineRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
   growing.readings.time_s.clear();  // values beyond the last time are not looked at
   for (double t_s : run.readings.time_s) {
     growing.readings.time_s.push_back(t_s);
@@ -51,12 +51,11 @@ struct Followed {
   int n_rows = 0, n_calm_and_wrong = 0, n_faded = 0;
   double rms_left_um = 0.0, rms_before_um = 0.0;
 };
-Followed followed(const compensation::DeployedPredictor& judged, const TrialMachine& machine,
-                  const compensation::ObservedRun& run) {
+Followed followed(const compensation::DeployedPredictor& judged, const TrialMachine& machine, const MachineRun& run) {
   compensation::DeployedPredictor d = judged;
   d.predictor = std::make_shared<compensation::Observer>(machine.observer());
   compensation::DeployedFollower follower(d);
-  compensation::ObservedRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
+  MachineRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
   growing.readings.time_s.clear();
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
   Followed f;
@@ -169,7 +168,7 @@ int main(int argc, char** argv) {
       if (one.nats < 16.0) continue;
       one.is_drawn = true;
       one.tau_h = tau_s / 3600.0;
-      const compensation::ObservedRun run = machine.work(end_s, fault, 60000 + i, true);
+      const MachineRun run = machine.work(end_s, fault, 60000 + i, true);
       one.followed = followed(file.predictor, machine, run);
       for (double t_s : alarms(machine, limits, run, nullptr)) {
         if (t_s < fault.onset_s) {

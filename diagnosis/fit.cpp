@@ -200,7 +200,7 @@ Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction
       prediction.push_back(known[r]);
       continue;
     }
-    const solver::KeptRun* near = about.empty() ? nullptr : about[r].get();
+    const solver::KeptStates* near = about.empty() ? nullptr : about[r].get();
     Eigen::MatrixXd response = near && common == Common::kTemperatures ? twin_.outputs_of(s, runs_[r], near->states())
                                                                        : twin_.respond(s, runs_[r], workspace, near);
     if (responses) (*responses)[r] = response;

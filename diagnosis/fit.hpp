@@ -127,7 +127,7 @@ class Fitter {
                                            Twin::Workspace& workspace) const;
 
   /// One of each run, null where there is none: what states near it are answered from.
-  using KeptRuns = std::vector<std::shared_ptr<const solver::KeptRun>>;
+  using KeptRuns = std::vector<std::shared_ptr<const solver::KeptStates>>;
   /// @param for_slopes  as Twin::kept_run()
   [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace, bool for_slopes = true) const;
 

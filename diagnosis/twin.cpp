@@ -375,9 +375,9 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
   return {workspace.system_, std::move(d.cyclogram), std::move(d.ambient), std::move(weights), std::move(d.start)};
 }
 
-std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                                      bool for_slopes) const {
-  const auto shared = [](auto kept) -> std::shared_ptr<const solver::KeptRun> {
+std::shared_ptr<const solver::KeptStates> Twin::kept_run(const TwinState& state, const MeasuredRun& run,
+                                                         Workspace& workspace, bool for_slopes) const {
+  const auto shared = [](auto kept) -> std::shared_ptr<const solver::KeptStates> {
     using Kept = typename decltype(kept)::value_type;
     return kept ? std::make_shared<const Kept>(*std::move(kept)) : nullptr;
   };
@@ -388,12 +388,12 @@ std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, co
 }
 
 Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                             const solver::KeptRun* near) const {
+                             const solver::KeptStates* near) const {
   return all_states(state, run, workspace, near).topRows(machine_.system.size());
 }
 
 Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                 const solver::KeptRun* near) const {
+                                 const solver::KeptStates* near) const {
   auto [felt, ambient, from] = drive(state, run, workspace);
   solver::ReducedSystem& system = workspace.system_;
   if (near && near->states().rows() == system.size()) {
@@ -408,7 +408,7 @@ Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run,
 }
 
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                              const solver::KeptRun* near) const {
+                              const solver::KeptStates* near) const {
   return outputs_of(state, run, states(state, run, workspace, near));
 }
 

@@ -61,20 +61,20 @@ class Twin {
   /// Reduced states of the machine at a run's grid, size x n_grid.
   /// @throws SolveError  if a state has no solution
   [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                       const solver::KeptRun* near = nullptr) const;
+                                       const solver::KeptStates* near = nullptr) const;
   /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the
   /// mean temperatures of its regions and nodes.
   /// @param near  unless null, kept_run() of a close state, whose accuracy is then sufficient
   /// @throws SolveError  if a state has no solution
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                        const solver::KeptRun* near = nullptr) const;
+                                        const solver::KeptStates* near = nullptr) const;
   /// respond() if the reduced states are known, size (or more, with places that the state adds) x n_grid.
   [[nodiscard]] Eigen::MatrixXd outputs_of(const TwinState& state, const MeasuredRun& run,
                                            const Eigen::Ref<const Eigen::MatrixXd>& states) const;
   /// Data from which states near this one are computed; null if that is not possible.
   /// @param for_slopes  first-order accuracy is sufficient
-  [[nodiscard]] std::shared_ptr<const solver::KeptRun> kept_run(const TwinState& state, const MeasuredRun& run,
-                                                                Workspace& workspace, bool for_slopes = true) const;
+  [[nodiscard]] std::shared_ptr<const solver::KeptStates> kept_run(const TwinState& state, const MeasuredRun& run,
+                                                                   Workspace& workspace, bool for_slopes = true) const;
   /// The readings of these outputs at the run's rows, n_outputs x n_times, with the instruments' effects.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
   /// The readings of a state: read() of what respond() gives.
@@ -127,7 +127,7 @@ class Twin {
   [[nodiscard]] Eigen::VectorXd after(const Cyclogram& before, double ambient_K, const Eigen::VectorXd& start,
                                       Workspace& workspace) const;
   [[nodiscard]] Eigen::MatrixXd all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                           const solver::KeptRun* near) const;
+                                           const solver::KeptStates* near) const;
 
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "compensation/predictors/scored_rows.hpp"
 #include "findings/strategy_cases.hpp"
 #include "output/heat_map.hpp"
 

@@ -127,7 +127,7 @@ std::vector<std::string> steps_without(const StrategyMatrix& m, const JudgedStra
 std::string correction_step(const StrategyMatrix& m, const scenarios::Scenario& scenario, const std::string& path,
                             const std::string& file) {
   const bool is_of_records =
-      std::any_of(m.training.begin(), m.training.end(), [](const ObservedRun& r) { return !r.rows.file.empty(); });
+      std::any_of(m.training.begin(), m.training.end(), [](const MachineRun& r) { return !r.rows.file.empty(); });
   const bool has_axis = scenario.axis_loop && scenario.axis_loop->displacement == m.settings.strategies.target;
   // without `study` of its own the scenario does not say what `compensate` corrects
   const bool has_study = scenario.study && !scenario.study->where.file.empty();
@@ -188,7 +188,7 @@ Section conditions_of(const StrategyMatrix& m) {
   }
   std::vector<std::string> simulated;
   Table records{.key = "trained_on", .columns = {{.key = "file"}, {.key = "from_s"}, {.key = "until_s"}}};
-  for (const ObservedRun& r : m.training) {
+  for (const MachineRun& r : m.training) {
     if (r.rows.file.empty())
       simulated.push_back(r.readings.source);
     else

@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "compensation/predictors/observed_run.hpp"
+#include "base/machine_run.hpp"
 #include "follow/stream_row.hpp"
 
 namespace driftwright::follow {
@@ -24,8 +24,8 @@ class LiveRows {
   /// Time since the last row that was added.
   [[nodiscard]] double since_row_s(double run_s) const { return run_s - start_s_ - run_.readings.time_s.back(); }
 
-  [[nodiscard]] compensation::ObservedRun& run() { return run_; }
-  [[nodiscard]] const compensation::ObservedRun& run() const { return run_; }
+  [[nodiscard]] MachineRun& run() { return run_; }
+  [[nodiscard]] const MachineRun& run() const { return run_; }
   /// Rows since the start of the run, including those no longer kept.
   [[nodiscard]] std::size_t n_rows() const { return run_.n_forgotten + run_.readings.n_samples(); }
   /// Age [s], at the last row, of the older of the spindle speed and the ambient, as far as they are needed.
@@ -54,7 +54,7 @@ class LiveRows {
   void hear(double run_s, const std::vector<double>& values);
   void add_section(double time_s);
 
-  compensation::ObservedRun run_;
+  MachineRun run_;
   double reference_C_, ambient_K_, top_rpm_ = 0.0, start_s_ = 0.0;
   double section_end_s_ = 0.0;                                  // of the last section, in the run
   std::deque<std::size_t> n_sections_;                          // that each row has added; 0 of the first

@@ -50,7 +50,7 @@ Watch::Watch(const compensation::Observer& observer, WatchLimits limits)
   for (std::size_t j = 0; j < inverse_.size(); ++j) inverse_[j] = inverse_of(limits_.scales[j].covariance);
 }
 
-double Watch::next(const compensation::ObservedRun& run) {
+double Watch::next(const MachineRun& run) {
   (void)follower_->next(run);
   const double now_s = run.readings.time_s.back(), step_s = has_row_ ? now_s - last_s_ : 0.0;
   has_row_ = true;

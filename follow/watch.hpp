@@ -66,7 +66,7 @@ class Watch {
   Watch(const compensation::Observer& observer, WatchLimits limits);
 
   /// Takes the last row of a run. @return the largest T² divided by its threshold; above 1 is an alarm
-  double next(const compensation::ObservedRun& run);
+  double next(const MachineRun& run);
   [[nodiscard]] const std::optional<Alarm>& alarm() const { return alarm_; }
   [[nodiscard]] double level() const { return level_; }
   [[nodiscard]] const WatchLimits& limits() const { return limits_; }

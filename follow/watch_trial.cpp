@@ -18,7 +18,6 @@
 namespace driftwright::follow {
 namespace {
 
-using compensation::ObservedRun;
 using compensation::Observer;
 
 constexpr double kDay_s = 86400.0, kHour_s = 3600.0;
@@ -122,7 +121,7 @@ TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> senso
   const std::vector<std::string>& outputs = machine_.outputs.name;
   for (const std::string& name : sensors_)
     output_.push_back(std::find(outputs.begin(), outputs.end(), name) - outputs.begin());
-  std::vector<ObservedRun> tests;
+  std::vector<MachineRun> tests;
   for (const double share : kTestedSpeeds) {
     const Cyclogram test{.name = "test",
                          .sections = {{kTestedFor_s, {.speed_rpm = share * settings.top_rpm}}, {kTestedFor_s, {}}}};
@@ -165,9 +164,9 @@ Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeS
   return y;
 }
 
-ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& ambient, const TrialFault& fault,
-                               std::uint64_t seed, bool with_drift) const {
-  ObservedRun run{.cyclogram = cyclogram, .ambient = {}, .readings = {.source = "trial", .time_s = {}, .channels = {}}};
+MachineRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& ambient, const TrialFault& fault,
+                              std::uint64_t seed, bool with_drift) const {
+  MachineRun run{.cyclogram = cyclogram, .ambient = {}, .readings = {.source = "trial", .time_s = {}, .channels = {}}};
   std::vector<double>& t = run.readings.time_s;
   for (double t_s = 0.0; t_s <= cyclogram.duration_s(); t_s += settings_.period_s) t.push_back(t_s);
   const Eigen::MatrixXd y = readings_K(cyclogram, ambient, t, fault);
@@ -192,7 +191,7 @@ ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& amb
   return run;
 }
 
-ObservedRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed, bool with_drift) const {
+MachineRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed, bool with_drift) const {
   Random random(seed, 8);
   const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
   return read(days, shop_ambient(duration_s, model_.start_ambient_K, random), fault, seed, with_drift);
@@ -255,7 +254,7 @@ template <class Take>
 void follow_at_work(const Observer& model, const std::vector<std::string>& sensors, const TrialSettings& settings, int seed,
                     double days, Take take) {
   const TrialMachine trial(model, sensors, settings, 1000 + static_cast<std::uint64_t>(seed));
-  const ObservedRun run = trial.work(days * kDay_s, {}, 5000 + static_cast<std::uint64_t>(seed));
+  const MachineRun run = trial.work(days * kDay_s, {}, 5000 + static_cast<std::uint64_t>(seed));
   const std::unique_ptr<compensation::ObserverFollower> follower = trial.observer().watch();
   ResidualMeans means(sensors.size());
   const std::vector<double>& t = run.readings.time_s;
@@ -337,16 +336,16 @@ Observer of_longer_rows(const Observer& observer, double row_s) {
   return Observer::of_state(std::move(s));
 }
 
-double top_rpm(std::span<const ObservedRun> runs) {
+double top_rpm(std::span<const MachineRun> runs) {
   double rpm = 0.0;
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     for (const auto& section : run.cyclogram.sections) rpm = std::max(rpm, section.drive.speed_rpm);
   }
   return rpm;
 }
 
 /// Largest T² of a scale in the rows of a run.
-std::array<double, kWatchedOver_s.size()> largest_in(const ObservedRun& run, const Observer& observer,
+std::array<double, kWatchedOver_s.size()> largest_in(const MachineRun& run, const Observer& observer,
                                                      const WatchLimits& limits) {
   std::array<double, kWatchedOver_s.size()> most{};
   OfScales inverse;
@@ -364,14 +363,14 @@ std::array<double, kWatchedOver_s.size()> largest_in(const ObservedRun& run, con
 
 }  // namespace
 
-std::optional<WatchLimits> deployed_limits(const Observer& observer, std::span<const ObservedRun> training,
+std::optional<WatchLimits> deployed_limits(const Observer& observer, std::span<const MachineRun> training,
                                            const Listener& listener) {
   const TrialSettings settings{.top_rpm = top_rpm(training),
                                .period_s = std::max(kRow_s, observer.state().settings.period_s)};
   if (observer.sensors().empty() || !(settings.top_rpm > 0.0)) return std::nullopt;
   WatchLimits limits = simulated_limits(of_longer_rows(observer, settings.period_s), observer.sensors(), settings,
                                         kTrialMachines, kTrialDays, listener);
-  for (const ObservedRun& run : training) {
+  for (const MachineRun& run : training) {
     const auto most = largest_in(run, observer, limits);
     for (std::size_t j = 0; j < most.size(); ++j)
       limits.scales[j].threshold = std::max(limits.scales[j].threshold, kOfTraining * most[j]);

@@ -36,8 +36,8 @@ class TrialMachine {
   /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top speed between 6 and 22 h, rest at night and
   /// at week-ends, and an ambient with a daily wave and a random part. Thermometers read with the model's noise.
   /// @param with_drift  the readings include the displacement that the observer predicts, with its noise
-  [[nodiscard]] compensation::ObservedRun work(double duration_s, const TrialFault& fault, std::uint64_t seed,
-                                               bool with_drift = false) const;
+  [[nodiscard]] MachineRun work(double duration_s, const TrialFault& fault, std::uint64_t seed,
+                                bool with_drift = false) const;
 
   /// Time constant [s] of the part with the fault: of the heat that the fault adds, b'K⁻²b / b'K⁻¹b with M = 1, at half
   /// the top speed.
@@ -53,8 +53,8 @@ class TrialMachine {
  private:
   [[nodiscard]] Eigen::MatrixXd readings_K(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                            const std::vector<double>& time_s, const TrialFault& fault) const;
-  [[nodiscard]] compensation::ObservedRun read(const Cyclogram& cyclogram, const TimeSeries& ambient,
-                                               const TrialFault& fault, std::uint64_t seed, bool with_drift) const;
+  [[nodiscard]] MachineRun read(const Cyclogram& cyclogram, const TimeSeries& ambient, const TrialFault& fault,
+                                std::uint64_t seed, bool with_drift) const;
 
   compensation::Observer::State model_;
   std::vector<std::string> sensors_;
@@ -85,7 +85,6 @@ inline constexpr double kTrialDays = 7.0;   ///< for each machine; includes a we
 /// Rows of the simulation are means over 5 min: noise is less by the root of the rows in one.
 /// @return none for an observer without thermometers, and for training runs in which the spindle never turns
 [[nodiscard]] std::optional<WatchLimits> deployed_limits(const compensation::Observer& observer,
-                                                         std::span<const compensation::ObservedRun> training,
-                                                         const Listener& listener);
+                                                         std::span<const MachineRun> training, const Listener& listener);
 
 }  // namespace driftwright::follow

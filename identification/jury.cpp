@@ -32,9 +32,9 @@ std::vector<Record> thinned(std::span<const Record> records, const std::vector<s
 }
 
 std::vector<HiddenRows> hidden_rows(std::span<const Record> records, const RecordRoles& roles) {
-  std::vector<compensation::ObservedRun> runs;
+  std::vector<MachineRun> runs;
   for (const Record& r : records) {
-    compensation::ObservedRun run;
+    MachineRun run;
     run.readings = r;
     runs.push_back(std::move(run));
   }

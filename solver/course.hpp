@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "solver/decomposition.hpp"
-#include "solver/kept_run.hpp"
+#include "solver/kept_states.hpp"
 
 namespace driftwright::solver {
 
@@ -18,7 +18,7 @@ namespace driftwright::solver {
 /// with V of the decomposition, and y0, f0, f1 in its coordinates. Pairs of equal λ use the limit. This needs matrix
 /// products only, no decomposition.
 /// Source: derivative of the matrix exponential, Najfeld & Havel, Adv. Appl. Math. 16 (1995) 321-375.
-class Course final : public KeptRun {
+class Course final : public KeptStates {
  public:
   /// Arguments as of Propagator::course(). Nothing is borrowed.
   /// @param decompositions  of the system, which must be linear

@@ -26,7 +26,7 @@ constexpr int kBisections = 40;
 class ExponentialIntegrator {
  public:
   ExponentialIntegrator(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
-                        const Eigen::VectorXd& start, StepsOfRun* steps)
+                        const Eigen::VectorXd& start, StepsTaken* steps)
       : system_(system),
         ambient_(ambient),
         steps_(steps),
@@ -192,7 +192,7 @@ class ExponentialIntegrator {
     if (!is_tangent_kept_) steps_->tangents.push_back(tangent_);
     is_tangent_kept_ = true;
     const std::size_t tangent = steps_->tangents.size() - 1;
-    std::vector<StepsOfRun::Matrices>& known = steps_->matrices;
+    std::vector<StepsTaken::Matrices>& known = steps_->matrices;
     std::size_t which = known.size();
     for (std::size_t i = known.size(); i-- > 0 && known[i].tangent == tangent && which == known.size();) {
       if (std::abs(known[i].h_s - h_s) <= kSameStep * h_s) which = i;
@@ -225,7 +225,7 @@ class ExponentialIntegrator {
 
   const ReducedSystem& system_;
   const TimeSeries& ambient_;
-  StepsOfRun* steps_;  ///< null: steps are not stored
+  StepsTaken* steps_;  ///< null: steps are not stored
   const LinearStretch* stretch_ = nullptr;
   LiveRate rates_;
   Eigen::VectorXd state_;
@@ -244,7 +244,7 @@ class ExponentialIntegrator {
 std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                   const TimeSeries& ambient, const std::vector<double>& output_s,
                                                   const TransientOptions& options, const Eigen::VectorXd& start,
-                                                  StepsOfRun* steps) {
+                                                  StepsTaken* steps) {
   if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {

@@ -27,7 +27,7 @@ inline constexpr int kMostOfExponentialRun = 40;
                                                                 const TimeSeries& ambient,
                                                                 const std::vector<double>& output_s,
                                                                 const TransientOptions& options,
-                                                                const Eigen::VectorXd& start, StepsOfRun* steps = nullptr);
+                                                                const Eigen::VectorXd& start, StepsTaken* steps = nullptr);
 
 /// The same for any reduced system: by exponentials where possible, else by integrate(). @throws SolveError
 [[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram,

@@ -20,7 +20,7 @@ constexpr double kOfApart = 1e-2;  // allowed error as a share of that differenc
 /// One run with the steps of another.
 class AlongSteps {
  public:
-  AlongSteps(const StepsOfRun& steps, const ReducedSystem& system, const TimeSeries& ambient, const Eigen::VectorXd& start)
+  AlongSteps(const StepsTaken& steps, const ReducedSystem& system, const TimeSeries& ambient, const Eigen::VectorXd& start)
       : steps_(steps), rates_(system, ambient), state_(start), rate_(start.size()) {}
 
   [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
@@ -29,8 +29,8 @@ class AlongSteps {
     knows_rate_ = false;
   }
   /// @return false if no step succeeds
-  [[nodiscard]] bool go(const StepsOfRun::Step& step, double from_s, double h_s, int n_halved = 0) {
-    const StepsOfRun::Matrices& whole = steps_.matrices[step.matrices];
+  [[nodiscard]] bool go(const StepsTaken::Step& step, double from_s, double h_s, int n_halved = 0) {
+    const StepsTaken::Matrices& whole = steps_.matrices[step.matrices];
     const bool is_whole = std::abs(h_s - whole.h_s) <= kSameStep * whole.h_s;
     begin_ = state_;
     if (is_whole ? tried(whole, step.more, from_s) : tried(part(whole, h_s), h_s / whole.h_s * step.more, from_s))
@@ -43,7 +43,7 @@ class AlongSteps {
 
  private:
   /// @return false if the step is too long
-  [[nodiscard]] bool tried(const StepsOfRun::Matrices& m, const Eigen::VectorXd& more, double from_s) {
+  [[nodiscard]] bool tried(const StepsTaken::Matrices& m, const Eigen::VectorXd& more, double from_s) {
     const Eigen::MatrixXd& tangent = steps_.tangents[m.tangent];
     if (!knows_rate_) rates_.rate(from_s, state_, rate_);
     n0_ = rate_;
@@ -68,7 +68,7 @@ class AlongSteps {
   }
   /// True if a stored step is short enough for the differences of the other machine: checks its middle as ExponentialIntegrator
   /// does.
-  [[nodiscard]] bool is_true(const StepsOfRun::Matrices& m, const Eigen::VectorXd& more, double from_s) {
+  [[nodiscard]] bool is_true(const StepsTaken::Matrices& m, const Eigen::VectorXd& more, double from_s) {
     end_.noalias() = m.second * (n1_ - n0_ - more);
     const double apart = end_.lpNorm<Eigen::Infinity>();
     if (apart <= kApart * steps_.allowed) return true;
@@ -80,8 +80,8 @@ class AlongSteps {
     return 2.0 / 3.0 * m.h_s * next_.lpNorm<Eigen::Infinity>() <= 2.0 * steps_.allowed + kOfApart * apart;
   }
   /// Matrices of a part of a step.
-  [[nodiscard]] const StepsOfRun::Matrices& part(const StepsOfRun::Matrices& whole, double h_s) {
-    for (const StepsOfRun::Matrices& m : parts_) {
+  [[nodiscard]] const StepsTaken::Matrices& part(const StepsTaken::Matrices& whole, double h_s) {
+    for (const StepsTaken::Matrices& m : parts_) {
       if (m.tangent == whole.tangent && std::abs(h_s - m.h_s) <= kSameStep * h_s) return m;
     }
     const Exponentials e = exponentials(h_s * steps_.tangents[whole.tangent]);
@@ -89,11 +89,11 @@ class AlongSteps {
     return parts_.back();
   }
 
-  const StepsOfRun& steps_;
+  const StepsTaken& steps_;
   LiveRate rates_;
   Eigen::VectorXd state_, rate_, begin_, n0_, n1_, next_, end_;
   bool knows_rate_ = false;  ///< of the state, in the current stretch
-  std::vector<StepsOfRun::Matrices> parts_;
+  std::vector<StepsTaken::Matrices> parts_;
 };
 
 }  // namespace
@@ -125,7 +125,7 @@ std::optional<Eigen::MatrixXd> KeptSteps::states_of(const ReducedSystem& other, 
         states.col(static_cast<Eigen::Index>(next)) = run.state();
     };
     take_outputs(0.0, 0.0);
-    for (const StepsOfRun::Step& step : run_.steps) {
+    for (const StepsTaken::Step& step : run_.steps) {
       const double h_s = run_.matrices[step.matrices].h_s, until_s = step.from_s + h_s, rounding_s = kSameStep * h_s;
       double t_s = step.from_s;
       while (until_s - t_s > rounding_s) {

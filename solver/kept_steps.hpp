@@ -11,13 +11,13 @@
 // too long, so that it is halved. The errors of the steps are those of the stored run, so the error of the difference of the
 // two is as small as the difference.
 
-#include "solver/kept_run.hpp"
+#include "solver/kept_states.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::solver {
 
 /// The steps of a run.
-struct StepsOfRun {
+struct StepsTaken {
   /// The matrices of a step with the tangent J: e^{hJ}, h (φ1 - φ2), h φ2.
   struct Matrices {
     std::size_t tangent = 0;
@@ -38,7 +38,7 @@ struct StepsOfRun {
 };
 
 /// The stored run.
-class KeptSteps final : public KeptRun {
+class KeptSteps final : public KeptStates {
  public:
   static constexpr std::size_t kMostBytes = 128u << 20;  ///< of the matrices of one run: 128 MiB
   /// @returns none if exponential_states() returns none, for a system with thermostats, and for a run with more matrices
@@ -57,7 +57,7 @@ class KeptSteps final : public KeptRun {
  private:
   KeptSteps() = default;
 
-  StepsOfRun run_;
+  StepsTaken run_;
   std::vector<double> output_s_;
 };
 

@@ -10,6 +10,7 @@
 #include "compensation/judging/correction.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "machine/simulated_run.hpp"
 #include "machine/ways_out.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -41,7 +42,7 @@ ModalPredictor modes_for(const Scenario& scenario, const scenarios::Model& model
 }
 
 /// Requires what `validate` requires before a model follows a record.
-void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
+void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const MachineRun& run,
                            const std::string& ambient) {
   if (!d.predictor->is_driven()) return;
   if (!scenario.machine)
@@ -55,7 +56,7 @@ void require_model_follows(const Scenario& scenario, const DeployedPredictor& d,
 }
 
 /// The correction without an actuator, as `validate` judges it.
-CorrectionStudy through_none(const DeployedPredictor& d, const ObservedRun& run) {
+CorrectionStudy through_none(const DeployedPredictor& d, const MachineRun& run) {
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
   compensation::Judgement j = compensation::judge(d, run, drift_um);
   return {.time_s = run.readings.time_s,
@@ -66,7 +67,7 @@ CorrectionStudy through_none(const DeployedPredictor& d, const ObservedRun& run)
           .after = j.scores.after};
 }
 
-CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
+CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredictor& d, const MachineRun& run) {
   const AxisLoopResult loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
     return correct(d, {run.cyclogram, run.ambient, readings}).correction_um;
   });
@@ -80,7 +81,7 @@ CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredict
   return o;
 }
 
-CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
+CorrectionStudy through_schedule(const Scenario& scenario, const DeployedPredictor& d, const MachineRun& run,
                                  const std::vector<double>& ahead_um) {
   const auto unknown = std::find_if(ahead_um.begin(), ahead_um.end(), [](double v) { return std::isnan(v); });
   if (unknown != ahead_um.end() && d.predictor->inputs().empty())
@@ -118,7 +119,7 @@ void drop_lead_in(CorrectionStudy& o, std::size_t n_before) {
 }
 
 /// The figures of ISO 230-3 for the drift, and for the drift that is left.
-Iso230Figures iso_figures(const CorrectionStudy& o, const ObservedRun& run, const std::string& channel) {
+Iso230Figures iso_figures(const CorrectionStudy& o, const MachineRun& run, const std::string& channel) {
   if (run.n_before > 0)
     return {.running_period_s = 0.0, .channels = {}, .not_available = "the run goes on from what came before it"};
   Record test{.source = run.readings.source,
@@ -129,15 +130,15 @@ Iso230Figures iso_figures(const CorrectionStudy& o, const ObservedRun& run, cons
 }
 
 /// The run as measured, and its notes.
-ObservedRun read_run(const Scenario& scenario, const DeployedPredictor& d, const CorrectionRequest& request,
-                     std::vector<std::string>& notes) {
+MachineRun read_run(const Scenario& scenario, const DeployedPredictor& d, const CorrectionRequest& request,
+                    std::vector<std::string>& notes) {
   RecordPaths paths;
   if (!request.after.empty()) paths.test.push_back(request.after);
   paths.test.push_back(request.measured);
   StudyRecords records = read_records(scenario, paths, &d.ambient);
   notes = records.notes;
   notes.insert(notes.end(), records.findings.begin(), records.findings.end());
-  ObservedRun run = std::move(records.test.back());
+  MachineRun run = std::move(records.test.back());
   if (!request.after.empty() && run.n_before == 0)
     throw InputError(
         fmt::format("{} does not continue {}: its times must begin within five rows of the other's end, with the same "
@@ -149,8 +150,8 @@ ObservedRun read_run(const Scenario& scenario, const DeployedPredictor& d, const
 
 /// The run as simulated; as in validate_strategies(), a predictor gets the recorded data, and not the changes by the
 /// scenario's effects.
-ObservedRun simulate_observed(const Scenario& scenario, const scenarios::Model& model, const Cyclogram& cyclogram,
-                              const Listener& listener) {
+MachineRun simulate_observed(const Scenario& scenario, const scenarios::Model& model, const Cyclogram& cyclogram,
+                             const Listener& listener) {
   if (const scenarios::Machine* full = model.full())
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
   return {cyclogram, scenario.machine->ambient,
@@ -159,7 +160,7 @@ ObservedRun simulate_observed(const Scenario& scenario, const scenarios::Model& 
 
 /// Sets the thermometers' readings as this run has them in `validate`, if it judges the cyclogram in the scenario's
 /// ambient. @returns  a note that says which
-std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram, ObservedRun& run) {
+std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram, MachineRun& run) {
   std::optional<Record> read;
   if (scenario.validation) read = as_judged(*scenario.validation, cyclogram.name, run.readings);
   if (!read)
@@ -172,8 +173,8 @@ std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram,
 /// The drift that is known before the run. A driven predictor uses drive and ambient; for the inputs of others the modes
 /// predict the temperatures.
 std::vector<double> foretold_um(const Scenario& scenario, const scenarios::Model& model, const DeployedPredictor& d,
-                                const ObservedRun& run) {
-  ObservedRun known{run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
+                                const MachineRun& run) {
+  MachineRun known{run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
   if (!d.predictor->is_driven() && !d.predictor->inputs().empty())
     known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, run.cyclogram),
                                      run.cyclogram, run.readings.time_s);
@@ -184,7 +185,7 @@ std::vector<double> foretold_um(const Scenario& scenario, const scenarios::Model
 
 CorrectionStudy correct_run(const Scenario& scenario, std::optional<DeployedPredictor> predictor,
                             const CorrectionRequest& request, const Listener& listener) {
-  ObservedRun run;
+  MachineRun run;
   std::vector<double> ahead_um;
   std::vector<std::string> notes;
   if (!request.cyclogram) {

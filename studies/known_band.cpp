@@ -98,7 +98,7 @@ std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const s
                                                        const Eigen::MatrixXd& scores, const diagnosis::MeasuredRun& run,
                                                        const Listener& listener) {
   Twin::Workspace own(twin);
-  const std::shared_ptr<const solver::KeptRun> kept = twin.kept_run(twin.as_written(), run, own, false);
+  const std::shared_ptr<const solver::KeptStates> kept = twin.kept_run(twin.as_written(), run, own, false);
   const auto readings = [&](const diagnosis::TwinState& state, Twin::Workspace& workspace) -> Readings {
     return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
   };

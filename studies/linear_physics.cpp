@@ -8,13 +8,13 @@
 #include "base/errors.hpp"
 #include "compensation/judging/model_scatter.hpp"
 #include "compensation/predictors/modal_predictor.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::studies {
 namespace {
 
-using compensation::ObservedRun;
 using compensation::Physics;
 using scenarios::Scenario;
 
@@ -43,7 +43,7 @@ struct ModelDrift {
   std::vector<solver::OperatingRow> rows;
 };
 ModelDrift model_drift(const solver::ReducedSystem& system, const Eigen::VectorXd& start, double start_ambient_K,
-                       Eigen::Index target, const solver::TransientOptions& options, const ObservedRun& run) {
+                       Eigen::Index target, const solver::TransientOptions& options, const MachineRun& run) {
   const std::vector<double>& times_s = run.readings.time_s;
   const double warmer_K = run.ambient.at(times_s.front()) - start_ambient_K;
   ModelDrift result;
@@ -68,7 +68,7 @@ std::optional<Physics> physics_of(const Scenario& scenario, const scenarios::Mod
                       scatter, seed);
 }
 
-LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& model, std::span<const ObservedRun> runs,
+LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& model, std::span<const MachineRun> runs,
                              double scatter, int seed) {
   const scenarios::ReducedMachine* reduced = model.reduced();
   if (!reduced)
@@ -83,13 +83,13 @@ LinearPhysics linear_physics(const Scenario& scenario, const scenarios::Model& m
   const std::string& name = scenario.study->target;
   const Eigen::Index target = output_index(system, name);
   const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
-  const auto run_of = [&](const solver::ReducedSystem& of, const ObservedRun& run) {
+  const auto run_of = [&](const solver::ReducedSystem& of, const MachineRun& run) {
     return model_drift(of, reduced->start, ambient_K, target, scenario.solver.transient, run);
   };
-  const std::vector<ObservedRun> whole = compensation::joined_histories(runs, name);
+  const std::vector<MachineRun> whole = compensation::joined_histories(runs, name);
   std::vector<solver::OperatingRow> rows;
   std::vector<Eigen::VectorXd> nonlinear_um;
-  for (const ObservedRun& run : whole) {
+  for (const MachineRun& run : whole) {
     ModelDrift nonlinear = run_of(system, run);
     std::move(nonlinear.rows.begin(), nonlinear.rows.end(), std::back_inserter(rows));
     nonlinear_um.push_back(std::move(nonlinear.drift_um));

@@ -25,6 +25,6 @@ struct LinearPhysics {
 /// @param runs  for training, with drive and ambient; @param scatter, seed  as of physics_of()
 /// @throws InputError, SolveError  for a model without the study's target, and one that cannot be run
 [[nodiscard]] LinearPhysics linear_physics(const scenarios::Scenario& scenario, const scenarios::Model& model,
-                                           std::span<const compensation::ObservedRun> runs, double scatter, int seed);
+                                           std::span<const MachineRun> runs, double scatter, int seed);
 
 }  // namespace driftwright::studies

@@ -82,9 +82,9 @@ compensation::DeployedPredictor by_regression(const char* name, const Regression
 }
 
 /// The largest error of a predictor on runs [um].
-double largest_miss_um(const compensation::DeployedPredictor& d, const std::vector<compensation::ObservedRun>& runs) {
+double largest_miss_um(const compensation::DeployedPredictor& d, const std::vector<MachineRun>& runs) {
   double largest = 0.0;
-  for (const compensation::ObservedRun& run : runs)
+  for (const MachineRun& run : runs)
     largest = std::max(largest, largest_difference(live(*d.predictor, run), run.readings.at(d.target).values));
   return largest;
 }
@@ -94,13 +94,13 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   // The injector uses readings of the run itself. A schedule is written before the run; it may only use the temperatures
   // that the modal model predicts.
   const auto as_observed = [&](const scenarios::SimulatedRun& run) {
-    return compensation::ObservedRun{scenario.cyclogram(run.record.source), scenario.machine->ambient,
-                                     as_read(run.record, {.resolution_K = settings.sensor_resolution_K}, 0)};
+    return MachineRun{scenario.cyclogram(run.record.source), scenario.machine->ambient,
+                      as_read(run.record, {.resolution_K = settings.sensor_resolution_K}, 0)};
   };
-  std::vector<compensation::ObservedRun> training;
+  std::vector<MachineRun> training;
   for (const scenarios::SimulatedRun& run : study.train) training.push_back(as_observed(run));
-  const compensation::ObservedRun judged = as_observed(study.judged);
-  const compensation::ObservedRun foretold{judged.cyclogram, judged.ambient, study.modal_prediction};
+  const MachineRun judged = as_observed(study.judged);
+  const MachineRun foretold{judged.cyclogram, judged.ambient, study.modal_prediction};
   std::vector<double> durations_s;
   for (const auto& section : judged.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);

@@ -16,7 +16,6 @@
 namespace driftwright::studies {
 namespace {
 
-using compensation::ObservedRun;
 using compensation::Observer;
 
 constexpr int kObserverModes = 12;        // as in `validate`
@@ -27,7 +26,7 @@ std::string name_of(int candidate) {
 }
 
 /// Drifts and temperatures relative to the first row, for regressions.
-Record since_start(const ObservedRun& run, const std::vector<std::string>& channels) {
+Record since_start(const MachineRun& run, const std::vector<std::string>& channels) {
   Record record = run.readings;
   for (const std::string& channel : channels) record = compensation::counted_from_start(std::move(record), channel);
   return record;
@@ -76,10 +75,10 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Ma
   });
 }
 
-ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const MachineRun& run, std::uint64_t seed) const {
+MachineRun PlacementJudge::read(const solver::ReducedSystem& system, const MachineRun& run, std::uint64_t seed) const {
   const Eigen::MatrixXd states = states_of(model_, system, run);
   const Eigen::MatrixXd drift = studies::drift_um(model_, run, states);
-  ObservedRun observed{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = {}};
+  MachineRun observed{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = {}};
   Record& record = observed.readings;
   record.source = run.cyclogram.name;
   record.time_s = run.readings.time_s;
@@ -108,7 +107,7 @@ std::vector<std::string> PlacementJudge::names(const std::vector<int>& set) cons
 }
 
 void PlacementJudge::add(Sum& sum, const Machine& machine, const std::vector<Record>& fitted, const std::vector<int>& set,
-                         const std::vector<ObservedRun>& learned) const {
+                         const std::vector<MachineRun>& learned) const {
   const std::vector<std::string> sensors = names(set);
   for (std::size_t d = 0; d < model_.channels.size(); ++d) {
     const std::string& channel = model_.channels[d];
@@ -116,7 +115,7 @@ void PlacementJudge::add(Sum& sum, const Machine& machine, const std::vector<Rec
     if (!learned.empty()) observer.learn(learned);
     std::optional<compensation::Regression> regression;
     if (!set.empty()) regression = compensation::fit_regression(fitted, sensors, channel);
-    for (const ObservedRun& run : machine.judged) {
+    for (const MachineRun& run : machine.judged) {
       const std::vector<double>& truth = run.readings.at(channel).values;
       const std::vector<double> seen = observer.observe(run).drift_um;
       std::vector<double> told(truth.size(), 0.0);
@@ -151,7 +150,7 @@ std::vector<Residual> PlacementJudge::of(const std::vector<std::vector<int>>& se
 Residual PlacementJudge::behind_test(const std::vector<int>& set, const MachineRun& test) const {
   Sum total;
   for (std::size_t m = 0; m < machines_.size(); ++m) {
-    const ObservedRun run = read(machines_[m].system, test, 7000 + m);
+    const MachineRun run = read(machines_[m].system, test, 7000 + m);
     add(total, machines_[m], {since_start(run, model_.channels)}, set, {run});
   }
   return {std::sqrt(total.observer / total.n), std::sqrt(total.regression / total.n)};
@@ -160,7 +159,7 @@ Residual PlacementJudge::behind_test(const std::vector<int>& set, const MachineR
 double PlacementJudge::drift_um() const {
   double sum = 0.0, n = 0.0;
   for (const Machine& machine : machines_) {
-    for (const ObservedRun& run : machine.judged) {
+    for (const MachineRun& run : machine.judged) {
       for (const std::string& channel : model_.channels) {
         for (double um : run.readings.at(channel).values) sum += um * um;
         n += static_cast<double>(run.readings.n_samples());

@@ -37,16 +37,15 @@ class PlacementJudge {
   struct Machine {
     solver::ReducedSystem system;
     std::vector<Record> fitted;  ///< counted from the start
-    std::vector<compensation::ObservedRun> judged;
+    std::vector<MachineRun> judged;
   };
   struct Sum {
     double observer = 0.0, regression = 0.0, n = 0.0;
   };
-  [[nodiscard]] compensation::ObservedRun read(const solver::ReducedSystem& system, const MachineRun& run,
-                                               std::uint64_t seed) const;
+  [[nodiscard]] MachineRun read(const solver::ReducedSystem& system, const MachineRun& run, std::uint64_t seed) const;
   [[nodiscard]] std::vector<std::string> names(const std::vector<int>& set) const;
   void add(Sum& sum, const Machine& machine, const std::vector<Record>& fitted, const std::vector<int>& set,
-           const std::vector<compensation::ObservedRun>& learned) const;
+           const std::vector<MachineRun>& learned) const;
 
   const PlacementModel& model_;
   std::vector<int> candidates_;

@@ -1,7 +1,7 @@
 #pragma once
 // A machine's linear model with the temperature of every point where a thermometer could be, and its runs.
 
-#include "compensation/predictors/observed_run.hpp"
+#include "base/machine_run.hpp"
 #include "compensation/predictors/observer_left.hpp"
 #include "compensation/sensors/regression_left.hpp"
 #include "machine/model.hpp"

@@ -141,7 +141,7 @@ JudgedPredictor judged(const ProgrammeStudy& study, const TimeSeries& ambient, c
   JudgedPredictor p{predictors_of(name, study.channels, courses), {}, {}, 0.0};
   const auto start = std::chrono::steady_clock::now();
   for (const JudgedCyclogram& j : study.judged) {
-    const compensation::ObservedRun known{j.cyclogram, ambient, {.source = {}, .time_s = j.time_s, .channels = {}}};
+    const MachineRun known{j.cyclogram, ambient, {.source = {}, .time_s = j.time_s, .channels = {}}};
     Eigen::MatrixXd predicted(j.truth.rows(), j.truth.cols());
     for (std::size_t c = 0; c < p.channels.size(); ++c) {
       const std::vector<double> row = ahead(*p.channels[c].predictor, known);

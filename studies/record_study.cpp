@@ -14,6 +14,7 @@
 #include "base/median.hpp"
 #include "compensation/judging/run_up.hpp"
 #include "compensation/predictors/regression_quality.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "compensation/sensors/product_sums.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/record_part.hpp"
@@ -160,12 +161,12 @@ double hours(const ReadFile& file, std::size_t row) {
   return file.recorded.readings.time_s[row] / 3600.0;
 }
 
-compensation::ObservedRun observed(const ReadFile& file, const RunRows& rows, const std::string& name) {
-  compensation::ObservedRun run{.cyclogram = file.felt.cyclogram,
-                                .ambient = file.felt.ambient,
-                                .readings = file.recorded.readings,
-                                .n_before = rows.first - rows.history,
-                                .history = fmt::format("{} from row {}", file.path, rows.history)};
+MachineRun observed(const ReadFile& file, const RunRows& rows, const std::string& name) {
+  MachineRun run{.cyclogram = file.felt.cyclogram,
+                 .ambient = file.felt.ambient,
+                 .readings = file.recorded.readings,
+                 .n_before = rows.first - rows.history,
+                 .history = fmt::format("{} from row {}", file.path, rows.history)};
   run.readings.source = name;
   const std::vector<double>& t = run.readings.time_s;
   run.rows = {.file = std::filesystem::absolute(file.path).lexically_normal().string(),
@@ -237,16 +238,15 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths
   return records;
 }
 
-std::vector<Record> own_records(std::span<const compensation::ObservedRun> runs) {
+std::vector<Record> own_records(std::span<const MachineRun> runs) {
   std::vector<Record> records;
-  for (const compensation::ObservedRun& run : runs) records.push_back(compensation::own_rows(run.readings, run.n_before));
+  for (const MachineRun& run : runs) records.push_back(compensation::own_rows(run.readings, run.n_before));
   return records;
 }
 
-std::vector<Record> whole_records(std::span<const compensation::ObservedRun> runs, const std::string& target) {
+std::vector<Record> whole_records(std::span<const MachineRun> runs, const std::string& target) {
   std::vector<Record> records;
-  for (compensation::ObservedRun& run : compensation::joined_histories(runs, target))
-    records.push_back(std::move(run.readings));
+  for (MachineRun& run : compensation::joined_histories(runs, target)) records.push_back(std::move(run.readings));
   return records;
 }
 

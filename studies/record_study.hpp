@@ -3,8 +3,8 @@
 
 #include <span>
 
+#include "base/machine_run.hpp"
 #include "base/record.hpp"
-#include "compensation/predictors/observed_run.hpp"
 #include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::studies {
@@ -16,7 +16,7 @@ struct RecordPaths {
 };
 
 struct StudyRecords {
-  std::vector<compensation::ObservedRun> train, test;
+  std::vector<MachineRun> train, test;
   std::string ambient;             ///< channel of the ambient in every record; "": the records do not all have the same one
   std::vector<std::string> notes;  ///< how records were read and split, one sentence each
   std::vector<std::string> findings;  ///< faults in drive and ambient, one sentence each
@@ -33,11 +33,11 @@ struct StudyRecords {
                                         const std::string* ambient = nullptr);
 
 /// The rows of the runs only, as records.
-[[nodiscard]] std::vector<Record> own_records(std::span<const compensation::ObservedRun> runs);
+[[nodiscard]] std::vector<Record> own_records(std::span<const MachineRun> runs);
 
 /// The records that the runs were split from, each once and with the rows before: the search for broken sensors needs
 /// them.
-[[nodiscard]] std::vector<Record> whole_records(std::span<const compensation::ObservedRun> runs, const std::string& target);
+[[nodiscard]] std::vector<Record> whole_records(std::span<const MachineRun> runs, const std::string& target);
 
 /// Warnings about the candidates before anything is fitted to them: constant, partly missing, or moving together. One
 /// line each.

@@ -1,6 +1,7 @@
 #include "studies/sensor_study.hpp"
 
 #include "base/errors.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "studies/validation_study.hpp"
 
 namespace driftwright::studies {
@@ -14,7 +15,7 @@ SensorStudy study_sensors(const scenarios::Scenario& scenario, const RecordPaths
   const std::vector<std::string> all = candidate_sensors(settings, training.front()),
                                  candidates = usable_sensors(training, all);
   std::vector<Record> records;
-  for (const ObservedRun& run : read.train)
+  for (const MachineRun& run : read.train)
     records.push_back(own_rows(scored_readings(run, settings.target, settings.count_from_start), run.n_before));
   const GreyOptions how{
       .image = settings.image,

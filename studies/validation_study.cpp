@@ -34,7 +34,7 @@ struct Job {
 };
 
 /// Simulates without noise and rounding.
-compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
+MachineRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
   scenarios::MachineModel machine = *scenario.machine;
   machine.ambient = scenarios::ambient_in(*job.season, machine.ambient, job.cyclogram->duration_s());
   const MachineRun felt = scenarios::felt_run(machine, *job.cyclogram);
@@ -45,7 +45,7 @@ compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Mo
         machine, solver::simulate(system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, shifted),
         model.outputs(), *job.cyclogram);
   };
-  compensation::ObservedRun result{.cyclogram = *job.cyclogram, .ambient = machine.ambient, .readings = {}};
+  MachineRun result{.cyclogram = *job.cyclogram, .ambient = machine.ambient, .readings = {}};
   result.readings = model.reduced() ? run(model.reduced()->system, model.reduced()->start)
                                     : run(model.full()->system, scenarios::start_state(*scenario.machine, *model.full()));
   result.readings.source = job.cyclogram->name;
@@ -79,7 +79,7 @@ constexpr double kWarm_K = 4.0;  // largest difference to the ambient at which a
 
 /// Why a run does not begin in balance with its ambient, judged by its first readings; "" if it does, and for a machine
 /// that is warmer than its ambient at rest.
-std::string why_not_in_balance(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
+std::string why_not_in_balance(const scenarios::MachineModel& machine, const MachineRun& run) {
   if (machine.start == scenarios::Start::kSteady) return "";
   const double ambient_C = run.ambient.at(0.0) + machine.reference_K - kZeroCelsius_K;
   for (const scenarios::Sensor& s : machine.sensors) {
@@ -94,9 +94,9 @@ std::string why_not_in_balance(const scenarios::MachineModel& machine, const com
 }
 
 /// For strategies that are judged on records. @param runs  for training and judging; @param training  the former alone
-LinearPhysics physics_for_records(const Scenario& scenario, const std::vector<const compensation::ObservedRun*>& runs,
-                                  std::span<const compensation::ObservedRun> training,
-                                  const compensation::StrategySettings& how, const Listener& listener) {
+LinearPhysics physics_for_records(const Scenario& scenario, const std::vector<const MachineRun*>& runs,
+                                  std::span<const MachineRun> training, const compensation::StrategySettings& how,
+                                  const Listener& listener) {
   if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
   const scenarios::MachineModel& machine = *scenario.machine;
   if (!how.count_from_start)
@@ -109,12 +109,12 @@ LinearPhysics physics_for_records(const Scenario& scenario, const std::vector<co
             "for a "
             "machine with heat at rest"};
   std::vector<const Cyclogram*> cyclograms;
-  for (const compensation::ObservedRun* run : runs) {
+  for (const MachineRun* run : runs) {
     if (std::string why = why_no_model_follows(machine, *run); !why.empty()) return {std::nullopt, std::move(why)};
     cyclograms.push_back(&run->cyclogram);
   }
   Scenario reduced = scenario;
-  for (const compensation::ObservedRun* run : runs) {  // temperatures that the model must cover: the recorded ambients
+  for (const MachineRun* run : runs) {  // temperatures that the model must cover: the recorded ambients
     TimeSeries& ambient = reduced.machine->ambient;
     for (double v : run->ambient.value) {
       ambient.time_s.push_back(ambient.time_s.back() + 1.0);
@@ -141,7 +141,7 @@ LinearPhysics physics_for_records(const Scenario& scenario, const std::vector<co
 
 }  // namespace
 
-std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
+std::string why_no_model_follows(const scenarios::MachineModel& machine, const MachineRun& run) {
   if (run.cyclogram.sections.empty()) return fmt::format("{} does not say what drove the machine", run.readings.source);
   return why_not_in_balance(machine, run);
 }
@@ -204,7 +204,7 @@ namespace {
 /// For strategies that are judged in simulation. The reduced model of a network costs nothing: it is opened though the
 /// scenario asks for the full one.
 LinearPhysics physics_for_simulation(const Scenario& scenario, const scenarios::Model& model,
-                                     std::span<const compensation::ObservedRun> training) {
+                                     std::span<const MachineRun> training) {
   const Validation& v = *scenario.validation;
   try {
     std::optional<scenarios::Model> own;
@@ -236,7 +236,7 @@ StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Mo
     throw InputError(v.where,
                      "strategies are judged by the true drift; leave out the effects that change what instruments read");
   }
-  std::vector<compensation::ObservedRun> runs(v.train.size());
+  std::vector<MachineRun> runs(v.train.size());
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = simulate(scenario, model, {&v.train[i], &v.seasons.front()}); });
   const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -312,9 +312,9 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   how.image = study.image;
   how.speed = speed_channel(training.front());
   how.ambient = records.ambient;
-  std::vector<const compensation::ObservedRun*> all;
-  for (const std::vector<compensation::ObservedRun>* list : {&records.train, &records.test}) {
-    for (const compensation::ObservedRun& run : *list) all.push_back(&run);
+  std::vector<const MachineRun*> all;
+  for (const std::vector<MachineRun>* list : {&records.train, &records.test}) {
+    for (const MachineRun& run : *list) all.push_back(&run);
   }
   LinearPhysics physics = physics_for_records(scenario, all, records.train, how, listener);
   how.physics = std::move(physics.physics);
@@ -323,7 +323,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   if (elsewhere && !how.candidates.empty() && elsewhere->unit == training.front().at(how.candidates.front()).unit)
     settings.elsewhere = how.ambient;
   std::vector<compensation::JudgedRunOfMachine> judged;
-  for (compensation::ObservedRun& run : records.test) {
+  for (MachineRun& run : records.test) {
     const std::string name = std::filesystem::path(run.readings.source).filename().string();
     judged.push_back({"measured", "", name, std::move(run)});
   }

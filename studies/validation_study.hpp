@@ -20,7 +20,7 @@ namespace driftwright::studies {
 /// The data that strategies are fitted on: the training cyclograms in the first season, as instruments read them, and
 /// what is known about the machine.
 struct StrategyTraining {
-  std::vector<compensation::ObservedRun> runs;
+  std::vector<MachineRun> runs;
   compensation::StrategySettings settings;
 };
 /// The training data of validate_strategies(). @throws InputError  the same
@@ -43,7 +43,7 @@ struct StrategyTraining {
 
 /// The reason why a model of the machine cannot follow a measured run: its drive is unknown, or it begins out of balance
 /// with its ambient. "" if it can.
-[[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run);
+[[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const MachineRun& run);
 
 /// Whether there are thermometers to choose from.
 [[nodiscard]] bool has_thermometers(const scenarios::Study& study, const Record& record);

@@ -111,11 +111,9 @@ Record WarmUpTrials::job_rows(const std::vector<Cyclogram::Section>& sections) c
   return rows;
 }
 
-compensation::ObservedRun WarmUpTrials::whole_run(const std::vector<Cyclogram::Section>& sections,
-                                                  std::size_t& n_before) const {
+MachineRun WarmUpTrials::whole_run(const std::vector<Cyclogram::Section>& sections, std::size_t& n_before) const {
   double start_s = 0.0;
-  compensation::ObservedRun run{
-      .cyclogram = joined(whole_before_, sections, start_s), .ambient = ahead_.machine.ambient, .readings = {}};
+  MachineRun run{.cyclogram = joined(whole_before_, sections, start_s), .ambient = ahead_.machine.ambient, .readings = {}};
   Cyclogram until = run.cyclogram;
   until.sections.resize(until.sections.size() - job_.sections.size());
   std::vector<double> time_s;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/predictors/observed_run.hpp"
+#include "base/machine_run.hpp"
 #include "solver/propagator.hpp"
 #include "studies/warm_up.hpp"
 
@@ -28,8 +28,7 @@ class WarmUpTrials {
   [[nodiscard]] Record job_rows(const std::vector<Cyclogram::Section>& sections) const;
   /// The run before, the warm-up and the job as one run, with true readings. @param n_before  number of rows before the
   /// job's first row
-  [[nodiscard]] compensation::ObservedRun whole_run(const std::vector<Cyclogram::Section>& sections,
-                                                    std::size_t& n_before) const;
+  [[nodiscard]] MachineRun whole_run(const std::vector<Cyclogram::Section>& sections, std::size_t& n_before) const;
   /// Runs a programme; one for which the machine has no solution counts as not enough.
   [[nodiscard]] WarmUp tried(std::vector<Cyclogram::Section> sections, double tolerance_um) const;
 

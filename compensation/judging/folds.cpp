@@ -11,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/median.hpp"
 #include "base/record_channel.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "compensation/sensors/blocks.hpp"
 #include "compensation/sensors/principal_components.hpp"
 
@@ -22,7 +23,7 @@ constexpr double kLeastShareOfSpeed = 0.05;
 constexpr double kSpeedStep = 0.01;  // of the largest: closer speeds count as one
 
 /// Rows of a run that belong to it and have a target.
-std::vector<std::size_t> own_targets(const ObservedRun& run, const std::string& target) {
+std::vector<std::size_t> own_targets(const MachineRun& run, const std::string& target) {
   const std::vector<double>& drift = run.readings.at(target).values;
   std::vector<std::size_t> rows;
   for (std::size_t i = run.n_before; i < drift.size(); ++i) {
@@ -33,10 +34,10 @@ std::vector<std::size_t> own_targets(const ObservedRun& run, const std::string& 
 
 /// The first principal component of the thermometers per run and row, with the sign of a temperature; NaN if one is missing.
 /// Empty if none changes.
-std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const FoldSettings& s) {
+std::vector<std::vector<double>> warmth(std::span<const MachineRun> runs, const FoldSettings& s) {
   if (s.thermometers.empty()) return {};
   std::vector<Record> records;
-  for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, false));
+  for (const MachineRun& run : runs) records.push_back(scored_readings(run, s.target, false));
   try {
     const PrincipalComponents common = principal_components(records, s.thermometers, s.target, 1);
     std::vector<std::vector<double>> result;
@@ -50,8 +51,8 @@ std::vector<std::vector<double>> warmth(std::span<const ObservedRun> runs, const
 /// Makes the folds of some runs, one by one.
 class FoldMaker {
  public:
-  FoldMaker(std::span<const ObservedRun> runs, const std::string& target) : runs_(runs) {
-    for (const ObservedRun& run : runs) own_.push_back(own_targets(run, target));
+  FoldMaker(std::span<const MachineRun> runs, const std::string& target) : runs_(runs) {
+    for (const MachineRun& run : runs) own_.push_back(own_targets(run, target));
   }
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& own() const { return own_; }
 
@@ -82,11 +83,11 @@ class FoldMaker {
   std::vector<Fold> folds;
 
  private:
-  std::span<const ObservedRun> runs_;
+  std::span<const MachineRun> runs_;
   std::vector<std::vector<std::size_t>> own_;
 };
 
-void add_speeds(FoldMaker& make, std::span<const ObservedRun> runs, const std::string& speed) {
+void add_speeds(FoldMaker& make, std::span<const MachineRun> runs, const std::string& speed) {
   double largest = 0.0;
   const auto each = [&](const auto& visit) {
     for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -121,7 +122,7 @@ void add_speeds(FoldMaker& make, std::span<const ObservedRun> runs, const std::s
 
 }  // namespace
 
-std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings& s) {
+std::vector<Fold> folds_of(std::span<const MachineRun> runs, const FoldSettings& s) {
   FoldMaker make(runs, s.target);
   const auto& own = make.own();
   if (runs.size() == 1) {
@@ -154,10 +155,10 @@ std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings
   return std::move(make.folds);
 }
 
-std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& fold, const std::string& target) {
-  std::vector<ObservedRun> rest;
+std::vector<MachineRun> without(std::span<const MachineRun> runs, const Fold& fold, const std::string& target) {
+  std::vector<MachineRun> rest;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    ObservedRun run = runs[r];
+    MachineRun run = runs[r];
     std::vector<double>& drift = changeable_channel(run.readings, target).values;
     for (std::size_t i = 0; i < drift.size(); ++i) {
       if (fold.hidden[r][i]) drift[i] = std::numeric_limits<double>::quiet_NaN();
@@ -167,11 +168,11 @@ std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& 
   return rest;
 }
 
-FoldedRuns folded(std::span<const ObservedRun> training, const FoldSettings& s) {
+FoldedRuns folded(std::span<const MachineRun> training, const FoldSettings& s) {
   FoldedRuns f{.runs = joined_histories(training, s.target), .folds = {}, .rest = {}, .measured_um = {}};
   f.folds = folds_of(f.runs, s);
   std::vector<std::vector<double>> targets;
-  for (const ObservedRun& run : f.runs) targets.push_back(scored_readings(run, s.target, s.from_start).at(s.target).values);
+  for (const MachineRun& run : f.runs) targets.push_back(scored_readings(run, s.target, s.from_start).at(s.target).values);
   for (const Fold& fold : f.folds) {
     f.rest.push_back(without(f.runs, fold, s.target));
     std::vector<double>& measured_um = f.measured_um.emplace_back();

@@ -36,22 +36,21 @@ struct FoldSettings {
 /// the whole run is hidden. A fold hides at least ten rows, and leaves at least ten.
 /// @param runs  each from a separate record (joined_histories())
 /// Source: leaving out groups of similar data: Roberts et al., Ecography 40 (2017) 913.
-[[nodiscard]] std::vector<Fold> folds_of(std::span<const ObservedRun> runs, const FoldSettings& settings);
+[[nodiscard]] std::vector<Fold> folds_of(std::span<const MachineRun> runs, const FoldSettings& settings);
 
 /// The runs without the targets that a fold hides; runs without any target left are dropped.
-[[nodiscard]] std::vector<ObservedRun> without(std::span<const ObservedRun> runs, const Fold& fold,
-                                               const std::string& target);
+[[nodiscard]] std::vector<MachineRun> without(std::span<const MachineRun> runs, const Fold& fold, const std::string& target);
 
 /// Training runs with all their folds.
 struct FoldedRuns {
-  std::vector<ObservedRun> runs;  ///< one per history
+  std::vector<MachineRun> runs;  ///< one per history
   std::vector<Fold> folds;
-  std::vector<std::vector<ObservedRun>> rest;    ///< of each fold: the runs to fit to
+  std::vector<std::vector<MachineRun>> rest;     ///< of each fold: the runs to fit to
   std::vector<std::vector<double>> measured_um;  ///< of each fold: the hidden targets, in the order of runs and rows
 
   /// A predictor's values for the hidden rows of a fold, in order; 0 where it has none.
   [[nodiscard]] std::vector<double> predicted_um(const Predictor& predictor, std::size_t fold) const;
 };
-[[nodiscard]] FoldedRuns folded(std::span<const ObservedRun> training, const FoldSettings& settings);
+[[nodiscard]] FoldedRuns folded(std::span<const MachineRun> training, const FoldSettings& settings);
 
 }  // namespace driftwright::compensation

@@ -14,7 +14,7 @@ Json or_null(const std::optional<double>& value) {
 /// Cyclograms by name, or records with the times of their first and last row.
 Json trained_on(const StrategyMatrix& m) {
   Json cyclograms = Json::array(), records = Json::array();
-  for (const ObservedRun& run : m.training) {
+  for (const MachineRun& run : m.training) {
     if (run.rows.file.empty())
       cyclograms.push_back(run.readings.source);
     else

@@ -10,6 +10,7 @@
 #include "compensation/judging/choice.hpp"
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/score.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -66,10 +67,10 @@ struct Seen {
   std::vector<Record> readings;
   std::vector<std::vector<double>> predicted_um;
 };
-Seen seen_in(const Predictor& predictor, std::span<const ObservedRun> training, bool from_start) {
+Seen seen_in(const Predictor& predictor, std::span<const MachineRun> training, bool from_start) {
   Seen seen;
   // the lead-in of a run is followed, but sets no limits: its rows may belong to judged runs
-  for (const ObservedRun& run : training) {
+  for (const MachineRun& run : training) {
     const std::vector<double> drift_um = live(predictor, run);
     seen.predicted_um.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
     seen.readings.push_back(own_rows(from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
@@ -79,7 +80,7 @@ Seen seen_in(const Predictor& predictor, std::span<const ObservedRun> training, 
 
 /// The rows of a run that a fold hides: those from a hidden target on until the next one that is not hidden, and all before
 /// the first target if that is hidden. Readings often come between targets.
-std::vector<bool> hidden_rows(const ObservedRun& run, const std::string& target, const std::vector<bool>& hidden) {
+std::vector<bool> hidden_rows(const MachineRun& run, const std::string& target, const std::vector<bool>& hidden) {
   const std::vector<double>& drift = run.readings.at(target).values;
   const auto is_target = [](double v) { return std::isfinite(v); };
   const auto first =
@@ -163,11 +164,11 @@ std::vector<double> absolute_errors(const std::vector<double>& measured_um, cons
 
 }  // namespace
 
-FoldPredictors fold_predictors(const std::function<std::shared_ptr<const Predictor>(std::span<const ObservedRun>)>& fit,
+FoldPredictors fold_predictors(const std::function<std::shared_ptr<const Predictor>(std::span<const MachineRun>)>& fit,
                                const FoldedRuns& folds) {
   FoldPredictors predictors;
   try {
-    for (const std::vector<ObservedRun>& rest : folds.rest) predictors.push_back(fit(rest));
+    for (const std::vector<MachineRun>& rest : folds.rest) predictors.push_back(fit(rest));
   } catch (const InputError&) {  // too little data remains
     return {};
   } catch (const SolveError&) {
@@ -208,7 +209,7 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
   return kRooms[least - tried.begin()];
 }
 
-FailSafe fail_safe_of(const Predictor& predictor, std::span<const ObservedRun> training, const LeftOutSettings& s,
+FailSafe fail_safe_of(const Predictor& predictor, std::span<const MachineRun> training, const LeftOutSettings& s,
                       double room) {
   const Seen seen = seen_in(predictor, training, s.from_start);
   FailSafe safe =

@@ -18,7 +18,7 @@ namespace driftwright::compensation {
 /// Of each fold, the predictor fitted to the other rows; empty if it cannot be fitted to those of one fold.
 using FoldPredictors = std::vector<std::shared_ptr<const Predictor>>;
 [[nodiscard]] FoldPredictors fold_predictors(
-    const std::function<std::shared_ptr<const Predictor>(std::span<const ObservedRun>)>& fit, const FoldedRuns& folds);
+    const std::function<std::shared_ptr<const Predictor>(std::span<const MachineRun>)>& fit, const FoldedRuns& folds);
 
 /// How the readings are taken.
 struct LeftOutSettings {
@@ -37,7 +37,7 @@ double set_left_out(DeployedPredictor& strategy, const FoldPredictors& predictor
                     const LeftOutSettings& settings);
 
 /// The fail-safe of a fitted strategy. @param training  runs whose lead-in is followed but sets no limits
-[[nodiscard]] FailSafe fail_safe_of(const Predictor& predictor, std::span<const ObservedRun> training,
+[[nodiscard]] FailSafe fail_safe_of(const Predictor& predictor, std::span<const MachineRun> training,
                                     const LeftOutSettings& settings, double room);
 
 }  // namespace driftwright::compensation

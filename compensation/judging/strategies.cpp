@@ -21,6 +21,7 @@
 #include "compensation/predictors/observability.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "compensation/predictors/score.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "compensation/sensors/blocks.hpp"
 #include "compensation/sensors/sensor_selection.hpp"
 #include "solver/propagator.hpp"
@@ -34,19 +35,19 @@ using namespace compensation;
 struct Strategy {
   std::string name;
   bool is_baseline = false;
-  std::function<DeployedPredictor(std::span<const ObservedRun>)> fit;
+  std::function<DeployedPredictor(std::span<const MachineRun>)> fit;
   bool is_blended = false;  ///< it takes part in the blend
 };
 
 /// One record per run.
-std::vector<Record> records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
+std::vector<Record> records_of(std::span<const MachineRun> runs, const StrategySettings& s) {
   std::vector<Record> records;
-  for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, s.count_from_start));
+  for (const MachineRun& run : runs) records.push_back(scored_readings(run, s.target, s.count_from_start));
   return records;
 }
 
 /// One record per history, for any number of runs cut from it: equal rows give an equal fit.
-std::vector<Record> whole_records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
+std::vector<Record> whole_records_of(std::span<const MachineRun> runs, const StrategySettings& s) {
   return records_of(joined_histories(runs, s.target), s);
 }
 
@@ -71,7 +72,7 @@ DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor, const Str
 
 Strategy baseline(const std::string& name, const StrategySettings& s,
                   std::function<std::shared_ptr<const Predictor>(const std::vector<Record>&)> make) {
-  return {name, true, [s, make](std::span<const ObservedRun> training) {
+  return {name, true, [s, make](std::span<const MachineRun> training) {
             std::vector<Record> records = records_of(training, s);
             for (std::size_t r = 0; r < records.size(); ++r)
               records[r] = own_rows(std::move(records[r]), training[r].n_before);
@@ -93,8 +94,8 @@ DeployedPredictor of_formula(DriftModel model, std::string reason, const Strateg
 }
 
 Strategy regression_on(const std::string& name, const StrategySettings& s,
-                       std::function<Selection(std::span<const ObservedRun>, const std::vector<Record>&)> select) {
-  return {name, false, [s, select](std::span<const ObservedRun> training) {
+                       std::function<Selection(std::span<const MachineRun>, const std::vector<Record>&)> select) {
+  return {name, false, [s, select](std::span<const MachineRun> training) {
             require_thermometers(s);
             const std::vector<Record> records = in_blocks(whole_records_of(training, s), s.target);
             const Selection selection = select(training, records);
@@ -106,7 +107,7 @@ Strategy regression_on(const std::string& name, const StrategySettings& s,
 
 using FormulaFit = FittedFormula (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&);
 Strategy formula_of_all(const std::string& name, const StrategySettings& s, FormulaFit fit) {
-  return {name, false, [s, fit](std::span<const ObservedRun> training) {
+  return {name, false, [s, fit](std::span<const MachineRun> training) {
             require_thermometers(s);
             FittedFormula f = fit(in_blocks(whole_records_of(training, s), s.target), thermometers_of(s), s.target);
             return of_formula(std::move(f.model), std::move(f.reason), s);
@@ -116,7 +117,7 @@ Strategy formula_of_all(const std::string& name, const StrategySettings& s, Form
 Strategy remembering(const std::string& name, const StrategySettings& s, Columns columns, int n_modes = 0,
                      bool needs = true) {
   return {name, false,
-          [s, columns, n_modes, needs](std::span<const ObservedRun> training) {
+          [s, columns, n_modes, needs](std::span<const MachineRun> training) {
             if (needs) require_thermometers(s);
             FittedFormula f = fit_with_memories(whole_records_of(training, s), s.candidates, s.speed, s.ambient, s.target,
                                                 columns, n_modes);
@@ -137,8 +138,8 @@ std::string words(std::vector<Observer::Factor> factors) {
 
 /// Runs cut from longer records, without readings in rows that belong to none of them: an observer must not learn from
 /// these.
-std::vector<ObservedRun> without_others_readings(std::vector<ObservedRun> histories, const StrategySettings& s) {
-  for (ObservedRun& run : histories) {
+std::vector<MachineRun> without_others_readings(std::vector<MachineRun> histories, const StrategySettings& s) {
+  for (MachineRun& run : histories) {
     if (run.history.empty()) continue;
     const std::vector<double> drift = run.readings.at(s.target).values;
     for (Channel& c : run.readings.channels) {
@@ -153,10 +154,10 @@ std::vector<ObservedRun> without_others_readings(std::vector<ObservedRun> histor
 
 /// An observer with or without sensors, trained on the training runs or not.
 Strategy observing(const std::string& name, const StrategySettings& s, bool with_sensors, bool learns) {
-  return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
+  return {name, false, [s, with_sensors, learns](std::span<const MachineRun> training) {
             const Physics& p = *s.physics;
             const ObserverSettings how{.reading_K = s.reading_K, .drift_um = s.drift_um};
-            const std::vector<ObservedRun> histories = joined_histories(training, s.target);
+            const std::vector<MachineRun> histories = joined_histories(training, s.target);
             DeployedPredictor f;
             Selection selection;
             if (with_sensors) {
@@ -187,7 +188,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
 
 std::vector<Strategy> strategies(const StrategySettings& s) {
   const auto by_record_selector = [&](decltype(Selector::select) select, int n) {
-    return [s, select, n](std::span<const ObservedRun>, const std::vector<Record>& records) {
+    return [s, select, n](std::span<const MachineRun>, const std::vector<Record>& records) {
       return select(records, s.candidates, s.target, n);
     };
   };
@@ -209,8 +210,8 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   for (const Selector& selector : by_records)
     list.push_back(regression_on("regression, " + selector.name, s, by_record_selector(selector.select, s.n_sensors)));
   if (s.physics) {
-    list.push_back(regression_on(
-        "regression, observability", s, [s](std::span<const ObservedRun> training, const std::vector<Record>&) {
+    list.push_back(
+        regression_on("regression, observability", s, [s](std::span<const MachineRun> training, const std::vector<Record>&) {
           const Physics& p = *s.physics;
           return select_by_observability(p.system, p.start, joined_histories(training, s.target), s.candidates, s.target,
                                          s.n_sensors, {.reading_K = s.reading_K});
@@ -220,7 +221,7 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   list.back().is_blended = true;
   list.push_back(formula_of_all("principal components, all sensors", s, fit_principal_components));
   list.push_back(formula_of_all("partial least squares, all sensors", s, fit_partial_least_squares));
-  list.push_back({"regression with lags", false, [s](std::span<const ObservedRun> training) {
+  list.push_back({"regression with lags", false, [s](std::span<const MachineRun> training) {
                     require_thermometers(s);
                     const std::vector<Record> whole = whole_records_of(training, s), records = in_blocks(whole, s.target);
                     const Selection selection = select_forward(records, s.candidates, s.target, s.n_sensors);
@@ -229,7 +230,7 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
                                       fmt::format("{}; {}", fmt::join(selection.sensors, ", "), f.reason), s);
                   }});
   if (!s.speed.empty()) {
-    list.push_back({"transfer functions from speed", false, [s](std::span<const ObservedRun> training) {
+    list.push_back({"transfer functions from speed", false, [s](std::span<const MachineRun> training) {
                       const std::vector<Record> whole = whole_records_of(training, s);
                       FittedFormula f = fit_from_speed(in_blocks(whole, s.target), s.speed, s.ambient, s.target,
                                                        longest_lag_s(whole, s.target));
@@ -257,7 +258,7 @@ LeftOutSettings left_out_settings(const StrategySettings& s) {
 }
 
 /// Fits a strategy, without its errors on left-out rows and without fail-safe.
-DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
+DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const MachineRun> training) {
   DeployedPredictor f = strategy.fit(training);
   f.name = strategy.name;
   f.is_baseline = strategy.is_baseline;
@@ -267,9 +268,9 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
 }
 
 /// The thermometers that the others contradict, in the rows of the runs alone: what lies before may belong to judged ones.
-std::vector<DoubtedThermometer> doubted_in(std::span<const ObservedRun> training, const StrategySettings& s) {
+std::vector<DoubtedThermometer> doubted_in(std::span<const MachineRun> training, const StrategySettings& s) {
   std::vector<Record> records;
-  for (const ObservedRun& run : joined_histories(training, s.target)) {
+  for (const MachineRun& run : joined_histories(training, s.target)) {
     Record own = own_rows(run.readings, run.n_before);
     const std::vector<double> drift = own.at(s.target).values;
     if (!run.history.empty()) {  // rows between runs of one record
@@ -295,7 +296,7 @@ struct Member {
 
 /// The mean of the members whose error on left-out rows is about equal to the smallest; none if only one qualifies.
 std::optional<DeployedPredictor> blend(std::vector<Member> members, const FoldedRuns& folds, const StrategySettings& s,
-                                       std::span<const ObservedRun> training) {
+                                       std::span<const MachineRun> training) {
   double least = std::numeric_limits<double>::infinity();
   for (const Member& m : members) least = std::min(least, left_out_um(m.deployed));
   std::erase_if(members, [&](const Member& m) { return !(left_out_um(m.deployed) <= kAlike * least); });
@@ -333,7 +334,7 @@ std::string words_of(const LinearisedModel& model) {
                             : fmt::format("linearised at {} to {} °C", coldest, hottest);
 }
 
-FittedStrategies fit_strategies(const StrategySettings& given, std::span<const ObservedRun> training) {
+FittedStrategies fit_strategies(const StrategySettings& given, std::span<const MachineRun> training) {
   FittedStrategies result{.strategies = {}, .left_out = {}, .doubted = doubted_in(training, given)};
   StrategySettings settings = given;
   for (const DoubtedThermometer& d : result.doubted) {
@@ -350,7 +351,7 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const O
   parallel_for(list.size(), [&](std::size_t i) {
     try {
       fitted[i] = fit_one(list[i], settings, training);
-      in_folds[i] = fold_predictors([&](std::span<const ObservedRun> rest) { return list[i].fit(rest).predictor; }, folds);
+      in_folds[i] = fold_predictors([&](std::span<const MachineRun> rest) { return list[i].fit(rest).predictor; }, folds);
       const double room = set_left_out(*fitted[i], in_folds[i], folds, left_out_settings(settings));
       if (!fitted[i]->is_baseline)
         fitted[i]->fail_safe = fail_safe_of(*fitted[i]->predictor, training, left_out_settings(settings), room);

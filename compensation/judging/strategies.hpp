@@ -65,7 +65,7 @@ struct FittedStrategies {
 };
 
 /// Fits all of them. @param training  with the target among the readings
-[[nodiscard]] FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training);
+[[nodiscard]] FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const MachineRun> training);
 
 /// Name of the strategy without any correction.
 inline constexpr const char* kNoCorrection = "no correction";

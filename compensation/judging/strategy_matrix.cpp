@@ -13,6 +13,7 @@
 #include "base/record_channel.hpp"
 #include "compensation/judging/iso230_3.hpp"
 #include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -76,7 +77,7 @@ TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, doub
 }
 
 /// The thermometer whose readings differ most from a sensor's over the run; "" if there is no other.
-std::string least_alike(const ObservedRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
+std::string least_alike(const MachineRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
   const Channel& mine = run.readings.at(sensor);
   std::string worst;
   double most = 0.0;
@@ -94,16 +95,15 @@ std::string least_alike(const ObservedRun& run, const std::string& sensor, const
 }
 
 /// The conditions of one strategy: the run unchanged, and with each of its sensors failed in each way.
-std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings,
-                                                            const DeployedPredictor& strategy,
-                                                            const JudgedRunOfMachine& judged) {
-  std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
+std::vector<std::pair<std::string, MachineRun>> conditions(const MatrixSettings& settings, const DeployedPredictor& strategy,
+                                                           const JudgedRunOfMachine& judged) {
+  std::vector<std::pair<std::string, MachineRun>> list = {{"", judged.run}};
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
   const std::vector<double>& t = judged.run.readings.time_s;
   const double start_s = t[judged.run.n_before], from_s = start_s + *settings.fails_at * (t.back() - start_s);
   const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
                        const std::string& elsewhere) {
-    ObservedRun run = judged.run;
+    MachineRun run = judged.run;
     run.readings = with_failed_sensor(std::move(run.readings), sensor, kind, from_s, elsewhere);
     for (const std::string& failed : {sensor, kind == SensorFailure::kSwapped ? elsewhere : sensor}) {
       if (failed != settings.strategies.ambient) continue;
@@ -326,7 +326,7 @@ const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix) {
                            [](const JudgedStrategy& a, const JudgedStrategy& b) { return overall_rms(a) < overall_rms(b); });
 }
 
-Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
+Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const std::vector<double>& drift_um) {
   Case c;
   const std::vector<double> predicted = live(*strategy.predictor, run);
   GuardedCorrection correction = correct(strategy, run);
@@ -357,7 +357,7 @@ Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const
 namespace {
 
 /// Sets what remains of a case if the axis is probed again and again while its correction is in force.
-void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, const ObservedRun& run, std::uint64_t seed,
+void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, const MachineRun& run, std::uint64_t seed,
            const Judgement& judged, Case& c) {
   const std::optional<Probing>& probing = settings.strategies.probing;
   if (!probing || !strategy.residual) return;
@@ -422,7 +422,7 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
 }
 
 /// Sets what models of the machine leave on the training runs with failed sensors; the choice among them depends on it.
-void try_failures(const MatrixSettings& settings, const std::vector<ObservedRun>& training,
+void try_failures(const MatrixSettings& settings, const std::vector<MachineRun>& training,
                   std::vector<DeployedPredictor>& strategies) {
   if (!settings.fails_at) return;
   std::vector<DeployedPredictor*> models;
@@ -447,7 +447,7 @@ void try_failures(const MatrixSettings& settings, const std::vector<ObservedRun>
 
 }  // namespace
 
-StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
+StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<MachineRun> training,
                                 std::vector<JudgedRunOfMachine> runs) {
   StrategyMatrix matrix{
       .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};

@@ -13,7 +13,7 @@ namespace driftwright::compensation {
 /// A run to judge on.
 struct JudgedRunOfMachine {
   std::string family, season, name;
-  ObservedRun run;  ///< readings as the instruments give them, with the true target
+  MachineRun run;  ///< readings as the instruments give them, with the true target
 };
 
 struct MatrixSettings {
@@ -88,7 +88,7 @@ struct WeightedCase {
 
 /// The results of all strategies.
 struct StrategyMatrix {
-  std::vector<ObservedRun> training;
+  std::vector<MachineRun> training;
   std::vector<JudgedRunOfMachine> runs;
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
@@ -107,11 +107,10 @@ struct Judgement {
 };
 /// Judges one predictor on one run. @param drift_um true, per row of the run's readings; from the start if the predictor
 /// counts so
-[[nodiscard]] Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run,
-                              const std::vector<double>& drift_um);
+[[nodiscard]] Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const std::vector<double>& drift_um);
 
 /// Fits on `training`, judges on `runs`. Cases run in parallel on all cores; the result does not depend on their number.
-[[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
+[[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<MachineRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
 
 /// Sets `safety`, `is_worse_than_nothing`, `why`, `limits` and `cells` from the cases of a strategy; does nothing without

@@ -66,7 +66,7 @@ DeployedFollower::DeployedFollower(const DeployedPredictor& deployed)
   repaired_.resize(n);
 }
 
-FollowedCorrection DeployedFollower::next(ObservedRun& run) {
+FollowedCorrection DeployedFollower::next(MachineRun& run) {
   Record& readings = run.readings;
   const std::size_t last = readings.n_samples() - 1;
   const double dt_s = last > 0 ? readings.time_s[last] - readings.time_s[last - 1] : 0.0;

@@ -27,7 +27,7 @@ class DeployedFollower {
   /// Takes the next row, the last row that the run has, and replaces its doubted readings in `run` by values computed from
   /// the others. Gives row by row the same as correct() for the whole run.
   /// @throws InputError  for readings that lack an input or have it in another unit
-  FollowedCorrection next(ObservedRun& run);
+  FollowedCorrection next(MachineRun& run);
 
   /// The inputs that are doubted in this row, in words: by the fail-safe, or rejected by the predictor.
   [[nodiscard]] std::vector<std::string> doubted() const;

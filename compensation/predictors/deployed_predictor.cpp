@@ -23,9 +23,9 @@ std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, do
   return std::max(*deployed.interval_um / trust, kNormal95 * own_um.value_or(0.0));
 }
 
-PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run) {
+PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const MachineRun& run) {
   PredictedDrift p{.readings = repaired(safe, run.readings), .drift_um = {}, .deviation_um = {}};
-  ObservedRun mended = run;
+  MachineRun mended = run;
   mended.readings = p.readings.readings;
   const std::unique_ptr<Follower> follower = predictor.follow();
   for (double& deserved : p.readings.deserved) {
@@ -36,7 +36,7 @@ PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const O
   return p;
 }
 
-GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
+GuardedCorrection correct(const DeployedPredictor& deployed, const MachineRun& run) {
   PredictedDrift p;
   GuardedCorrection c;
   if (deployed.fail_safe) {

@@ -57,10 +57,10 @@ struct PredictedDrift {
   std::vector<double> drift_um;                     ///< per row; NaN without a prediction
   std::vector<std::optional<double>> deviation_um;  ///< per row: Follower::deviation_um()
 };
-[[nodiscard]] PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const ObservedRun& run);
+[[nodiscard]] PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const MachineRun& run);
 
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
 /// prediction, or 0 without one. Its interval is that in force, plus the distance from the prediction to the correction.
-[[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);
+[[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const MachineRun& run);
 
 }  // namespace driftwright::compensation

@@ -11,7 +11,7 @@ class DrivenFollower final : public Follower {
  public:
   explicit DrivenFollower(const DrivenPredictor::Drift& drift_um) : drift_um_(drift_um) {}
 
-  double next(const ObservedRun& run) override {
+  double next(const MachineRun& run) override {
     if (row_ == known_um_.size()) {
       known_um_ = drift_um_(run.cyclogram, run.ambient, run.readings.time_s);
       if (known_um_.size() != run.readings.n_samples() || row_ >= known_um_.size())

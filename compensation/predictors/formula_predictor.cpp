@@ -52,7 +52,7 @@ class FormulaFollower final : public Follower {
     for (const DriftModel& member : members) formulas_.emplace_back(member, names);
   }
 
-  double next(const ObservedRun& run) override {
+  double next(const MachineRun& run) override {
     const Record& readings = run.readings;
     if (!has_channels_) find_channels(readings);
     const std::size_t at = run.at(row_);

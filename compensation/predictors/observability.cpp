@@ -20,10 +20,10 @@ constexpr double kStep = 0.01;      // of a factor, for its derivative
 
 /// Outputs at every tenth row of all runs, side by side.
 Eigen::MatrixXd outputs_of(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
-                           std::span<const ObservedRun> runs) {
+                           std::span<const MachineRun> runs) {
   solver::Propagator propagator(system);
   Eigen::MatrixXd all(system.outputs.state.cols(), 0);
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     std::vector<double> times_s;
     for (std::size_t i = kEvery; i < run.readings.n_samples(); i += kEvery) times_s.push_back(run.readings.time_s[i]);
     if (times_s.empty()) continue;
@@ -37,7 +37,7 @@ Eigen::MatrixXd outputs_of(const solver::ReducedSystem& system, const Eigen::Vec
 }  // namespace
 
 Selection select_by_observability(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
-                                  std::span<const ObservedRun> runs, const std::vector<std::string>& candidates,
+                                  std::span<const MachineRun> runs, const std::vector<std::string>& candidates,
                                   const std::string& drift, int n, const ObserverSettings& settings) {
   const auto output = [&](const std::string& name) {
     const auto found = std::find(system.outputs.name.begin(), system.outputs.name.end(), name);

@@ -15,8 +15,7 @@ namespace driftwright::compensation {
 /// from readings at the same time only. It uses the model and the drive, never measured values.
 /// @param system  linear; @param start  its state at the start of the runs; @param candidates, drift  its outputs
 [[nodiscard]] Selection select_by_observability(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
-                                                std::span<const ObservedRun> runs,
-                                                const std::vector<std::string>& candidates, const std::string& drift, int n,
-                                                const ObserverSettings& settings = {});
+                                                std::span<const MachineRun> runs, const std::vector<std::string>& candidates,
+                                                const std::string& drift, int n, const ObserverSettings& settings = {});
 
 }  // namespace driftwright::compensation

@@ -65,9 +65,9 @@ class Observer final : public Predictor {
            std::string drift, ObserverSettings settings = {}, std::vector<effects::Effect> laws = {});
 
   /// Follows runs with measured drift; keeps what it learns about the factors.
-  void learn(std::span<const ObservedRun> runs);
+  void learn(std::span<const MachineRun> runs);
   /// Follows a whole run with its sensors alone; the observer itself is unchanged.
-  [[nodiscard]] Observation observe(const ObservedRun& run) const;
+  [[nodiscard]] Observation observe(const MachineRun& run) const;
 
   /// Its sensors, in degC.
   [[nodiscard]] std::vector<Input> inputs() const override;
@@ -87,7 +87,7 @@ class Observer final : public Predictor {
   [[nodiscard]] std::unique_ptr<ObserverFollower> watch() const;
 
   /// A copy with most_apart set to twice the distance that its sensors had from the model in these runs.
-  [[nodiscard]] Observer calibrated(std::span<const ObservedRun> runs) const;
+  [[nodiscard]] Observer calibrated(std::span<const MachineRun> runs) const;
   /// A copy that keeps what it has learned and reads other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
 

@@ -105,7 +105,7 @@ class Observer::Run final : public ObserverFollower {
     observer_start(&run_);
   }
 
-  double next(const ObservedRun& run) override {
+  double next(const MachineRun& run) override {
     if (!has_channels_) find_channels(run);
     rows_of_ = &run;
     const observer_rows rows = {.of = this,
@@ -211,7 +211,7 @@ class Observer::Run final : public ObserverFollower {
     }
   }
 
-  void find_channels(const ObservedRun& run) {
+  void find_channels(const MachineRun& run) {
     has_channels_ = true;
     const auto channel = [&](const std::string& name, const char* unit) {
       const Channel& c = run.readings.at(name);
@@ -232,8 +232,8 @@ class Observer::Run final : public ObserverFollower {
   }
 
   // Callbacks of observer_rows. No exception passes a C frame.
-  static const ObservedRun& rows_of(void* of) { return *static_cast<Run*>(of)->rows_of_; }
-  static std::size_t index_of(const ObservedRun& run, long row) { return run.at(static_cast<std::size_t>(row)); }
+  static const MachineRun& rows_of(void* of) { return *static_cast<Run*>(of)->rows_of_; }
+  static std::size_t index_of(const MachineRun& run, long row) { return run.at(static_cast<std::size_t>(row)); }
   static double time_s(void* of, long row) { return rows_of(of).readings.time_s[index_of(rows_of(of), row)]; }
   static double told_ambient_K(void* of, long, double t_s) { return rows_of(of).ambient.at(t_s); }
   static double reading_C(void* of, long row, int sensor) {
@@ -244,7 +244,7 @@ class Observer::Run final : public ObserverFollower {
     return rows_of(of).readings.channels[static_cast<Run*>(of)->drift_channel_].values[index_of(rows_of(of), row)];
   }
   static int piece(void* of, long, int piece, double* until_s) {
-    const ObservedRun& run = rows_of(of);
+    const MachineRun& run = rows_of(of);
     const auto k = static_cast<std::size_t>(piece), n = run.cyclogram.sections.size();
     if (k >= n) return 0;
     double& end_s = static_cast<Run*>(of)->section_end_s_;
@@ -273,7 +273,7 @@ class Observer::Run final : public ObserverFollower {
   ObserverTables tables_;
   std::unique_ptr<double[]> remembered_, room_;
   observer_run run_ = {};
-  const ObservedRun* rows_of_ = nullptr;  // of the call of next() that is under way
+  const MachineRun* rows_of_ = nullptr;  // of the call of next() that is under way
   double section_end_s_ = 0.0;
   std::exception_ptr failure_;
   std::vector<std::size_t> sensor_channel_;
@@ -282,25 +282,25 @@ class Observer::Run final : public ObserverFollower {
   std::vector<std::string> distrusted_;
 };
 
-void Observer::learn(std::span<const ObservedRun> runs) {
+void Observer::learn(std::span<const MachineRun> runs) {
   std::vector<double> steps_s;
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     for (std::size_t i = 1; i < run.readings.n_samples(); ++i)
       steps_s.push_back(run.readings.time_s[i] - run.readings.time_s[i - 1]);
   }
   if (!steps_s.empty()) settings_.period_s = quantile(std::move(steps_s), 0.5);
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     Run pass(*this, true);
     for (std::size_t i = 0; i < run.readings.n_samples(); ++i) (void)pass.next(run);
     factors_ = pass.factors();
   }
 }
 
-Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
+Observer Observer::calibrated(std::span<const MachineRun> runs) const {
   Observer other = *this;
   other.settings_.most_apart = std::numeric_limits<double>::infinity();
   std::vector<double> apart;  // the mean of few rows, or one row in a thousand, is not used as a limit
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     Run pass(other, false);
     for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
       (void)pass.next(run);
@@ -311,7 +311,7 @@ Observer Observer::calibrated(std::span<const ObservedRun> runs) const {
   return other;
 }
 
-Observation Observer::observe(const ObservedRun& run) const {
+Observation Observer::observe(const MachineRun& run) const {
   Run pass(*this, false);
   const std::size_t n = run.readings.n_samples();
   Observation seen;

@@ -15,7 +15,7 @@ namespace {
 class TimeFollower final : public Follower {
  public:
   explicit TimeFollower(std::function<double(double t_s)> drift_um) : drift_um_(std::move(drift_um)) {}
-  double next(const ObservedRun& run) override {
+  double next(const MachineRun& run) override {
     const std::size_t row = row_++;
     if (row < run.n_before) return std::numeric_limits<double>::quiet_NaN();
     const std::vector<double>& t = run.readings.time_s;

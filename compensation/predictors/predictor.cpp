@@ -14,7 +14,7 @@ std::vector<Input> guarded_inputs(const Predictor& predictor) {
   return predictor.looks_after_inputs() ? std::vector<Input>() : predictor.inputs();
 }
 
-std::vector<double> live(const Predictor& predictor, const ObservedRun& run) {
+std::vector<double> live(const Predictor& predictor, const MachineRun& run) {
   const std::unique_ptr<Follower> follower = predictor.follow();
   std::vector<double> drift_um;
   drift_um.reserve(run.readings.n_samples());
@@ -22,7 +22,7 @@ std::vector<double> live(const Predictor& predictor, const ObservedRun& run) {
   return drift_um;
 }
 
-std::vector<double> ahead(const Predictor& predictor, ObservedRun known) {
+std::vector<double> ahead(const Predictor& predictor, MachineRun known) {
   const std::vector<double> unknown(known.readings.n_samples(), std::numeric_limits<double>::quiet_NaN());
   for (const Input& input : predictor.inputs()) {
     if (!known.readings.find(input.name)) known.readings.channels.push_back({input.name, input.unit, unknown});

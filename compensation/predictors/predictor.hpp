@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/predictors/observed_run.hpp"
+#include "base/machine_run.hpp"
 
 namespace driftwright::effects {
 struct Effect;
@@ -34,7 +34,7 @@ class Follower {
   virtual ~Follower() = default;
   /// Takes the next row, beginning with the first. @return the drift there [um]; NaN without a prediction
   /// @param run  the same at every call, at least up to that row. Later rows are never read: a run may grow between calls
-  virtual double next(const ObservedRun& run) = 0;
+  virtual double next(const MachineRun& run) = 0;
   /// memory() gives everything that the follower knows of the rows taken, for storing it in a file. recall() sets it in a
   /// new follower, which then continues from there. The run given next must contain the last row taken before the next one.
   /// @throws std::logic_error  if the follower does not support it, and for the memory of another predictor
@@ -92,12 +92,12 @@ class Predictor {
 /// The drift of a run [um], row by row, including the lead-in: as it would be predicted during the run. NaN without a
 /// prediction.
 /// @throws InputError  for readings that lack an input or have it in another unit
-[[nodiscard]] std::vector<double> live(const Predictor& predictor, const ObservedRun& run);
+[[nodiscard]] std::vector<double> live(const Predictor& predictor, const MachineRun& run);
 
 /// The drift of a run [um] predicted before it: from drive and ambient alone, and from channels that are known ahead. All
 /// NaN for a predictor that needs its thermometers.
 /// @param known  its readings contain the times, and channels that are known ahead: `speed`, which follows from the
 ///               cyclogram, or temperatures that a model predicts
-[[nodiscard]] std::vector<double> ahead(const Predictor& predictor, ObservedRun known);
+[[nodiscard]] std::vector<double> ahead(const Predictor& predictor, MachineRun known);
 
 }  // namespace driftwright::compensation

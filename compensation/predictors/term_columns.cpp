@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/predictors/observed_run.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 
 namespace driftwright::compensation {
 

@@ -165,7 +165,7 @@ TimeSeries ambient_of(const Record& record, const Channel& channel, const std::v
 }
 
 /// Notes rows that are too far apart to know the drive between them.
-void note_coarse_rows(RecordedRun& run) {
+void note_coarse_rows(MachineRun& run) {
   if (const auto what = beyond_usual(Usual::kRowInterval, usual_step_s(run.readings.time_s)))
     run.findings.push_back(
         {"speed",
@@ -191,8 +191,8 @@ bool is_of_column(const std::string& unit) {
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }
 
-RecordedRun run_of(Record record, const MachineModel* machine, const std::vector<std::string>& on_ambient, Reading reading) {
-  RecordedRun run;
+MachineRun run_of(Record record, const MachineModel* machine, const std::vector<std::string>& on_ambient, Reading reading) {
+  MachineRun run;
   std::vector<double>& time_s = run.readings.time_s;
   for (double t_s : record.time_s) time_s.push_back(t_s - record.time_s.front());
   const auto attempt = [&](const std::string& channel, const auto& read) {

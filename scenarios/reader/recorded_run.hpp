@@ -16,8 +16,6 @@ enum class Reading {
   kPlan,     ///< a planned drive: from time 0, without gaps, each value used as it is
 };
 
-using RecordedRun = MachineRun;
-
 /// Whether a channel of this unit may drive a machine: all units except those of lengths, angles and times.
 [[nodiscard]] bool is_of_column(const std::string& unit);
 
@@ -34,7 +32,7 @@ using RecordedRun = MachineRun;
 /// @throws InputError  strict: without a speed, for speeds and powers below 0 (the sign of a feed does not matter), for
 /// impossible values or units that fit no drive or ambient, and for an ambient in another unit than its header says.
 /// Plan: also for missing values and a late start. Lenient: never
-[[nodiscard]] RecordedRun run_of(Record record, const MachineModel* machine, const std::vector<std::string>& on_ambient,
-                                 Reading reading);
+[[nodiscard]] MachineRun run_of(Record record, const MachineModel* machine, const std::vector<std::string>& on_ambient,
+                                Reading reading);
 
 }  // namespace driftwright::scenarios

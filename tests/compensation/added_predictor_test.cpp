@@ -79,7 +79,7 @@ class WarmHead final : public Predictor {
   class Run final : public Follower {
    public:
     explicit Run(const WarmHead& head) : head_(head) {}
-    double next(const ObservedRun& run) override {
+    double next(const MachineRun& run) override {
       const std::vector<double>& t_s = run.readings.time_s;
       const std::size_t at = run.at(row_);
       if (row_ > 0) {
@@ -132,7 +132,7 @@ constexpr std::array<double, 10> kSpeeds_rpm = {0, 3000, 0, 2000, 1000, 3000, 10
 
 /// Five hours of a machine whose nose moves as the predictor says, with noise: `speed`, `air`, `head` and `bed`. Each seed
 /// begins at another of the speeds.
-ObservedRun machine(const Predictor& truth, std::uint64_t seed) {
+MachineRun machine(const Predictor& truth, std::uint64_t seed) {
   Random random(seed, 41);
   Record r{.source = "record " + std::to_string(seed), .time_s = {}, .channels = {}};
   r.channels = {{"speed", "rpm", {}}, {"air", "degC", {}}, {"head", "degC", {}}, {"bed", "degC", {}}};
@@ -147,7 +147,7 @@ ObservedRun machine(const Predictor& truth, std::uint64_t seed) {
     head_K += (6e-3 * rpm - head_K) / 30.0;  // with 30 min
     bed_K += (2e-3 * rpm - bed_K) / 120.0;
   }
-  ObservedRun run{.cyclogram = {.name = r.source, .sections = {}}, .ambient = {}, .readings = r};
+  MachineRun run{.cyclogram = {.name = r.source, .sections = {}}, .ambient = {}, .readings = r};
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
     run.cyclogram.sections.push_back({60.0, {.speed_rpm = r.channels[0].values[i]}});
     run.ambient.time_s.push_back(r.time_s[i]);
@@ -170,7 +170,7 @@ DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor) {
   std::vector<Record> training;
   std::vector<std::vector<double>> predicted_um;
   for (const std::uint64_t seed : {1, 2}) {
-    const ObservedRun run = machine(*d.predictor, seed);
+    const MachineRun run = machine(*d.predictor, seed);
     training.push_back(run.readings);
     predicted_um.push_back(live(*d.predictor, run));
   }
@@ -185,7 +185,7 @@ struct JudgedOnce {
   JudgedStrategy strategy;
   Judgement judgement;
 };
-JudgedOnce judged(const DeployedPredictor& d, const ObservedRun& run) {
+JudgedOnce judged(const DeployedPredictor& d, const MachineRun& run) {
   JudgedOnce j;
   j.matrix.settings.strategies.target = d.target;
   j.matrix.settings.tolerance_um = 20.0;
@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(AnAddedPredictor, IsJudgedAndGuarded) {
   const DeployedPredictor d = deployed(GetParam().make());
-  ObservedRun run = machine(*d.predictor, 3);
+  MachineRun run = machine(*d.predictor, 3);
   const Judgement intact = judged(d, run).judgement;
   EXPECT_LT(intact.scores.after.rmse, 0.3 * intact.scores.before.rmse);
   std::vector<double>& head_degC = run.readings.channels[2].values;
@@ -242,7 +242,7 @@ TEST_P(AnAddedPredictor, IsJudgedAndGuarded) {
 
 TEST_P(AnAddedPredictor, IsFollowedFromItsFileAsItWasJudged) {
   const DeployedPredictor d = deployed(GetParam().make());
-  const ObservedRun run = machine(*d.predictor, 3);
+  const MachineRun run = machine(*d.predictor, 3);
   const Record& r = run.readings;
   const JudgedOnce j = judged(d, run);
   const Json verdict = judgement_json(j.matrix, j.strategy);
@@ -272,7 +272,7 @@ TEST_P(AnAddedPredictor, GoesToAControlIfItGivesAFormula) {
                 ThrowsMessage<std::logic_error>(AllOf(HasSubstr("'an added one'"), HasSubstr("Predictor::formula()"))));
     return;
   }
-  const ObservedRun run = machine(*d.predictor, 3);
+  const MachineRun run = machine(*d.predictor, 3);
   EXPECT_EQ(formula->predict(run.readings), live(*d.predictor, run));
   const std::string c = output::c_function(output::deployed_model(d), "a test");
   EXPECT_THAT(c, HasSubstr("double nose_correction_um(nose_state *s, double head_degC, double bed_degC, double dt_s)"));

@@ -23,8 +23,8 @@ using ::testing::HasSubstr;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Sixty minutes at one speed; the bed warms by 0.1 K a minute from a start.
-ObservedRun run_of(const std::string& name, double speed_rpm, double start_degC) {
-  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = name, .time_s = {}, .channels = {}}};
+MachineRun run_of(const std::string& name, double speed_rpm, double start_degC) {
+  MachineRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = name, .time_s = {}, .channels = {}}};
   run.readings.channels = {{"speed", "rpm", {}}, {"bed", "degC", {}}, {"tip_z", "um", {}}};
   for (int i = 0; i < 60; ++i) {
     run.readings.time_s.push_back(60.0 * i);
@@ -42,7 +42,7 @@ std::size_t n_hidden(const Fold& fold, std::size_t run) {
 }
 
 TEST(Folds, HideRunsSpeedsEndsAndTheWarmest) {
-  const std::vector<ObservedRun> runs = {run_of("a", 1000.0, 20.0), run_of("b", 2000.0, 30.0), run_of("c", 2000.0, 20.0)};
+  const std::vector<MachineRun> runs = {run_of("a", 1000.0, 20.0), run_of("b", 2000.0, 30.0), run_of("c", 2000.0, 20.0)};
   std::vector<std::string> names;
   const std::vector<Fold> folds = folds_of(runs, kSettings);
   for (const Fold& f : folds) names.push_back(f.name);
@@ -61,10 +61,10 @@ TEST(Folds, HideRunsSpeedsEndsAndTheWarmest) {
   EXPECT_EQ(n_hidden(folds[7], 0), 0u);
   EXPECT_EQ(n_hidden(folds[8], 1), 0u);
 
-  const std::vector<ObservedRun> rest = without(runs, folds[4], "tip_z");
+  const std::vector<MachineRun> rest = without(runs, folds[4], "tip_z");
   ASSERT_EQ(rest.size(), 1u);
   EXPECT_EQ(rest[0].readings.source, "a");
-  const std::vector<ObservedRun> cut = without(runs, folds[5], "tip_z");
+  const std::vector<MachineRun> cut = without(runs, folds[5], "tip_z");
   ASSERT_EQ(cut.size(), 3u);
   EXPECT_TRUE(std::isnan(cut[0].readings.at("tip_z").values[40]));
   EXPECT_EQ(cut[0].readings.at("tip_z").values[39], 19.5);
@@ -73,7 +73,7 @@ TEST(Folds, HideRunsSpeedsEndsAndTheWarmest) {
 
 // A run that begins at the speed that is hidden, and goes on at another: what its drift counts from stays.
 TEST(Folds, OfSpeedsKeepWhatTheDriftCountsFrom) {
-  std::vector<ObservedRun> runs = {run_of("a", 1000.0, 20.0), run_of("b", 2000.0, 20.0)};
+  std::vector<MachineRun> runs = {run_of("a", 1000.0, 20.0), run_of("b", 2000.0, 20.0)};
   std::vector<double>& speed = runs[0].readings.channels[0].values;
   std::fill(speed.begin() + 30, speed.end(), 2000.0);
   for (const Fold& f : folds_of(runs, kSettings)) {
@@ -87,18 +87,18 @@ TEST(Folds, OfSpeedsKeepWhatTheDriftCountsFrom) {
 }
 
 TEST(Folds, OfOneRunAreItsEighths) {
-  const std::vector<ObservedRun> runs = {run_of("a", 0.0, 20.0)};
+  const std::vector<MachineRun> runs = {run_of("a", 0.0, 20.0)};
   std::vector<std::string> kinds;
   for (const Fold& f : folds_of(runs, kSettings)) kinds.push_back(f.kind);
   // an eighth of 60 rows is seven or eight rows: too few to judge by
   EXPECT_THAT(kinds, ElementsAre("end", "beginning", "warm", "cold"));
-  ObservedRun twice = runs[0];
+  MachineRun twice = runs[0];
   for (int i = 60; i < 120; ++i) {
     twice.readings.time_s.push_back(60.0 * i);
     for (Channel& c : twice.readings.channels) c.values.push_back(c.values.back() + (c.unit == "rpm" ? 0.0 : 0.1));
   }
   kinds.clear();
-  const std::vector<ObservedRun> longer = {twice};
+  const std::vector<MachineRun> longer = {twice};
   for (const Fold& f : folds_of(longer, kSettings)) kinds.push_back(f.kind);
   EXPECT_THAT(kinds, ElementsAre("block", "block", "block", "block", "block", "block", "block", "block", "end", "beginning",
                                  "warm", "cold"));

@@ -20,13 +20,13 @@ namespace {
 /// The rows of a run one after another; those further back than followers look are dropped at each.
 class Stream {
  public:
-  explicit Stream(const ObservedRun& whole) : whole_(whole) {
+  explicit Stream(const MachineRun& whole) : whole_(whole) {
     run_.cyclogram.name = whole.cyclogram.name;
     run_.readings.source = whole.readings.source;
     run_.readings.channels = whole.readings.channels;
     for (Channel& c : run_.readings.channels) c.values.clear();
   }
-  ObservedRun& next() {
+  MachineRun& next() {
     Record& r = run_.readings;
     const std::size_t i = run_.n_forgotten + r.n_samples();
     const double t_s = whole_.readings.time_s[i];
@@ -57,8 +57,8 @@ class Stream {
     run_.cyclogram_from_s = r.time_s.front();
     ++run_.n_forgotten;
   }
-  const ObservedRun& whole_;
-  ObservedRun run_;
+  const MachineRun& whole_;
+  MachineRun run_;
 };
 
 DeployedPredictor formula(bool from_start) {
@@ -86,7 +86,7 @@ DeployedPredictor observer(std::vector<std::string> sensors) {
 }
 
 /// Follows a run row by row, with a restart after a row; no restart for a number beyond its rows.
-std::vector<double> followed(const DeployedPredictor& d, const ObservedRun& run, std::size_t restart_behind,
+std::vector<double> followed(const DeployedPredictor& d, const MachineRun& run, std::size_t restart_behind,
                              std::vector<double>* trust = nullptr, std::vector<double>* interval_um = nullptr) {
   Stream stream(run);
   auto follower = std::make_unique<DeployedFollower>(d);
@@ -107,10 +107,10 @@ std::vector<double> followed(const DeployedPredictor& d, const ObservedRun& run,
 
 constexpr std::size_t kNever = static_cast<std::size_t>(-1);
 
-ObservedRun machine_with_faults() {
-  ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
-                  .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
-                  .readings = fixtures::machine(7, 60.0)};
+MachineRun machine_with_faults() {
+  MachineRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
+                 .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
+                 .readings = fixtures::machine(7, 60.0)};
   std::vector<double>& x = run.readings.channels[1].values;
   for (std::size_t i = 120; i < 140; ++i) x[i] = NAN;   // a broken wire
   for (std::size_t i = 220; i < 300; ++i) x[i] += 9.0;  // a thermometer that has fallen off
@@ -118,7 +118,7 @@ ObservedRun machine_with_faults() {
 }
 
 TEST(DeployedFollower, AFormulaIsToTheLastBitWhatItIsOfTheWholeRun) {
-  const ObservedRun run = machine_with_faults();
+  const MachineRun run = machine_with_faults();
   for (const bool from_start : {false, true}) {
     const DeployedPredictor d = formula(from_start);
     const GuardedCorrection whole = correct(d, run);
@@ -133,9 +133,9 @@ TEST(DeployedFollower, AFormulaIsToTheLastBitWhatItIsOfTheWholeRun) {
 
 // The formula and two members at equal distances on both sides of it: their root mean square is that distance.
 TEST(DeployedFollower, TheIntervalOfAMeanGrowsAsItsMembersDepart) {
-  const ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
-                        .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
-                        .readings = fixtures::machine(7, 60.0)};
+  const MachineRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
+                       .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
+                       .readings = fixtures::machine(7, 60.0)};
   DeployedPredictor d = formula(true);
   const DriftModel mean = *d.predictor->formula();
   std::vector<DriftModel> members = {mean, mean};
@@ -163,7 +163,7 @@ TEST(DeployedFollower, TheIntervalOfAMeanGrowsAsItsMembersDepart) {
 }
 
 TEST(DeployedFollower, AnObserverIsWhatItIsOfTheWholeRun) {
-  const ObservedRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 3.0, 0.05);
+  const MachineRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 3.0, 0.05);
   const DeployedPredictor d = observer({"T1", "T3"});
   const GuardedCorrection whole = correct(d, run);
   for (const std::size_t restart : {kNever, std::size_t{0}, std::size_t{100}}) {
@@ -174,7 +174,7 @@ TEST(DeployedFollower, AnObserverIsWhatItIsOfTheWholeRun) {
 }
 
 TEST(DeployedFollower, AnObserverGivesUpTheSameSensorAtTheSameTime) {
-  ObservedRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.05);
+  MachineRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.05);
   for (std::size_t i = 100; i < run.readings.n_samples(); ++i) run.readings.channels[0].values[i] = 20.0;  // fallen off
   const DeployedPredictor d = observer({"T1", "T2", "T3"});
   const GuardedCorrection whole = correct(d, run);
@@ -196,7 +196,7 @@ TEST(DeployedFollower, AnObserverGivesUpTheSameSensorAtTheSameTime) {
 }
 
 TEST(DeployedFollower, TheMemoryOfAnotherIsRefused) {
-  const ObservedRun run = machine_with_faults();
+  const MachineRun run = machine_with_faults();
   Stream stream(run);
   const DeployedPredictor d = formula(false);
   DeployedFollower follower(d);

@@ -18,7 +18,7 @@ const FoldSettings kFolds{.target = "tip_z", .from_start = false, .thermometers 
 /// A bed that warms from 20 to 60 degC in 400 min, and a drift that follows it by a law [um] of its rise [K], read every
 /// `step` rows.
 FoldedRuns warming(const std::function<double(double)>& law, int step = 1) {
-  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
+  MachineRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
   run.readings.channels = {{"bed", "degC", {}}, {"tip_z", "um", {}}};
   for (int i = 0; i <= 400; ++i) {
     run.readings.time_s.push_back(60.0 * i);
@@ -69,7 +69,7 @@ TEST(Margins, AreTheSameWhereTheDriftIsReadLessOftenThanTheBed) {
 
 TEST(Margins, AreOfCorrectionsWhoseMissingReadingsAreReplaced) {
   // two thermometers of one body, one of which has no reading for ten of forty minutes
-  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
+  MachineRun run{.cyclogram = {}, .ambient = {}, .readings = {.source = "one", .time_s = {}, .channels = {}}};
   run.readings.channels = {{"bed", "degC", {}}, {"frame", "degC", {}}, {"tip_z", "um", {}}};
   for (int i = 0; i <= 400; ++i) {
     run.readings.time_s.push_back(60.0 * i);

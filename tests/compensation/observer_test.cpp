@@ -30,7 +30,7 @@ Observer observer_of(const solver::ReducedSystem& model, std::vector<std::string
                      const ObserverSettings& settings = {}) {
   return Observer(model, Eigen::Vector3d::Zero(), 0.0, std::move(sensors), "drift_y", settings);
 }
-double worst_um(const std::vector<double>& drift_um, const ObservedRun& run) {
+double worst_um(const std::vector<double>& drift_um, const MachineRun& run) {
   const std::vector<double>& truth = run.readings.at("drift_y").values;
   double worst = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i)
@@ -44,7 +44,7 @@ solver::ReducedSystem with_motor(double factor) {
 TEST(Observer, WithTheExactModelFollowsExactlyWithAndWithoutSensors) {
   const solver::ReducedSystem s = three_parts();
   for (const double warmer_K : {0.0, 7.0}) {
-    const ObservedRun run = run_of(s, 60.0, warmer_K);
+    const MachineRun run = run_of(s, 60.0, warmer_K);
     EXPECT_GT(run.readings.at("drift_y").values[60], 20.0);
     for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1"}, {"T1", "T2", "T3"}}) {
       const Observation o = observer_of(s, sensors).observe(run);
@@ -59,8 +59,8 @@ TEST(Observer, WithTheExactModelFollowsExactlyWithAndWithoutSensors) {
 TEST(Observer, FollowsTheClosedFormOfOnePart) {
   solver::ReducedSystem s = three_parts();
   s.conduction.setZero();
-  const ObservedRun run = run_of(s, 60.0, 0.0, 0.0, 1, {.name = "on", .sections = {{7200, {.speed_rpm = 2000}}}});
-  ObservedRun closed = run;
+  const MachineRun run = run_of(s, 60.0, 0.0, 0.0, 1, {.name = "on", .sections = {{7200, {.speed_rpm = 2000}}}});
+  MachineRun closed = run;
   for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
     const double t = run.readings.time_s[i];
     closed.readings.channels[3].values[i] = 2.0 * 200.0 / 6.0 * (1.0 - std::exp(-6.0 * t / 4e3)) + 3.0 * 60.0 / 10e3 * t;
@@ -70,7 +70,7 @@ TEST(Observer, FollowsTheClosedFormOfOnePart) {
 
 TEST(Observer, WithTheMotorOffByAFifthSensorsTakeMostOfTheErrorAway) {
   for (const double factor : {0.8, 1.2}) {
-    const ObservedRun run = run_of(with_motor(factor), 60.0, 0.0, 0.1);
+    const MachineRun run = run_of(with_motor(factor), 60.0, 0.0, 0.1);
     const double alone_um = worst_um(observer_of(three_parts(), {}).observe(run).drift_um, run);
     const Observation o = observer_of(three_parts(), {"T1", "T3"}).observe(run);
     EXPECT_GT(alone_um, 10.0);
@@ -82,12 +82,12 @@ TEST(Observer, WithTheMotorOffByAFifthSensorsTakeMostOfTheErrorAway) {
 
 // A covariance that lost its symmetry or a sign would show as a deviation of 0 (it is cut there) or as none at all.
 TEST(Observer, ItsCovarianceStaysPositiveWithReadingsFarBetterThanTheModel) {
-  const ObservedRun run = run_of(scattered(three_parts(), 0.1, 3), 10.0);
+  const MachineRun run = run_of(scattered(three_parts(), 0.1, 3), 10.0);
   ASSERT_GT(run.readings.n_samples(), 1400u);
   for (const double walk : {0.0, 0.02}) {
     const ObserverSettings sure{.reading_K = 1e-6, .model_K = 0.0, .drift_um = 1e-5, .factor_walk = walk};
     Observer o = observer_of(three_parts(), {"T1", "T2", "T3"}, sure);
-    o.learn(std::vector<ObservedRun>{run, run});
+    o.learn(std::vector<MachineRun>{run, run});
     for (const Observer::Factor& f : o.factors()) EXPECT_GT(f.deviation, 0.0) << f.name << walk;
     const Observation seen = o.observe(run);
     for (std::size_t i = 1; i < seen.deviation_um.size(); ++i) ASSERT_GT(seen.deviation_um[i], 0.0) << i << " " << walk;
@@ -98,7 +98,7 @@ TEST(Observer, ItsCovarianceStaysPositiveWithReadingsFarBetterThanTheModel) {
 TEST(Observer, ItsDeviationCoversItsError) {
   int n = 0, n_outside = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const ObservedRun run = run_of(scattered(three_parts(), 0.1, static_cast<int>(seed)), 60.0, 0.0, 0.1, seed);
+    const MachineRun run = run_of(scattered(three_parts(), 0.1, static_cast<int>(seed)), 60.0, 0.0, 0.1, seed);
     const Observation o = observer_of(three_parts(), {"T1", "T3"}).observe(run);
     for (std::size_t i = 0; i < o.drift_um.size(); ++i) {
       ++n;
@@ -112,7 +112,7 @@ TEST(Observer, ItsDeviationCoversItsError) {
 TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
   solver::ReducedSystem machine = with_motor(1.2);
   machine.outputs.state.col(3) *= 1.06;
-  const std::vector<ObservedRun> training = {run_of(machine, 60.0, 0.0, 0.05, 1), run_of(machine, 60.0, 0.0, 0.05, 2)};
+  const std::vector<MachineRun> training = {run_of(machine, 60.0, 0.0, 0.05, 1), run_of(machine, 60.0, 0.0, 0.05, 2)};
   Observer o = observer_of(three_parts(), {"T1", "T2", "T3"}, {.drift_um = 0.2});
   const auto before = o.factors();
   ASSERT_THAT(before, SizeIs(5));
@@ -126,7 +126,7 @@ TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
   EXPECT_NEAR(after[4].value, 1.06, 0.01);
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_LT(after[i].deviation, before[i].deviation) << after[i].name;
   // what was learnt stays where there are no sensors, and follow() changes nothing
-  const ObservedRun judged = run_of(machine, 60.0, 0.0, 0.0, 3);
+  const MachineRun judged = run_of(machine, 60.0, 0.0, 0.0, 3);
   const Observer blind = o.with_sensors({});
   EXPECT_LT(worst_um(blind.observe(judged).drift_um, judged),
             0.2 * worst_um(observer_of(three_parts(), {}).observe(judged).drift_um, judged));
@@ -139,20 +139,20 @@ TEST(Observer, LearnsTheScaleOfTheDriftInAWarmAmbientToo) {
   solver::ReducedSystem machine = three_parts();
   machine.outputs.state.col(3) *= 1.06;
   for (const double warmer_K : {10.0, -10.0}) {
-    const std::vector<ObservedRun> training = {run_of(machine, 60.0, warmer_K, 0.05, 1),
-                                               run_of(machine, 60.0, warmer_K, 0.05, 2)};
+    const std::vector<MachineRun> training = {run_of(machine, 60.0, warmer_K, 0.05, 1),
+                                              run_of(machine, 60.0, warmer_K, 0.05, 2)};
     Observer o = observer_of(three_parts(), {"T1", "T2", "T3"});
     o.learn(training);
     EXPECT_NEAR(o.factors()[4].value, 1.06, 0.015) << warmer_K;
-    const ObservedRun cold = run_of(machine, 60.0, -warmer_K, 0.05, 3);
+    const MachineRun cold = run_of(machine, 60.0, -warmer_K, 0.05, 3);
     EXPECT_LT(worst_um(o.observe(cold).drift_um, cold), 1.5) << warmer_K;  // 6 % of 90 um unlearnt
   }
 }
 
 TEST(Observer, DropsAndNamesASensorThatSticks) {
   for (const int stuck : {0, 2}) {
-    const ObservedRun whole = run_of(three_parts(), 60.0, 0.0, 0.1);
-    ObservedRun run = whole;
+    const MachineRun whole = run_of(three_parts(), 60.0, 0.0, 0.1);
+    MachineRun run = whole;
     std::vector<double>& x = run.readings.channels[static_cast<std::size_t>(stuck)].values;
     for (std::size_t i = 100; i < x.size(); ++i) x[i] = x[100] + 12.0;
     const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).observe(run);
@@ -164,7 +164,7 @@ TEST(Observer, DropsAndNamesASensorThatSticks) {
 }
 
 TEST(Observer, DropsASensorThatStaysBehindSlowly) {
-  ObservedRun run = run_of(three_parts(), 60.0, 0.0, 0.1);
+  MachineRun run = run_of(three_parts(), 60.0, 0.0, 0.1);
   std::vector<double>& x = run.readings.channels[0].values;
   for (std::size_t i = 91; i < x.size(); ++i) x[i] = x[90];  // as the motor starts again
   const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).observe(run);
@@ -175,9 +175,9 @@ TEST(Observer, DropsASensorThatStaysBehindSlowly) {
 
 TEST(Observer, MissingReadingsDoNoHarm) {
   const solver::ReducedSystem machine = with_motor(1.2);
-  const ObservedRun whole = run_of(machine, 60.0, 0.0, 0.1);
+  const MachineRun whole = run_of(machine, 60.0, 0.0, 0.1);
   const double alone_um = worst_um(observer_of(three_parts(), {}).observe(whole).drift_um, whole);
-  ObservedRun run = whole;
+  MachineRun run = whole;
   double mean_um = 0.0;
   constexpr int kDraws = 10;
   for (int seed = 1; seed <= kDraws; ++seed) {
@@ -202,7 +202,7 @@ TEST(Observer, MissingReadingsDoNoHarm) {
 
 TEST(Observer, LearnsFromARunWhoseFirstDriftIsMissing) {
   const solver::ReducedSystem machine = with_motor(1.2);
-  std::vector<ObservedRun> training = {run_of(machine, 60.0, 0.0, 0.05)};
+  std::vector<MachineRun> training = {run_of(machine, 60.0, 0.0, 0.05)};
   for (std::size_t i = 0; i < 3; ++i) training[0].readings.channels[3].values[i] = NAN;
   for (double& v : training[0].readings.channels[3].values) v -= 2.5;  // and counts from somewhere else
   Observer o = observer_of(three_parts(), {"T1", "T2", "T3"});
@@ -213,14 +213,14 @@ TEST(Observer, LearnsFromARunWhoseFirstDriftIsMissing) {
 
 // What it says of a row is what it would have said had the run ended there, sensors dropped on the way included.
 TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
-  ObservedRun run = run_of(with_motor(1.2), 60.0, 0.0, 0.05);
+  MachineRun run = run_of(with_motor(1.2), 60.0, 0.0, 0.05);
   for (std::size_t i = 90; i < run.readings.n_samples(); ++i) run.readings.channels[0].values[i] += 15.0;  // fell off
   const Observer o = observer_of(three_parts(), {"T1", "T3"});
   const Observation whole = o.observe(run);
   ASSERT_THAT(whole.distrusted, SizeIs(1));
   EXPECT_EQ(live(o, run), whole.drift_um);
   for (const std::size_t n : {2, 50, 95, 120}) {
-    ObservedRun cut = run;
+    MachineRun cut = run;
     cut.readings.time_s.resize(n);
     for (Channel& c : cut.readings.channels) c.values.resize(n);
     const std::vector<double> so_far = live(o, cut);
@@ -231,31 +231,31 @@ TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
 // An ambient thermometer whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is
 // back.
 TEST(Observer, AnAmbientThatJumpsIsHeld) {
-  const ObservedRun run = run_of(three_parts(), 60.0, 4.0);
-  ObservedRun exchanged = run;
+  const MachineRun run = run_of(three_parts(), 60.0, 4.0);
+  MachineRun exchanged = run;
   exchanged.ambient = {{0.0, 3599.0, 3600.0, 7200.0, 7201.0}, {4.0, 4.0, 19.0, 26.0, 4.0}};
   for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1", "T3"}}) {
     const Observation o = observer_of(three_parts(), sensors).observe(exchanged);
     EXPECT_LT(worst_um(o.drift_um, run), 1e-8) << sensors.size();
     EXPECT_THAT(o.distrusted, ElementsAre(HasSubstr("the ambient thermometer from 60 min")));
   }
-  ObservedRun slow = run;  // what is slower is an ambient
+  MachineRun slow = run;  // what is slower is an ambient
   slow.ambient = {{0.0, 3600.0, 7200.0}, {4.0, 4.0, 26.0}};
   EXPECT_THAT(observer_of(three_parts(), {}).observe(slow).distrusted, IsEmpty());
   EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(slow).drift_um, run), 1.0);
 }
 
 TEST(Observer, ASensorInAnotherUnitIsRefused) {
-  ObservedRun run = run_of(three_parts());
+  MachineRun run = run_of(three_parts());
   run.readings.channels[0].unit = "K";
   EXPECT_THAT([&] { (void)live(observer_of(three_parts(), {"T1"}), run); }, ThrowsMessage<InputError>(HasSubstr("in degC")));
 }
 
 // Before the run there are no readings: the model with what it has learnt.
 TEST(Observer, AheadItIsTheModelWithItsFactors) {
-  const ObservedRun run = run_of(with_motor(1.2));
+  const MachineRun run = run_of(with_motor(1.2));
   Observer o = observer_of(three_parts(), {"T1", "T3"});
-  o.learn(std::vector<ObservedRun>{run, run});
+  o.learn(std::vector<MachineRun>{run, run});
   EXPECT_EQ(ahead(o, {run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}}),
             o.with_sensors({}).observe(run).drift_um);
 }
@@ -264,7 +264,7 @@ TEST(Observer, AheadItIsTheModelWithItsFactors) {
 // linearised factors.
 TEST(Observer, TwiceAsDenseRowsTellTheSame) {
   const solver::ReducedSystem machine = with_motor(1.2);
-  const ObservedRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
+  const MachineRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
   const std::vector<double> a = observer_of(three_parts(), {}).observe(coarse).drift_um,
                             b = observer_of(three_parts(), {}).observe(dense).drift_um;
   const std::vector<double>
@@ -279,7 +279,7 @@ TEST(Observer, TwiceAsDenseRowsTellTheSame) {
 // With films learnt off their values, K(u) has what the model has and heat over a step the rest: first order in the step.
 TEST(Observer, FactorsOnFilmsAreOfFirstOrderInTheStep) {
   const solver::ReducedSystem machine = solver::with_factors(three_parts(), {.exchange = {1.3, 1.3}});
-  std::vector<ObservedRun> training = {run_of(machine, 60.0), run_of(machine, 60.0)};
+  std::vector<MachineRun> training = {run_of(machine, 60.0), run_of(machine, 60.0)};
   for (const double step_s : {60.0, 30.0, 15.0}) {
     Observer o = observer_of(
         three_parts(), {"T1", "T2", "T3"},
@@ -299,7 +299,7 @@ TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
   for (const double step_s : {60.0, 30.0}) {
     Observer o = observer_of(three_parts(), {"T1", "T2", "T3"},
                              {.drift_um = 0.1, .model_um = 0.1, .factor_walk = 0.0, .longest_step_s = step_s});
-    o.learn(std::vector<ObservedRun>{run_of(machine), run_of(machine)});
+    o.learn(std::vector<MachineRun>{run_of(machine), run_of(machine)});
     std::vector<std::string> names;
     for (const Observer::Factor& f : o.factors()) {
       names.push_back(f.name);
@@ -307,7 +307,7 @@ TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
     }
     EXPECT_THAT(names, ElementsAre("motor", "screw", "film 1", "film 3", "drift_y"));
     const solver::ReducedSystem believed = solver::with_factors(three_parts(), o.model_factors());
-    const ObservedRun run = run_of(believed, 60.0, 7.0);
+    const MachineRun run = run_of(believed, 60.0, 7.0);
     EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(run).drift_um, run), 5.0);
     const double off_um = worst_um(o.with_sensors({}).observe(run).drift_um, run);
     EXPECT_LT(off_um, 0.5);
@@ -321,8 +321,8 @@ TEST(Observer, RefusesWhatTheModelHasNot) {
   solver::ReducedSystem looks = three_parts();
   looks.sources[0].power_W.probes = {0};
   EXPECT_THROW((void)observer_of(looks, {}), std::logic_error);
-  const ObservedRun run = run_of(three_parts());
-  ObservedRun less = run;
+  const MachineRun run = run_of(three_parts());
+  MachineRun less = run;
   less.readings.channels.erase(less.readings.channels.begin());
   EXPECT_THROW((void)observer_of(three_parts(), {"T1"}).observe(less), InputError);
 }
@@ -334,7 +334,7 @@ TEST(Observability, TakesTheSensorThatSeesWhatIsUncertain) {
   solver::ReducedSystem s = three_parts();
   s.sources.resize(1);
   s.exchanges.resize(1);
-  const std::vector<ObservedRun> runs = {run_of(three_parts())};
+  const std::vector<MachineRun> runs = {run_of(three_parts())};
   const ObserverSettings settings{.reading_K = 0.3, .model_K = 0.4, .factor = 0.2};
   const Selection first =
       select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T3", "T2", "T1"}, "drift_y", 1, settings);
@@ -356,7 +356,7 @@ TEST(Observability, LeavesTheVarianceOfTheClosedForm) {
   for (const auto& e : s.exchanges) k += e.coefficient({}) * e.matrix;
   s.conduction = k;
   s.exchanges.clear();
-  const std::vector<ObservedRun> runs = {run_of(s)};
+  const std::vector<MachineRun> runs = {run_of(s)};
   const double sigma = 0.2, noise = 0.25;
   const Record& r = runs[0].readings;
   double alone = 0.0, with = 0.0, n = 0.0;

@@ -40,13 +40,13 @@ Cyclogram day(std::uint64_t seed) {
 /// that scatters by a micrometre teach it, and each of them left out in turn gives the interval.
 DeployedPredictor taught() {
   constexpr double kIndicator_um = 1.0;
-  std::vector<ObservedRun> training;
+  std::vector<MachineRun> training;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     training.push_back(run_of(three_parts(), 60.0, 0.0, kNoise_K, seed, day(seed)));
     Random random(seed, 99);
     for (double& um : training.back().readings.channels[3].values) um += kIndicator_um * random.normal();
   }
-  const auto learned_from = [](std::span<const ObservedRun> runs) {
+  const auto learned_from = [](std::span<const MachineRun> runs) {
     Observer o(scattered(three_parts(), 0.1, 7), Eigen::Vector3d::Zero(), 0.0, {"T1", "T2", "T3"}, "drift_y",
                {.drift_um = kIndicator_um});
     o.learn(runs);
@@ -62,7 +62,7 @@ DeployedPredictor taught() {
   for (std::size_t r = 0; r < training.size(); ++r) {
     readings.push_back(training[r].readings);
     predicted.push_back(live(*d.predictor, training[r]));
-    std::vector<ObservedRun> rest = training;
+    std::vector<MachineRun> rest = training;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(r));
     std::vector<double> off_um = live(learned_from(rest), training[r]);
     for (std::size_t i = 0; i < off_um.size(); ++i)
@@ -78,12 +78,12 @@ struct Followed {
   double rms_left_um = 0.0, rms_before_um = 0.0;
   std::vector<std::string> doubted;
 };
-Followed follow(const DeployedPredictor& d, const ObservedRun& run) {
+Followed follow(const DeployedPredictor& d, const MachineRun& run) {
   DeployedFollower follower(d);
   Followed f;
   const std::vector<double>& drift_um = run.readings.at("drift_y").values;
   std::vector<double> left_um;
-  ObservedRun so_far = run;
+  MachineRun so_far = run;
   so_far.readings.time_s.clear();
   for (Channel& c : so_far.readings.channels) c.values.clear();
   for (std::size_t i = 0; i < drift_um.size(); ++i) {
@@ -113,7 +113,7 @@ TEST(ObserverTrust, FallsWhereTheModelIsWrongInOneNumber) {
     (wrong % 4 < 2 ? factors.source[static_cast<std::size_t>(wrong % 4)]
                    : factors.exchange[static_cast<std::size_t>(wrong % 4 - 2)]) = by;
     const auto seed = static_cast<std::uint64_t>(100 + wrong);
-    const ObservedRun run = run_of(solver::with_factors(three_parts(), factors), 60.0, 0.0, kNoise_K, seed, day(seed));
+    const MachineRun run = run_of(solver::with_factors(three_parts(), factors), 60.0, 0.0, kNoise_K, seed, day(seed));
     const Followed f = follow(d, run);
     n += f.n;
     n_calm_and_wrong += f.n_calm_and_wrong;
@@ -138,7 +138,7 @@ TEST(ObserverTrust, StaysWithTheMachineThatItKnows) {
 
 // One of three thermometers sticks: the others agree with the model, and it is the thermometer that is given up.
 TEST(ObserverTrust, StaysWhereOneThermometerIsBroken) {
-  ObservedRun run = run_of(three_parts(), 60.0, 0.0, kNoise_K, 300, day(300));
+  MachineRun run = run_of(three_parts(), 60.0, 0.0, kNoise_K, 300, day(300));
   std::vector<double>& t1 = run.readings.channels[0].values;
   std::fill(t1.begin() + 200, t1.end(), t1[199] + 4.0);
   const Followed f = follow(taught(), run);
@@ -149,7 +149,7 @@ TEST(ObserverTrust, StaysWhereOneThermometerIsBroken) {
 
 // The motor heats 2.5 times as much as the model says: all three disagree, none is given up, and the model is named.
 TEST(ObserverTrust, BlamesTheModelBeforeSeveralGoodThermometers) {
-  const ObservedRun run =
+  const MachineRun run =
       run_of(solver::with_factors(three_parts(), {.source = {2.5, 1.0}}), 60.0, 0.0, kNoise_K, 301, day(301));
   const Followed f = follow(taught(), run);
   EXPECT_THAT(f.doubted, Contains(HasSubstr("the model")));
@@ -157,9 +157,9 @@ TEST(ObserverTrust, BlamesTheModelBeforeSeveralGoodThermometers) {
 }
 
 /// What the machine does in an ambient that changes, at rows of a minute, read with noise.
-ObservedRun run_in(const TimeSeries& ambient, const Cyclogram& cyclogram, std::uint64_t seed) {
+MachineRun run_in(const TimeSeries& ambient, const Cyclogram& cyclogram, std::uint64_t seed) {
   const solver::ReducedSystem machine = three_parts();
-  ObservedRun run = run_of(machine, 60.0, 0.0, 0.0, seed, cyclogram);
+  MachineRun run = run_of(machine, 60.0, 0.0, 0.0, seed, cyclogram);
   run.ambient = ambient;
   const Eigen::MatrixXd y =
       solver::Propagator(machine).run(cyclogram, ambient, run.readings.time_s, Eigen::Vector3d::Zero()).outputs;
@@ -171,7 +171,7 @@ ObservedRun run_in(const TimeSeries& ambient, const Cyclogram& cyclogram, std::u
   }
   return run;
 }
-double rms_um(const std::vector<double>& drift_um, const ObservedRun& run, std::size_t from, std::size_t to) {
+double rms_um(const std::vector<double>& drift_um, const MachineRun& run, std::size_t from, std::size_t to) {
   std::vector<double> off_um;
   for (std::size_t i = from; i < to; ++i) off_um.push_back(drift_um[i] - run.readings.at("drift_y").values[i]);
   return score(off_um).rmse;
@@ -181,9 +181,9 @@ struct Pass {
   std::vector<double> drift_um, trust;
   std::vector<std::vector<std::string>> given_up;
 };
-Pass passed(const Observer& observer, const ObservedRun& run) {
+Pass passed(const Observer& observer, const MachineRun& run) {
   const std::unique_ptr<Follower> follower = observer.follow();
-  ObservedRun so_far = run;
+  MachineRun so_far = run;
   so_far.readings.time_s.clear();  // values beyond the last time are not looked at
   Pass p;
   for (double t_s : run.readings.time_s) {
@@ -210,7 +210,7 @@ Cyclogram three_days() {
 // The ambient falls by 8 K within a minute, as where a gate is opened, and stays there: its thermometer is held for half an
 // hour and then believed, since the others contradict the old ambient.
 TEST(ObserverTrust, BelievesAnAmbientThatHasJumpedAndStays) {
-  const ObservedRun run = run_in({{0.0, 7200.0, 7260.0}, {0.0, 0.0, -8.0}}, day(5), 5);
+  const MachineRun run = run_in({{0.0, 7200.0, 7260.0}, {0.0, 0.0, -8.0}}, day(5), 5);
   const Pass p = passed(taught_observer(), run);
   EXPECT_THAT(p.given_up[130], Contains(HasSubstr("ambient")));
   EXPECT_THAT(p.given_up.back(), IsEmpty());
@@ -219,7 +219,7 @@ TEST(ObserverTrust, BelievesAnAmbientThatHasJumpedAndStays) {
 
 // A thermometer that is wrong for two hours and then right again is used again after eight hours of agreement.
 TEST(ObserverTrust, UsesASensorAgainThatAgreesForLong) {
-  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 6);
+  MachineRun run = run_in({{0.0}, {0.0}}, three_days(), 6);
   std::vector<double>& t1 = run.readings.channels[0].values;
   for (std::size_t i = 200; i < 320; ++i) t1[i] += 6.0;
   const Pass p = passed(taught_observer(), run);
@@ -231,7 +231,7 @@ TEST(ObserverTrust, UsesASensorAgainThatAgreesForLong) {
 
 // One that is stuck where the machine rests at night agrees for all the night, and is not used again by day.
 TEST(ObserverTrust, DoesNotUseAStuckSensorAgainBecauseTheMachineRests) {
-  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 7);
+  MachineRun run = run_in({{0.0}, {0.0}}, three_days(), 7);
   std::vector<double>& t1 = run.readings.channels[0].values;
   std::fill(t1.begin() + 100, t1.end(), 20.0);
   const Pass p = passed(taught_observer(), run);
@@ -241,7 +241,7 @@ TEST(ObserverTrust, DoesNotUseAStuckSensorAgainBecauseTheMachineRests) {
 
 // A bad contact: every fifth reading is 850 degC for two hours. It moves neither the drift nor what is believed afterwards.
 TEST(ObserverTrust, SingleReadingsOf850DegCMoveNothing) {
-  ObservedRun run = run_in({{0.0}, {0.0}}, day(8), 8);
+  MachineRun run = run_in({{0.0}, {0.0}}, day(8), 8);
   for (std::size_t i = 200; i < 320; i += 5) run.readings.channels[1].values[i] = 850.0;
   const Pass p = passed(taught_observer(), run);
   EXPECT_LT(rms_um(p.drift_um, run, 0, run.readings.n_samples()), 0.5);
@@ -251,7 +251,7 @@ TEST(ObserverTrust, SingleReadingsOf850DegCMoveNothing) {
 // Three hours without a row, at full speed before and at rest within: the readings after them correct the state at once.
 TEST(ObserverTrust, AGapLeavesOpenWhatTheMachineDid) {
   const Cyclogram truth{.name = "gap", .sections = {{7200, {.speed_rpm = 3000}}, {10800, {}}, {7200, {.speed_rpm = 1500}}}};
-  ObservedRun run = run_in({{0.0}, {0.0}}, truth, 9);
+  MachineRun run = run_in({{0.0}, {0.0}}, truth, 9);
   run.cyclogram.sections = {{18000, {.speed_rpm = 3000}}, {7200, {.speed_rpm = 1500}}};  // the last speed that was known
   const auto cut = [](auto& list) { list.erase(list.begin() + 121, list.begin() + 300); };
   cut(run.readings.time_s);
@@ -263,7 +263,7 @@ TEST(ObserverTrust, AGapLeavesOpenWhatTheMachineDid) {
 
 // A day with two of three thermometers exchanged, then right ones: the drift is right again two days later.
 TEST(ObserverTrust, ForgetsWhatWrongReadingsTaught) {
-  ObservedRun run = run_in({{0.0}, {0.0}}, three_days(), 10);
+  MachineRun run = run_in({{0.0}, {0.0}}, three_days(), 10);
   for (std::size_t i = 100; i < 480; ++i) std::swap(run.readings.channels[0].values[i], run.readings.channels[2].values[i]);
   const Pass p = passed(taught_observer(), run);
   const std::size_t n = run.readings.n_samples();

@@ -20,10 +20,10 @@ using ::testing::ElementsAre;
 using ::testing::IsNan;
 
 /// Four thermometers with holes and a speed.
-ObservedRun run_with_holes() {
-  ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
-                  .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
-                  .readings = fixtures::sensor_record(3, 300, 4, 0.02, 0.1)};
+MachineRun run_with_holes() {
+  MachineRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
+                 .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
+                 .readings = fixtures::sensor_record(3, 300, 4, 0.02, 0.1)};
   Record& r = run.readings;
   r.channels.push_back({"spindle", "rpm", {}});
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
@@ -60,7 +60,7 @@ void expect_equal(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 TEST(Predictor, AFormulaRowByRowIsTheFormulaOfTheWholeRecord) {
-  const ObservedRun run = run_with_holes();
+  const MachineRun run = run_with_holes();
   for (const bool from_start : {false, true}) {
     const std::vector<double> whole = formula(from_start).predict(run.readings);
     EXPECT_TRUE(std::isnan(whole[1]) && std::isfinite(whole[2]) && std::isnan(whole[77]));
@@ -75,7 +75,7 @@ TEST(Predictor, ALagOfSpeedIsItsClosedForm) {
                             .target_unit = "um",
                             .intercept = 0.0,
                             .terms = {{.input = "spindle", .unit = "rpm", .coefficient = 0.01, .lag_s = 600.0}}});
-  ObservedRun run{
+  MachineRun run{
       .cyclogram = {}, .ambient = {}, .readings = {.source = {}, .time_s = {}, .channels = {{"spindle", "rpm", {}}}}};
   for (int i = 0; i < 50; ++i) {
     run.readings.time_s.push_back(40.0 * i);
@@ -88,13 +88,13 @@ TEST(Predictor, ALagOfSpeedIsItsClosedForm) {
 }
 
 TEST(Predictor, ARunMayGrowBetweenRows) {
-  const ObservedRun whole = run_with_holes();
+  const MachineRun whole = run_with_holes();
   const FormulaPredictor p(formula(true));
   const std::vector<double> at_once = live(p, whole);
   const std::unique_ptr<Follower> follower = p.follow();
-  ObservedRun growing{.cyclogram = whole.cyclogram,
-                      .ambient = whole.ambient,
-                      .readings = {.source = {}, .time_s = {}, .channels = whole.readings.channels}};
+  MachineRun growing{.cyclogram = whole.cyclogram,
+                     .ambient = whole.ambient,
+                     .readings = {.source = {}, .time_s = {}, .channels = whole.readings.channels}};
   for (Channel& c : growing.readings.channels) c.values.clear();
   std::vector<double> row_by_row;
   for (std::size_t i = 0; i < whole.readings.n_samples(); ++i) {
@@ -107,11 +107,11 @@ TEST(Predictor, ARunMayGrowBetweenRows) {
 }
 
 TEST(Predictor, WhatHasToReadSaysNothingAhead) {
-  ObservedRun known = run_with_holes();
+  MachineRun known = run_with_holes();
   std::erase_if(known.readings.channels, [](const Channel& c) { return c.unit == "degC"; });
   EXPECT_THAT(ahead(FormulaPredictor(formula(false)), known), ::testing::Each(IsNan()));
   EXPECT_THAT(ahead(ConstantPredictor(2.5), known), ::testing::Each(2.5));
-  const ObservedRun foretold = run_with_holes();  // temperatures that a model foretells are read
+  const MachineRun foretold = run_with_holes();  // temperatures that a model foretells are read
   expect_equal(ahead(FormulaPredictor(formula(false)), foretold), live(FormulaPredictor(formula(false)), foretold));
 }
 
@@ -119,7 +119,7 @@ TEST(Predictor, EarlierRunsAreTheirMeanAtTheSameTime) {
   const std::vector<Record> runs = {{"a", {0.0, 100.0, 200.0}, {{"z", "um", {0.0, 10.0, NAN}}}},
                                     {"b", {0.0, 200.0}, {{"z", "um", {2.0, 6.0}}}}};
   const EarlierRunsPredictor p(runs, "z");
-  const ObservedRun run{
+  const MachineRun run{
       .cyclogram = {}, .ambient = {}, .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 201.0}, .channels = {}}};
   EXPECT_THAT(live(p, run), ElementsAre(1.0, 4.0, 5.0, IsNan()));
 }
@@ -133,13 +133,13 @@ TEST(Predictor, WhatFollowsFromTheDriveIsKnownAheadAndFollowsAGrowingRun) {
     for (double t_s : time_s) drift_um.push_back(2.0 * ambient.at(t_s) + 1e-3 * cyclogram.speed_rpm(t_s));
     return drift_um;
   });
-  const ObservedRun run{.cyclogram = {.name = "work", .sections = {{100.0, {.speed_rpm = 3000.0}}, {900.0, {}}}},
-                        .ambient = {{0.0, 200.0}, {0.0, 1.0}},
-                        .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 300.0}, .channels = {}}};
+  const MachineRun run{.cyclogram = {.name = "work", .sections = {{100.0, {.speed_rpm = 3000.0}}, {900.0, {}}}},
+                       .ambient = {{0.0, 200.0}, {0.0, 1.0}},
+                       .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 300.0}, .channels = {}}};
   EXPECT_THAT(ahead(p, run), ElementsAre(3.0, 3.5, 1.5, 2.0));
   EXPECT_EQ(n_asked, 1);
   const std::unique_ptr<Follower> follower = p.follow();
-  ObservedRun growing = run;
+  MachineRun growing = run;
   growing.readings.time_s.clear();
   std::vector<double> row_by_row;
   for (double t_s : run.readings.time_s) {
@@ -153,7 +153,7 @@ TEST(Predictor, WhatFollowsFromTheDriveIsKnownAheadAndFollowsAGrowingRun) {
 }
 
 TEST(Predictor, AnInputInAnotherUnitIsRefused) {
-  ObservedRun run = run_with_holes();
+  MachineRun run = run_with_holes();
   run.readings.channels[2].unit = "K";
   EXPECT_THROW((void)live(FormulaPredictor(formula(false)), run), InputError);
   run.readings.channels.erase(run.readings.channels.begin() + 2);

@@ -313,9 +313,9 @@ TEST_P(Fmu, IsValidByTheSchemaAndTheSameBytesEachTime) {
 
 /// Readings with noise, one of which goes wrong, two thermometers that are exchanged later, and an ambient's thermometer that jumps for
 /// longer than the rows that the observer goes back.
-compensation::ObservedRun troubled_run(const Fp3& fp3) {
+MachineRun troubled_run(const Fp3& fp3) {
   const Record predicted = fp3.predicted("chaotic");
-  compensation::ObservedRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .ambient = {}, .readings = predicted};
+  MachineRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .ambient = {}, .readings = predicted};
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 0.1);
   for (Channel& c : run.readings.channels) {
@@ -342,8 +342,8 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   const scenarios::ReducedMachine& reduced = *fp3.model.reduced();
   compensation::Observer observer(reduced.system, reduced.start, fp3.fmu.start_ambient_K, {"t05", "t06", "t07", "t10"},
                                   "drift_y");
-  const compensation::ObservedRun run = troubled_run(fp3);
-  compensation::ObservedRun lesson = run;
+  const MachineRun run = troubled_run(fp3);
+  MachineRun lesson = run;
   lesson.readings = fp3.predicted("chaotic");
   for (Channel& c : lesson.readings.channels) {
     if (c.name != "drift_y") continue;

@@ -40,10 +40,10 @@ struct Raised {
   std::vector<double> time_s;
   std::string words;
 };
-Raised alarms(const TrialMachine& machine, const compensation::ObservedRun& run, const WatchLimits& of = limits()) {
+Raised alarms(const TrialMachine& machine, const MachineRun& run, const WatchLimits& of = limits()) {
   Watch watch(machine.observer(), of);
   Raised raised;
-  compensation::ObservedRun growing = run;
+  MachineRun growing = run;
   growing.readings.time_s.clear();  // values beyond the last time are not looked at
   for (double t_s : run.readings.time_s) {
     growing.readings.time_s.push_back(t_s);
@@ -86,9 +86,9 @@ TEST(Watch, SeesAFanThatStopsAPreloadAndAThermometerThatFallsOffAndSaysWhichTher
 
 TEST(Watch, GoesOnFromItsMemoryAsWithoutARestart) {
   const TrialMachine machine(observer(), kSensors, kSettings, 9000);
-  const compensation::ObservedRun run = machine.work(0.3 * kDay_s, {}, 9002);
+  const MachineRun run = machine.work(0.3 * kDay_s, {}, 9002);
   Watch whole(machine.observer(), limits()), first(machine.observer(), limits());
-  compensation::ObservedRun growing = run;
+  MachineRun growing = run;
   growing.readings.time_s.clear();
   std::unique_ptr<Watch> second;
   for (std::size_t i = 0; i < run.readings.time_s.size(); ++i) {
@@ -131,7 +131,7 @@ TEST(Watch, ThresholdsWantAMachineForADay) {
 
 // Three runs of a sound machine, taught as `validate` does.
 compensation::Observer taught_by(const solver::ReducedSystem& machine) {
-  std::vector<compensation::ObservedRun> runs;
+  std::vector<MachineRun> runs;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) runs.push_back(fixtures::run_of(machine, 60.0, 0.0, 0.1, seed));
   compensation::Observer o = observer();
   o.learn(runs);
@@ -140,7 +140,7 @@ compensation::Observer taught_by(const solver::ReducedSystem& machine) {
 
 // Simulated at rows of 5 min, used at rows of 1 min: alarms are as seldom as with limits of rows of 1 min.
 TEST(Watch, DeployedLimitsRaiseNoMoreAlarmsAtShorterRows) {
-  const compensation::ObservedRun training = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
+  const MachineRun training = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
   const std::optional<WatchLimits> deployed = deployed_limits(taught_by(fixtures::three_parts()), {&training, 1}, {});
   ASSERT_TRUE(deployed);
   EXPECT_EQ(deployed->sensors, kSensors);
@@ -155,15 +155,14 @@ TEST(Watch, DeployedLimitsRaiseNoMoreAlarmsAtShorterRows) {
 // A model that was off in training raises no alarm at being as far off: its verdict says how good it is.
 TEST(Watch, DeployedLimitsAllowTwiceWhatTheTrainingReached) {
   solver::ModelFactors factors{.source = {2.5, 1.0}, .exchange = {1.0, 1.0}};
-  const compensation::ObservedRun off =
-      fixtures::run_of(solver::with_factors(fixtures::three_parts(), factors), 60.0, 0.0, 0.1);
+  const MachineRun off = fixtures::run_of(solver::with_factors(fixtures::three_parts(), factors), 60.0, 0.0, 0.1);
   const compensation::Observer model = observer();  // has learned nothing of it
   const auto sound = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
   const WatchLimits narrow = *deployed_limits(model, {&sound, 1}, {}), wide = *deployed_limits(model, {&off, 1}, {});
   const auto is_raised = [&](const WatchLimits& limits) {
     Watch watch(model, limits);
     bool is = false;
-    compensation::ObservedRun growing = off;
+    MachineRun growing = off;
     growing.readings.time_s.clear();
     for (double t_s : off.readings.time_s) {
       growing.readings.time_s.push_back(t_s);
@@ -185,12 +184,12 @@ TEST(Watch, NoLimitsWithoutAThermometerOrASpeed) {
 
 // The alarm says what its thermometers show now, also after a restart, and not what they showed when it was raised.
 TEST(Watch, AnAlarmSaysWhatHoldsNow) {
-  compensation::ObservedRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
+  MachineRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 0.0, 0.1);
   std::vector<double>& t3 = run.readings.channels[2].values;
   for (std::size_t i = 60; i < t3.size(); ++i) t3[i] += i < 120 ? 6.0 : -6.0;
   Watch watch(observer(), limits());
   std::vector<std::string> words;
-  compensation::ObservedRun growing = run;
+  MachineRun growing = run;
   growing.readings.time_s.clear();
   for (std::size_t i = 0; i < t3.size(); ++i) {
     growing.readings.time_s.push_back(run.readings.time_s[i]);

@@ -13,8 +13,8 @@ using ::testing::ElementsAre;
 const Cyclogram kJob{.name = "job", .sections = {{100.0, {.speed_rpm = 2000.0}}, {50.0, {.speed_rpm = 500.0}}}};
 const TimeSeries kWarming{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
 
-RecordedRun morning(double ambient_at_end_K, bool has_ambient) {
-  RecordedRun run;
+MachineRun morning(double ambient_at_end_K, bool has_ambient) {
+  MachineRun run;
   run.readings.time_s = {0.0, 60.0, 120.0};
   run.cyclogram = {.name = "morning", .sections = {{120.0, {.speed_rpm = 1000.0}}}};
   run.ambient = {{0.0, 120.0}, {5.0, ambient_at_end_K}};
@@ -72,7 +72,7 @@ TEST(JobSeries, TheAmbientGoesOnFromItsLastReadingAsTheScenariosDoes) {
 TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
   for (double t_s : {0.0, 60.0, 120.0, 500.0, 1000.0}) {
     EXPECT_NEAR(job_series(kJob, {.start = morning(6.0, false)}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
-    RecordedRun own = morning(6.0, true);
+    MachineRun own = morning(6.0, true);
     own.ambient = {{0.0, 60.0, 120.0}, {1.0, 1.12, 1.24}};
     EXPECT_NEAR(job_series(kJob, {.start = own}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
   }

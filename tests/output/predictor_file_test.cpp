@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using Json = nlohmann::ordered_json;
 
-ObservedRun machine(std::uint64_t seed) {
+MachineRun machine(std::uint64_t seed) {
   return {.cyclogram = {.name = "work", .sections = {{9000.0, {.speed_rpm = 2000.0}}, {9e4, {}}}},
           .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
           .readings = fixtures::machine(seed, 60.0)};
@@ -63,7 +63,7 @@ TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
     PredictorFile file = formula(from_start);
     const PredictorFile read = back(file);
     expect_same(file, read);
-    const ObservedRun run = machine(7);
+    const MachineRun run = machine(7);
     EXPECT_EQ(correct(file.predictor, run).correction_um, correct(read.predictor, run).correction_um);
     EXPECT_EQ(read.predictor.interval_um, file.predictor.interval_um);
     EXPECT_EQ(read.judged["verdict"], "safe within limits");
@@ -80,7 +80,7 @@ TEST(PredictorFile, AMeanComesBackWithItsMembers) {
   file.predictor.predictor = std::make_shared<FormulaPredictor>(mean, std::vector<DriftModel>{mean, member});
   const PredictorFile read = back(file);
   expect_same(file, read);
-  const ObservedRun run = machine(7);
+  const MachineRun run = machine(7);
   const std::vector<double> interval_um = correct(read.predictor, run).interval_um;
   EXPECT_EQ(correct(file.predictor, run).interval_um, interval_um);
   EXPECT_GT(*std::max_element(interval_um.begin(), interval_um.end()), 2.0 * *file.predictor.interval_um);
@@ -146,7 +146,7 @@ TEST(PredictorFile, AFailSafeLearntAtOneSpeedComesBack) {
     file.predictor.fail_safe = learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, false);
     const PredictorFile read = back(file);
     expect_same(file, read);
-    ObservedRun run = machine(7);
+    MachineRun run = machine(7);
     std::fill(run.readings.channels.back().values.begin(), run.readings.channels.back().values.end(), speed_rpm);
     const GuardedCorrection as_fitted = correct(file.predictor, run);
     EXPECT_EQ(as_fitted.correction_um, correct(read.predictor, run).correction_um);

@@ -10,7 +10,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/predictors/drift_model.hpp"
-#include "compensation/predictors/observed_run.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 #include "scenarios/reader/record_part.hpp"
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/shared/temporary_file.hpp"
@@ -18,7 +18,6 @@
 namespace driftwright::scenarios::record_runs_test {
 namespace {
 
-using compensation::ObservedRun;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -56,7 +55,7 @@ struct Cut {
       : record(record_of(stretches)), run(run_of(record, nullptr, {}, Reading::kStrict)) {}
   [[nodiscard]] std::vector<RunRows> runs() const { return runs_between_rests(run, 0, record.n_samples()); }
   Record record;
-  RecordedRun run;
+  MachineRun run;
 };
 
 // exp(-1) of the way is left after one hour of rest, exp(-5) = 0.7 % after five.
@@ -95,7 +94,7 @@ TEST(RecordRuns, AtMostEightAtTheLongestRests) {
 TEST(RecordRuns, AFeedIsNoRest) {
   Record r = record_of({{2, 1000}, {1, 0}, {2, 500}});
   r.channels.push_back({"feed_x", "mm_min", std::vector<double>(r.n_samples(), -600.0)});
-  const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
+  const MachineRun run = run_of(r, nullptr, {}, Reading::kStrict);
   EXPECT_THAT(runs_between_rests(run, 0, r.n_samples()), SizeIs(1));
 }
 
@@ -108,10 +107,10 @@ TEST(RecordRuns, BalanceIsWithTheAmbient) {
     ambient.values.push_back(20.0 + rise_K);
     r.channels[1].values[i] += rise_K;
   }
-  const RecordedRun alone = run_of(r, nullptr, {}, Reading::kStrict);
+  const MachineRun alone = run_of(r, nullptr, {}, Reading::kStrict);
   EXPECT_FALSE(is_back_in_balance(alone, 420));
   r.channels.push_back(ambient);
-  const RecordedRun with_ambient = run_of(r, nullptr, {}, Reading::kStrict);
+  const MachineRun with_ambient = run_of(r, nullptr, {}, Reading::kStrict);
   EXPECT_TRUE(is_back_in_balance(with_ambient, 420));
 }
 
@@ -172,31 +171,31 @@ TEST(RecordRuns, PartsOfDriveAndAmbient) {
 }
 
 /// Rows [0, last) of a record, of which the first `n_before` are lead-in.
-ObservedRun with_lead_in(const Record& record, std::size_t n_before, std::size_t last) {
-  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = record, .n_before = n_before, .history = "week"};
+MachineRun with_lead_in(const Record& record, std::size_t n_before, std::size_t last) {
+  MachineRun run{.cyclogram = {}, .ambient = {}, .readings = record, .n_before = n_before, .history = "week"};
   run.readings.time_s.resize(last);
   for (Channel& c : run.readings.channels) c.values.resize(last);
   return run;
 }
 
 // A lag of an hour at the start of the part is what it has become by then; a part that began anew would begin at 0 again.
-TEST(ObservedRun, LagsStartFromTheHistory) {
+TEST(MachineRun, LagsStartFromTheHistory) {
   const Record whole = record_of({{3, 1000}, {1, 0}});
   const compensation::DriftModel model{.kind = "lag",
                                        .target = "tip_z",
                                        .target_unit = "um",
                                        .intercept = 0.0,
                                        .terms = {{.input = "speed", .unit = "rpm", .coefficient = 0.02, .lag_s = 3600.0}}};
-  const ObservedRun run = with_lead_in(whole, 180, 240);
+  const MachineRun run = with_lead_in(whole, 180, 240);
   const std::vector<double> predicted = model.predict(run.readings);
   for (std::size_t i = 180; i < 240; ++i) EXPECT_NEAR(predicted[i], whole.at("tip_z").values[i], 1e-9);
   EXPECT_GT(predicted[180], 18.0);
   EXPECT_DOUBLE_EQ(model.predict(compensation::own_rows(run.readings, 180)).front(), 0.0);
 }
 
-TEST(ObservedRun, IsScoredOnItsOwnRowsAndCountsFromTheStartOfItsHistory) {
+TEST(MachineRun, IsScoredOnItsOwnRowsAndCountsFromTheStartOfItsHistory) {
   const Record whole = record_of({{3, 1000}, {1, 0}});
-  const ObservedRun run = with_lead_in(whole, 180, 240);
+  const MachineRun run = with_lead_in(whole, 180, 240);
   const std::vector<double> drift = compensation::scored_readings(run, "tip_z", true).at("tip_z").values;
   for (std::size_t i = 0; i < 180; ++i) EXPECT_TRUE(std::isnan(drift[i]));
   EXPECT_DOUBLE_EQ(drift[180], whole.at("tip_z").values[180]);  // the machine is warm there: not 0
@@ -206,12 +205,12 @@ TEST(ObservedRun, IsScoredOnItsOwnRowsAndCountsFromTheStartOfItsHistory) {
   EXPECT_DOUBLE_EQ(own.at("nose").values.front(), whole.at("nose").values[180]);
 }
 
-TEST(ObservedRun, RunsOfOneHistoryAreOneRunThatKnowsTheirDriftAlone) {
+TEST(MachineRun, RunsOfOneHistoryAreOneRunThatKnowsTheirDriftAlone) {
   const Record whole = record_of({{3, 1000}, {1, 0}});
-  ObservedRun other = with_lead_in(whole, 0, 50);
+  MachineRun other = with_lead_in(whole, 0, 50);
   other.history.clear();
-  const std::vector<ObservedRun> runs = {with_lead_in(whole, 0, 60), other, with_lead_in(whole, 180, 240)};
-  const std::vector<ObservedRun> joined = compensation::joined_histories(runs, "tip_z");
+  const std::vector<MachineRun> runs = {with_lead_in(whole, 0, 60), other, with_lead_in(whole, 180, 240)};
+  const std::vector<MachineRun> joined = compensation::joined_histories(runs, "tip_z");
   ASSERT_THAT(joined, SizeIs(2));
   const std::vector<double>& drift = joined[0].readings.at("tip_z").values;
   ASSERT_EQ(drift.size(), 240u);

@@ -3,13 +3,11 @@
 
 #include <cmath>
 
+#include "base/machine_run.hpp"
 #include "base/random.hpp"
-#include "compensation/predictors/observed_run.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::fixtures {
-
-using compensation::ObservedRun;
 
 /// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to
 /// the ambient; motor heat into the first, screw heat into the second. State: temperatures times sqrt(C), so that M = 1.
@@ -58,9 +56,9 @@ inline const Cyclogram kWork{
 
 /// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of ambient and machine at
 /// the start
-inline ObservedRun run_of(const solver::ReducedSystem& machine, double period_s = 60.0, double warmer_K = 0.0,
-                          double noise_K = 0.0, std::uint64_t seed = 1, const Cyclogram& cyclogram = kWork) {
-  ObservedRun run{
+inline MachineRun run_of(const solver::ReducedSystem& machine, double period_s = 60.0, double warmer_K = 0.0,
+                         double noise_K = 0.0, std::uint64_t seed = 1, const Cyclogram& cyclogram = kWork) {
+  MachineRun run{
       .cyclogram = cyclogram, .ambient = {{0.0}, {warmer_K}}, .readings = {.source = "run", .time_s = {}, .channels = {}}};
   for (double t = 0.0; t <= cyclogram.duration_s(); t += period_s) run.readings.time_s.push_back(t);
   const Eigen::MatrixXd y =

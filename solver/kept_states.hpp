@@ -9,9 +9,9 @@
 namespace driftwright::solver {
 
 /// Interface of such runs.
-class KeptRun {
+class KeptStates {
  public:
-  virtual ~KeptRun() = default;
+  virtual ~KeptStates() = default;
 
   /// Reduced states at the output times, size x n_times.
   [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
@@ -23,11 +23,11 @@ class KeptRun {
                                                                  const Eigen::VectorXd& start) const = 0;
 
  protected:
-  KeptRun() = default;
-  KeptRun(const KeptRun&) = default;
-  KeptRun(KeptRun&&) = default;
-  KeptRun& operator=(const KeptRun&) = default;
-  KeptRun& operator=(KeptRun&&) = default;
+  KeptStates() = default;
+  KeptStates(const KeptStates&) = default;
+  KeptStates(KeptStates&&) = default;
+  KeptStates& operator=(const KeptStates&) = default;
+  KeptStates& operator=(KeptStates&&) = default;
 
   Eigen::MatrixXd states_;
 };

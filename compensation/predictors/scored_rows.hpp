@@ -9,17 +9,15 @@
 
 namespace driftwright::compensation {
 
-using ObservedRun = MachineRun;
-
 /// The readings for fits and scores: temperatures and `target` counted from their first row if `from_start`, and the target
 /// missing in the lead-in.
-[[nodiscard]] Record scored_readings(const ObservedRun& run, const std::string& target, bool from_start);
+[[nodiscard]] Record scored_readings(const MachineRun& run, const std::string& target, bool from_start);
 
 /// The rows of the run alone. Its time starts at 0.
 [[nodiscard]] Record own_rows(Record readings, std::size_t n_before);
 
 /// Merges runs of one history into one run, in which the target is missing in rows that belong to none of them; so each
 /// reading counts once. Runs without a history are unchanged; the order is kept.
-[[nodiscard]] std::vector<ObservedRun> joined_histories(std::span<const ObservedRun> runs, const std::string& target);
+[[nodiscard]] std::vector<MachineRun> joined_histories(std::span<const MachineRun> runs, const std::string& target);
 
 }  // namespace driftwright::compensation

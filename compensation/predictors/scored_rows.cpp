@@ -1,4 +1,4 @@
-#include "compensation/predictors/observed_run.hpp"
+#include "compensation/predictors/scored_rows.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Record scored_readings(const ObservedRun& run, const std::string& target, bool from_start) {
+Record scored_readings(const MachineRun& run, const std::string& target, bool from_start) {
   Record readings = from_start ? counted_from_start(run.readings, target) : run.readings;
   std::vector<double>& drift = changeable_channel(readings, target).values;
   std::fill_n(drift.begin(), std::min(run.n_before, drift.size()), kMissing);
@@ -31,10 +31,10 @@ Record own_rows(Record readings, std::size_t n_before) {
   return readings;
 }
 
-std::vector<ObservedRun> joined_histories(std::span<const ObservedRun> runs, const std::string& target) {
-  std::vector<ObservedRun> result;
+std::vector<MachineRun> joined_histories(std::span<const MachineRun> runs, const std::string& target) {
+  std::vector<MachineRun> result;
   std::map<std::string, std::size_t> known;  // index in the result
-  for (const ObservedRun& run : runs) {
+  for (const MachineRun& run : runs) {
     const auto [at, is_new] = known.try_emplace(run.history, result.size());
     if (run.history.empty() || is_new) {
       result.push_back(run);
@@ -42,11 +42,11 @@ std::vector<ObservedRun> joined_histories(std::span<const ObservedRun> runs, con
       result[at->second] = run;
     }
   }
-  for (ObservedRun& joined : result) {
+  for (MachineRun& joined : result) {
     if (joined.history.empty()) continue;
     std::vector<double>& drift = changeable_channel(joined.readings, target).values;
     std::vector<bool> is_own(drift.size());
-    for (const ObservedRun& run : runs) {
+    for (const MachineRun& run : runs) {
       if (run.history != joined.history) continue;
       for (std::size_t i = run.n_before; i < run.readings.n_samples(); ++i) is_own[i] = true;
     }
