@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kRow_s = 60.0;
 constexpr int kMostDraws = 12;
 
 /// How loud the effects of a case shall be. Odd seeds and even ones belong to other machines: a share needs its own draw.

@@ -10,6 +10,8 @@
 
 namespace driftwright::blind {
 
+constexpr double kRow_s = 60.0;  ///< between the rows of a record
+
 struct Readings {
   double step_s = 20.0;
   std::vector<std::string> name;

@@ -7,7 +7,6 @@
 namespace driftwright::blind {
 namespace {
 
-constexpr double kRow_s = 60.0;
 constexpr double kBeyond_s = 600.0;
 
 bool acts_in(const Hidden& h, const CasePlan& plan, std::size_t record) {
