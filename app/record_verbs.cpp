@@ -146,8 +146,7 @@ void add_identify(CLI::App& cli, IdentifyOptions& options) {
               "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
               "results/identified\n  driftwright simulate "
               "results/identified/monday.yaml -o results/identified_run\n  driftwright identify --prior "
-              "scenarios/fp3_spindle.yaml --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
-              "results/learned");
+              "scenarios/own_law.yaml --record scenarios/records/own_law.csv -o results/learned");
   verb->callback([&] { app::identify(options); });
 }
 

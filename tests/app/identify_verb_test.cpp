@@ -59,6 +59,23 @@ TEST_F(IdentifyVerb, WritesAScenarioThatSimulatesWhatWasMeasured) {
 // Monday and Tuesday are of a machine that differs from the scenario in one thing; 0.1 K of noise. The file that is
 // written runs, and leaves about the noise of the thermometer that was missed most.
 TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
+  const std::string record = " --record scenarios/records/own_law.csv --json -o ";
+  const CommandOutcome learned = run_program("identify --prior scenarios/own_law.yaml" + record + out_.string());
+  ASSERT_EQ(learned.exit_code, 0) << learned.output;
+  for (const Json& channel : Json::parse(std::ifstream(out_ / "summary.json")).at("channels")) {
+    EXPECT_EQ(channel.at("written"), "yes") << channel.at("name");
+    EXPECT_LT(channel.at("rms_kept_out").get<double>(), 0.3 * channel.at("rms_scenario_kept_out").get<double>())
+        << channel.at("name");
+  }
+  const CommandOutcome again =
+      run_program("identify --prior " + (out_ / "extended.yaml").string() + record + (out_ / "again").string());
+  ASSERT_EQ(again.exit_code, 0) << again.output;
+  for (const Json& channel : Json::parse(std::ifstream(out_ / "again" / "summary.json")).at("channels"))
+    EXPECT_NE(channel.at("written"), "yes") << channel.at("name") << ": what was learned once is there";
+}
+
+using IdentifyVerbAtLength = IdentifyVerb;
+TEST_F(IdentifyVerbAtLength, LearnsBesideAMeshedMachineWhatItMisses) {
   const CommandOutcome learned = run_program(
       "identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/monday.csv --record "
       "scenarios/records/tuesday.csv -o " +
@@ -84,7 +101,6 @@ TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
         << channel.at("name") << ": what was learned once is there";
 }
 
-using IdentifyVerbAtLength = IdentifyVerb;
 TEST_F(IdentifyVerbAtLength, LearnsNothingBesideAScenarioThatIsRight) {
   const CommandOutcome run =
       run_program("identify --prior scenarios/fp3_spindle.yaml --record scenarios/records/good.csv -o " + out_.string());
