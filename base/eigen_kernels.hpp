@@ -1,7 +1,7 @@
 #pragma once
 // Eigen's kernels of dense products and triangular solves in double precision, compiled once, in eigen_kernels.cpp, with
 // full optimisation. Every other file calls them: it compiles faster, and of these kernels a file that is compiled with less
-// optimisation (cmake/target.cmake, QUICK) has no slower copy, which the linker could take for all. Of other templates of
+// optimisation (cmake/target.cmake, NUMERIC) has no slower copy, which the linker could take for all. Of other templates of
 // Eigen, such as LDLT, it may have one.
 
 #include <Eigen/Cholesky>
