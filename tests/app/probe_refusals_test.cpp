@@ -1,6 +1,7 @@
 // What `probe-plan` and `validate --probe` refuse, in this process: starting the program for each line would take longer than
 // all of them.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -34,7 +35,7 @@ cyclograms: {shift: [[50 min, 3000 rpm], [20 min, 0 rpm], [40 min, 1500 rpm]], s
 
 /// A model's file of `validate` for this displacement.
 std::string model_of(const std::string& file, const std::string& target, bool knows_process = true) {
-  DeployedModel model = fixtures::deployed(true, 60.0);
+  output::DeployedModel model = fixtures::deployed(true, 60.0);
   output::PredictorFile written;
   compensation::DeployedPredictor& d = written.predictor;
   d.name = "regression with lags";
@@ -125,12 +126,14 @@ TEST(ValidateRefuses, ProbingsWithoutTimes) {
   options.out = shop.results;
   options.quiet = true;
   options.target = "nose_z";
-  std::string rows = "time_s,speed_rpm,t_spindle_degC,nose_z_um\n";
-  for (int i = 0; i < 120; ++i)
-    rows += std::to_string(60 * i) + (i < 60 ? ",3000," : ",0,") + std::to_string(20 + i % 60) + "," +
-            std::to_string(2 * (i % 60)) + "\n";
-  options.train = {write_file("a.csv", rows)};
-  options.test = {write_file("c.csv", rows)};
+  const auto run = [](const std::string& file, int um_per_K) {
+    std::string rows = "time_s,speed_rpm,t_spindle_degC,nose_z_um\n";
+    for (int i = 0; i < 120; ++i)
+      rows += fmt::format("{},{},{},{}\n", 60 * i, i < 60 ? 3000 : 0, 20 + i % 60, um_per_K * (i % 60));
+    return write_file(file, rows);
+  };
+  options.train = {run("a.csv", 2)};
+  options.test = {run("c.csv", 3)};
   const auto refused = [&](const std::string& probe, const std::string& probing_time) {
     options.probe = probe;
     options.probing_time = probing_time;
