@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "app/machine_predictor.hpp"
 #include "app/results.hpp"
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/observer.hpp"
@@ -29,13 +30,7 @@ output::PredictorFile from_file(const Scenario& scenario, const std::string& pat
         "--model observer: an observer is fitted and judged by `validate`, which writes it to models/observer.json; take "
         "that file");
   }
-  output::PredictorFile file = output::read_predictor(path);
-  if (!scenario.machine) return file;
-  const std::vector<scenarios::DisplacementOutput>& outputs = scenario.machine->displacements;
-  const std::string& target = file.predictor.target;
-  if (std::none_of(outputs.begin(), outputs.end(), [&](const auto& output) { return output.name == target; }))
-    throw InputError(fmt::format("{}: its target '{}' is no displacement of {}", path, target, scenario.path));
-  return file;
+  return read_machine_predictor(scenario, path);
 }
 
 /// Requires that the simulated machine has all inputs of a predictor and its fail-safe.

@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "app/job_program.hpp"
+#include "app/machine_predictor.hpp"
 #include "app/results.hpp"
 #include "base/mapped_record.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/probe_plan_document.hpp"
-#include "output/predictor_file.hpp"
 #include "studies/prediction.hpp"
 #include "studies/probe_job.hpp"
 
@@ -47,7 +47,7 @@ ReadJob read_job(const scenarios::Scenario& scenario, const std::string& text, c
 void probe_plan(const ProbePlanOptions& options) {
   const scenarios::Scenario scenario = read_scenario(options);
   (void)scenarios::require_machine(scenario, "probe-plan");
-  const output::PredictorFile file = output::read_predictor(options.model);
+  const output::PredictorFile file = read_machine_predictor(scenario, options.model);
   const compensation::DeployedPredictor& predictor = file.predictor;
   if (!predictor.residual)
     throw InputError(fmt::format(

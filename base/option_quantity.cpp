@@ -19,8 +19,9 @@ double option_quantity(const std::string& option, const std::string& text, const
                        double most) {
   const double value = option_quantity(option, text, unit);
   if (value >= least && value <= most) return value;
-  const std::string of = unit == "1" ? "" : " " + unit;
-  throw InputError(fmt::format("{} '{}': {:g}{} to {:g}{} is allowed", option, text, least, of, most, of));
+  const double shown = unit == "1" ? 100.0 : 1.0;
+  const std::string& of = unit == "1" ? "%" : unit;
+  throw InputError(fmt::format("{} '{}': {:g} {} to {:g} {} is allowed", option, text, shown * least, of, shown * most, of));
 }
 
 }  // namespace driftwright

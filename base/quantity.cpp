@@ -80,6 +80,8 @@ bool carries_angle(const UnitPtr& unit) {
 ConverterPtr make_converter(const std::string& from, const std::string& to) {
   const UnitPtr a = parse_unit(from), b = parse_unit(to);
   if (ut_are_convertible(a.get(), b.get()) == 0 || carries_angle(a) != carries_angle(b)) {
+    if (to == "1")
+      throw RangeError(fmt::format("wrong unit '{}': the value must be a number or a share, such as 20 %", from));
     throw RangeError(fmt::format("wrong unit '{}': the value must be a quantity in {}{}", from, to, meant_by(from)));
   }
   return ConverterPtr(ut_get_converter(a.get(), b.get()));

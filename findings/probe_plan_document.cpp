@@ -34,10 +34,11 @@ std::string allowed_words(const ProbePlan& plan) {
                      100.0 * plan.kept_free);
 }
 
-/// How the plan compares with equal intervals, and why it is not much better where it is not.
+/// How the plan compares with equal intervals, and why it is not much better where it is not. Empty for a single probing,
+/// which has no interval.
 std::string beside_equal(const ProbePlan& plan) {
   const ProbeSequence* equal = plan.equal();
-  if (!plan.best || plan.best->probings.empty() || !equal) return "";
+  if (!plan.best || plan.best->probings.size() < 2 || !equal) return "";
   constexpr double kMuch = 2.0 / 3.0;
   return fmt::format(
       " At equal intervals as many leave {:.1f} µm{}.", equal->worst_um,
@@ -50,16 +51,18 @@ std::string beside_equal(const ProbePlan& plan) {
 Verdict verdict_of(const ProbePlan& plan) {
   const std::string allowed = allowed_words(plan);
   if (!plan.best) {
-    const ProbeSequence& most = plan.curve.back().best;
+    const ProbeSequence& least = plan.shown();
+    const std::size_t n = least.probings.size();
     return {
         .kind = Verdict::Kind::kBad,
         .title = "No number of probings keeps the tolerance",
         .text = fmt::format(
-            "Allowed are {}. With {} the half width of the 95 % interval is still {:.1f} µm, {:.0f} min from the start of "
-            "the job{}. Allow a probing in between (a tool change, M0, or a pause between parts), a larger tolerance, or "
-            "use a predictor that leaves less.",
-            allowed, probings_words(most.probings.size()), most.worst_um, most.worst_s / 60.0,
-            most.probings.empty() ? "" : "; a place for a probing is missing before, or the probe is too noisy")};
+            "Allowed are {}. {} the largest half width of the 95 % interval {} {:.1f} µm, {:.0f} min from the start of the "
+            "job. No number of probings lowers it by {}1 %: a place for a probing is missing before, or the probe is too "
+            "noisy. Allow a probing in between (a tool change, M0, or a pause between parts), a larger tolerance, or use a "
+            "predictor that leaves less.",
+            allowed, n == 0 ? std::string("Without a probing") : fmt::format("With {}", probings_words(n)),
+            n == 0 ? "is" : "is still", least.worst_um, least.worst_s / 60.0, n == 0 ? "" : "another ")};
   }
   if (plan.best->probings.empty())
     return {
@@ -140,7 +143,7 @@ Plot widths_plot(const ProbePlan& plan) {
             .series = {},
             .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
             .marks = {}};
-  const ProbeSequence& shown = plan.best ? *plan.best : plan.curve.back().best;
+  const ProbeSequence& shown = plan.shown();
   plot.series.push_back(width_series(plan, shown, fmt::format("planned, {}", probings_words(shown.probings.size()))));
   if (const ProbeSequence* equal = plan.equal(); equal && !equal->probings.empty())
     plot.series.push_back(width_series(plan, *equal, "as many at equal intervals", Series::Style::kDashed));

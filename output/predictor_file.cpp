@@ -150,7 +150,8 @@ Json predictor_json(const PredictorFile& file, const Provenance& made_by) {
 
 PredictorFile read_predictor(const std::string& path) {
   if (!std::filesystem::is_regular_file(path))
-    throw InputError(fmt::format("{}: there is no such file; it must be a predictor of `validate`, models/NAME.json", path));
+    throw InputError(fmt::format("{}: {}; it must be a predictor of `validate`, models/NAME.json", path,
+                                 std::filesystem::is_directory(path) ? "this is a folder" : "there is no such file"));
   const std::string text = read_bytes(path);
   try {
     return file_of(parse_json(text));

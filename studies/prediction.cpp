@@ -1,6 +1,6 @@
 #include "studies/prediction.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -275,6 +275,13 @@ Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string
     const ReadRecord read = read_record(name_or_file, scenario.columns);
     for (const std::string& note : read.notes) fmt::print(stderr, "note: {}\n", note);
     return cyclogram_of(scenario, read.record);
+  }
+  const std::filesystem::path path(name_or_file);
+  if (!is_known && (path.has_extension() || path.has_parent_path())) {
+    std::vector<std::string> known;
+    for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
+    throw InputError(fmt::format("{}: there is no such file, and {} has no cyclogram of that name; it has {}", name_or_file,
+                                 scenario.path, fmt::join(known, ", ")));
   }
   const Cyclogram& cyclogram = scenario.cyclogram(name_or_file);
   scenarios::check_cyclogram(scenario, cyclogram);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "base/normal.hpp"
@@ -11,14 +12,16 @@ namespace {
 
 constexpr double kBisected = 1e-6;           // of the half width
 constexpr std::size_t kFurtherProbings = 4;  // of the curve, at least, beyond those that keep the tolerance
-constexpr std::size_t kMostOfCurve = 40;     // rows of the curve
+constexpr std::size_t kMostOfCurve = 40;     // rows of the curve, and one or two more
+constexpr double kNearLeast = 0.01;          // of the least half width: the last hundredth takes most of the probings
 constexpr int kPointsOfWidth = 24;           // of a plotted stretch
 
-/// The end of the work before a time, at most that time; the time itself without work before it.
-double work_before_s(const ProbeJob& job, double time_s) {
+/// The end of the work before a time, at most that time; none without work before it.
+std::optional<double> work_before_s(const ProbeJob& job, double time_s) {
   const auto later = std::lower_bound(job.work.begin(), job.work.end(), time_s,
                                       [](const WorkStretch& w, double t_s) { return w.from_s < t_s; });
-  return later == job.work.begin() ? time_s : std::min(std::prev(later)->until_s, time_s);
+  if (later == job.work.begin()) return std::nullopt;
+  return std::min(std::prev(later)->until_s, time_s);
 }
 
 double start_um2(const ProbedAxis& axis) {
@@ -97,10 +100,11 @@ ProbeSequence judged_probings(const ProbeJob& job, const ProbedAxis& axis, std::
   for (std::size_t k : places) {
     const ProbePlace& place = job.places[k];
     judge_until(job, axis, known, place.time_s, sequence, um2_s);
-    const double end_s = std::max(known.since_s, work_before_s(job, place.time_s));
-    const double rest_s = place.time_s - end_s;  // none is left for a second probing of the place
+    const std::optional<double> work_s_before = work_before_s(job, place.time_s);
+    const double rest_from_s = std::max(known.since_s, work_s_before.value_or(0.0));
+    const double rest_s = place.time_s - rest_from_s;  // none is left for a second probing of the place
     PlannedProbing probing{.place = k,
-                           .before_um = half_width_um(axis, um2_at(axis, known, end_s)),
+                           .before_um = half_width_um(axis, um2_at(axis, known, work_s_before ? rest_from_s : place.time_s)),
                            .lost_s = std::max(0.0, std::max(axis.probing_s, axis.probe.lag_s) - rest_s)};
     known = probed_at(axis, known, place);
     probing.after_um = half_width_um(axis, known.um2);
@@ -118,8 +122,8 @@ std::optional<ProbeSequence> fewest_probings(const ProbeJob& job, const ProbedAx
   std::size_t next = 0;  // the first place that has not been passed
   int n_here = 0;        // probings of the place before it
   const auto keeps_until = [&](double time_s) {
-    const double end_s = work_before_s(job, time_s);  // at rest nothing has to be kept
-    return end_s <= known.since_s || half_width_um(axis, um2_at(axis, known, end_s)) <= tolerance_um;
+    const std::optional<double> end_s = work_before_s(job, time_s);  // at rest nothing has to be kept
+    return !end_s || *end_s <= known.since_s || half_width_um(axis, um2_at(axis, known, *end_s)) <= tolerance_um;
   };
   while (!keeps_until(job_end_s(job))) {
     const std::size_t first = next;
@@ -151,21 +155,22 @@ ProbeSequence best_probings(const ProbeJob& job, const ProbedAxis& axis, std::si
 
 ProbeSequence equal_probings(const ProbeJob& job, const ProbedAxis& axis, std::size_t n) {
   if (n > 0 && job.places.empty()) throw std::logic_error("equal_probings() of a job without places");
-  std::vector<std::size_t> chosen, n_at(job.places.size(), 0);
+  std::vector<std::size_t> chosen;
+  std::set<std::size_t> fewest;  // places with the fewest probings
   const double interval_s =
       job_end_s(job) / static_cast<double>(axis.is_known_at_start ? n + 1 : std::max<std::size_t>(n, 1));
   for (std::size_t i = 0; i < n; ++i) {
     const double due_s = interval_s * static_cast<double>(axis.is_known_at_start ? i + 1 : i);
-    const auto comes_before = [&](std::size_t a, std::size_t b) {
-      if (n_at[a] != n_at[b]) return n_at[a] < n_at[b];
-      return std::abs(job.places[a].time_s - due_s) < std::abs(job.places[b].time_s - due_s);
-    };
-    std::size_t nearest = 0;
-    for (std::size_t k = 1; k < job.places.size(); ++k) {
-      if (comes_before(k, nearest)) nearest = k;
+    if (fewest.empty()) {
+      for (std::size_t k = 0; k < job.places.size(); ++k) fewest.insert(fewest.end(), k);
     }
-    ++n_at[nearest];
-    chosen.push_back(nearest);
+    const auto due = std::lower_bound(job.places.begin(), job.places.end(), due_s,
+                                      [](const ProbePlace& p, double t_s) { return p.time_s < t_s; });
+    auto nearest = fewest.lower_bound(static_cast<std::size_t>(due - job.places.begin()));
+    const auto away_s = [&](auto place) { return std::abs(job.places[*place].time_s - due_s); };
+    if (nearest == fewest.end() || (nearest != fewest.begin() && away_s(std::prev(nearest)) <= away_s(nearest))) --nearest;
+    chosen.push_back(*nearest);
+    fewest.erase(nearest);
   }
   std::sort(chosen.begin(), chosen.end());
   return judged_probings(job, axis, chosen);
@@ -197,13 +202,16 @@ const ProbeSequence* ProbePlan::equal() const {
 ProbePlan plan_probings(ProbeJob job, const ProbedAxis& axis, double tolerance_um, double kept_free) {
   ProbePlan plan{.job = std::move(job), .axis = axis, .tolerance_um = tolerance_um, .kept_free = kept_free};
   const std::optional<ProbeSequence> fewest = fewest_probings(plan.job, axis, plan.allowed_um());
-  const std::size_t needed = fewest ? fewest->probings.size() : 0;
-  if (fewest) plan.best = best_probings(plan.job, axis, needed);
-  const std::size_t last = plan.job.places.empty() ? 0
-                           : fewest                ? std::max(needed + kFurtherProbings, 2 * needed)
-                                                   : kMostAtAPlace * plan.job.places.size();
-  const std::size_t step = fewest ? 1 + last / kMostOfCurve : 1;
-  for (std::size_t n = 0; n <= last && plan.curve.size() <= kMostOfCurve; ++n) {
+  if (fewest) {
+    plan.best = best_probings(plan.job, axis, fewest->probings.size());
+  } else {
+    const double least_um = best_probings(plan.job, axis, kMostAtAPlace * plan.job.places.size()).worst_um;
+    plan.nearest = fewest_probings(plan.job, axis, (1.0 + kNearLeast) * least_um);
+  }
+  const std::size_t needed = plan.shown().probings.size();
+  const std::size_t last = fewest && !plan.job.places.empty() ? std::max(needed + kFurtherProbings, 2 * needed) : needed;
+  const std::size_t step = 1 + last / kMostOfCurve;
+  for (std::size_t n = 0; n <= last; ++n) {
     if (n % step != 0 && n != needed) continue;
     ProbeSequence best = best_probings(plan.job, axis, n);
     if (n > needed && best.probings.size() < n) break;  // more do not help

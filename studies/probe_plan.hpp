@@ -71,9 +71,9 @@ struct ProbedAxis {
 /// A probing in a plan.
 struct PlannedProbing {
   std::size_t place = 0;   ///< index into ProbeJob::places
-  double before_um = 0.0;  ///< half width of the 95 % interval at the end of the work before it; at the place without such
+  double before_um = 0.0;  ///< half width of the 95 % interval at the end of the work before it; without work, at the place
   double after_um = 0.0;   ///< half width when the work goes on
-  double lost_s = 0.0;     ///< time of the probing beyond the rest before its place
+  double lost_s = 0.0;     ///< time of the probing beyond the rest before its place, which may begin with the job
 };
 
 /// Half width of the interval at a time of the job.
@@ -99,7 +99,7 @@ struct ProbeSequence {
                                             std::span<const std::size_t> places);
 
 /// The fewest probings with which the half width stays within a tolerance: each at the latest place. A place has at most
-/// kMostAtAPlace of them.
+/// kMostAtAPlace of them. Before the first work nothing has to be kept.
 /// @return none where these are not enough
 [[nodiscard]] std::optional<ProbeSequence> fewest_probings(const ProbeJob& job, const ProbedAxis& axis, double tolerance_um);
 
@@ -131,11 +131,15 @@ struct ProbePlan {
   /// The fewest that keep the tolerance, and of those the ones that leave the smallest largest interval; none: no number of
   /// probings is enough.
   std::optional<ProbeSequence> best = {};
-  /// For 0, 1, 2 ... probings, as far as more help; every so many for more than 40.
+  /// Without `best`: the fewest that leave at most 1.01 times the least half width that any number of probings leaves.
+  std::optional<ProbeSequence> nearest = {};
+  /// For 0, 1, 2 ... probings, as far as more help, and without `best` up to `nearest`; every so many for more than 40.
   std::vector<ProbeCurveRow> curve = {};
   std::optional<PointChoice> points = {};  ///< what to probe, where records with errors of points were given
 
   [[nodiscard]] double allowed_um() const { return tolerance_um * (1.0 - kept_free); }
+  /// `best`, or `nearest` without it.
+  [[nodiscard]] const ProbeSequence& shown() const { return best ? *best : nearest.value(); }
   /// Probings at equal intervals, as many as in `best`; null without it.
   [[nodiscard]] const ProbeSequence* equal() const;
 };

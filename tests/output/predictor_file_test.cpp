@@ -72,6 +72,12 @@ TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
   }
 }
 
+TEST(PredictorFile, SaysWhetherTheFileIsMissingOrAFolder) {
+  const auto reading = [](const std::string& path) { return [path] { (void)read_predictor(path); }; };
+  EXPECT_THAT(reading("no_such.json"), ThrowsMessage<InputError>(HasSubstr("no_such.json: there is no such file")));
+  EXPECT_THAT(reading("."), ThrowsMessage<InputError>(HasSubstr(".: this is a folder; it must be a predictor")));
+}
+
 TEST(PredictorFile, AMeanComesBackWithItsMembers) {
   PredictorFile file = formula(true);
   const DriftModel mean = *file.predictor.predictor->formula();

@@ -44,6 +44,9 @@ TEST(NamedCyclogram, IsTheScenariosOrThatOfACsvNamedAsTheFile) {
   EXPECT_EQ(plan.sections, scenario.cyclogram("warm_up").sections);
   EXPECT_THAT([&] { (void)studies::named_cyclogram(scenario, "warmup"); },
               ThrowsMessage<InputError>(HasSubstr("there are shift, warm_up")));
+  EXPECT_THAT(
+      [&] { (void)studies::named_cyclogram(scenario, "nope.ngc"); },
+      ThrowsMessage<InputError>(HasSubstr("nope.ngc: there is no such file, and scenarios/lumped_spindle.yaml has no")));
 }
 
 }  // namespace

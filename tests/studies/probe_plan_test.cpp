@@ -71,15 +71,19 @@ TEST(ProbePlan, ManyEqualProbingsLeaveWhatTheRiccatiEquationSays) {
 }
 
 // Among all plans, also those with several probings of one place, none has fewer probings, and with as many none has a
-// smaller largest half width.
+// smaller largest half width. Some jobs begin with a rest, and some rest at the third place.
 TEST(ProbePlan, NoOtherPlanHasFewerProbingsOrLeavesLess) {
   Random random(7, 1);
-  int n_judged = 0, n_doubled = 0;
+  int n_judged = 0, n_doubled = 0, n_rested = 0;
   for (int draw = 0; draw < 120; ++draw) {
     std::vector<double> places_s;
     double t_s = 0.0;
     for (int k = 0; k < 6; ++k) places_s.push_back(t_s += 200.0 + 2500.0 * random.uniform());
-    const ProbeJob job = job_with(t_s + 1500.0, places_s);
+    ProbeJob job = job_with(t_s + 1500.0, places_s);
+    const bool rests_first = draw % 4 >= 2;
+    if (rests_first) job.work[0].from_s = t_s * random.uniform();
+    if (draw % 5 == 0 && job.work[0].from_s < places_s[1])
+      job.work = {{job.work[0].from_s, 0.5 * (places_s[1] + places_s[2])}, {places_s[2], t_s + 1500.0}};
     const ProbedAxis axis{.process = {1.0 + 4.0 * random.uniform(), 2000.0 + 9000.0 * random.uniform()},
                           .probe = {.noise_um = 0.1 + 3.0 * random.uniform(), .lag_s = draw % 3 == 0 ? 60.0 : 0.0},
                           .is_known_at_start = draw % 2 == 0};
@@ -104,8 +108,10 @@ TEST(ProbePlan, NoOtherPlanHasFewerProbingsOrLeavesLess) {
     }
     EXPECT_NEAR(best_probings(job, axis, n).worst_um, least_um, 2e-6 * least_um) << draw;
     if (plan && n > 0) ++n_judged;
+    if (plan && n > 0 && rests_first) ++n_rested;
   }
   EXPECT_GT(n_judged, 20);
+  EXPECT_GT(n_rested, 10);
   EXPECT_GT(n_doubled, 0);
 }
 
@@ -154,6 +160,44 @@ TEST(ProbePlan, ARestCostsNothingAndKeepsNothing) {
   EXPECT_DOUBLE_EQ(all.probings[1].lost_s, 200.0);
   EXPECT_NEAR(all.probings[0].before_um, 1.96 * 5.0 * std::sqrt(1.0 - std::exp(-1000.0 / 3600.0)), 1e-9);
   EXPECT_TRUE(fewest_probings(job, axis, all.worst_um * 1.0001));
+}
+
+// Before the first work nothing has to be kept, and a probing in the rest with which the job begins costs no time.
+TEST(ProbePlan, ARestBeforeAllWorkNeedsOneProbingAtItsEnd) {
+  const ProbedAxis axis{.process = {5.0, 7200.0}, .probe = {.noise_um = 0.1}, .probing_s = 300.0};
+  ProbeJob job{.name = "job", .work = {{3600.0, 4600.0}}, .places = {{.time_s = 0.0}, {.time_s = 3600.0}}};
+  const double tolerance_um = 1.96 * 5.0 * std::sqrt(1.0 - std::exp(-1000.0 / 3600.0)) * 1.01;
+  const auto plan = fewest_probings(job, axis, tolerance_um);
+  ASSERT_TRUE(plan);
+  EXPECT_THAT(places_of(*plan), testing::ElementsAre(1));
+  EXPECT_DOUBLE_EQ(plan->lost_s, 0.0);
+  EXPECT_DOUBLE_EQ(plan->probings[0].before_um, 1.96 * 5.0);
+  job.places[1].time_s = 200.0;  // 200 s of rest before a probing of 300 s
+  EXPECT_DOUBLE_EQ(judged_probings(job, axis, std::vector<std::size_t>{1}).lost_s, 100.0);
+}
+
+// One or two probings do not help here, because the variance grows back to that of the process; one before each 1200 s is
+// needed, and then the half width is that of the longest time without one.
+TEST(ProbePlan, SaysTheLeastThatAnyNumberReaches) {
+  const ProbedAxis axis{.process = {5.0, 1600.0}, .probe = {.noise_um = 1e-6}};
+  std::vector<double> places_s;
+  for (int k = 0; k < 30; ++k) places_s.push_back(1200.0 * k);
+  const ProbePlan plan = plan_probings(job_with(36000.0, places_s), axis, 4.0, 0.0);
+  EXPECT_FALSE(plan.best);
+  ASSERT_TRUE(plan.nearest);
+  EXPECT_NEAR(plan.nearest->worst_um, 1.96 * 5.0 * std::sqrt(1.0 - std::exp(-1.5)), 1e-6);
+  EXPECT_EQ(plan.nearest->probings.size(), 30U);
+  ASSERT_EQ(plan.curve.size(), 31U);
+  EXPECT_NEAR(plan.curve[2].best.worst_um, 1.96 * 5.0, 1e-5);
+  EXPECT_NEAR(plan.curve.back().best.worst_um, plan.nearest->worst_um, 1e-5);
+}
+
+TEST(ProbePlan, EqualIntervalsProbeEachPlaceBeforeOneIsProbedAgain) {
+  const ProbedAxis axis{.process = {5.0, 7200.0}, .probe = {.noise_um = 0.5}, .is_known_at_start = true};
+  const ProbeJob job = job_with(6000.0, {500.0, 600.0, 5000.0});
+  EXPECT_THAT(places_of(equal_probings(job, axis, 2)), testing::ElementsAre(1, 2));        // due at 2000 and 4000 s
+  EXPECT_THAT(places_of(equal_probings(job, axis, 3)), testing::ElementsAre(0, 1, 2));     // 1500, 3000, 4500
+  EXPECT_THAT(places_of(equal_probings(job, axis, 4)), testing::ElementsAre(0, 1, 2, 2));  // 1200, 2400, 3600, 4800
 }
 
 TEST(ProbePlan, SaysWhereNoNumberIsEnough) {
