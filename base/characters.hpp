@@ -24,11 +24,21 @@ namespace driftwright {
   return text;
 }
 
+/// True for the first byte of a character of UTF-8; other bytes continue it.
+[[nodiscard]] inline bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+}
+
 /// Number of characters of a UTF-8 text.
 [[nodiscard]] inline std::size_t n_characters(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // other bytes continue a character
-  }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+}
+
+/// The whole character of a UTF-8 text that begins at `at`.
+[[nodiscard]] inline std::string character_at(std::string_view text, std::size_t at) {
+  std::size_t end = at + 1;
+  while (end < text.size() && !begins_character(text[end])) ++end;
+  return std::string(text.substr(at, end - at));
 }
 
 /// Whether one of the words, which are in lower case, is in the text, whatever its case.

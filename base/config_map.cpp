@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 #include "base/quantity.hpp"
 
@@ -239,7 +240,7 @@ std::string ConfigMap::text(const std::string& key) const {
   const schema::Key* described = ask(key);
   if (described && described->word && !holds(key)) return *described->word;
   const ConfigNode& node = child(key);
-  std::string value = scalar(node, key);
+  std::string value = trimmed(scalar(node, key), "\n");  // YAML's block texts, > and |, end with a line break
   if (value.empty()) fail(key, "the value is empty");
   if (has_control_character(value)) fail(key, fmt::format("{:?} holds a line break or another control character", value));
   return value;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "effects/effect_schema.hpp"
@@ -177,9 +178,11 @@ Body Effect::body() const {
   throw std::logic_error(std::string("a ") + place_key(place_kind) + " is no body");
 }
 
-Effect read_effect(const ConfigMap& entry) {
-  const ConfigMap in = entry.described_by(effect_schemas());
-  const EffectKind& kind = declared_kind(kind_of(in.choice("type")), in);
+namespace {
+
+/// @param nodes  of the machine, if they are known
+Effect read_entry(const ConfigMap& in, const std::optional<std::vector<std::string>>& nodes) {
+  const EffectKind& kind = declared_kind(kind_of(in.choice("type")), in, nodes);
   Effect effect;
   effect.kind = &kind;
   read_place(in, effect);
@@ -194,6 +197,29 @@ Effect read_effect(const ConfigMap& entry) {
   in.reject_unknown_keys();
   if (kind.check) kind.check(effect, in);
   return effect;
+}
+
+}  // namespace
+
+Effect read_effect(const ConfigMap& entry) {
+  return read_entry(entry.described_by(effect_schemas()), std::nullopt);
+}
+
+std::vector<Effect> read_effects(const std::vector<ConfigMap>& entries) {
+  std::vector<Effect> effects(entries.size());
+  std::vector<std::string> nodes = {kAmbientName};
+  for (const bool with_formula : {false, true}) {  // formulas last: they use the nodes of all others
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const ConfigMap in = entries[i].described_by(effect_schemas());
+      if (has_formula(kind_of(in.choice("type"))) != with_formula) continue;
+      effects[i] = read_entry(in, nodes);
+      if (with_formula || !effects[i].kind->contribute) continue;
+      HeatBalance own;
+      effects[i].kind->contribute(effects[i], own);
+      for (const LumpedNode& n : own.nodes) nodes.push_back(n.name);
+    }
+  }
+  return effects;
 }
 
 std::vector<std::string> EffectKind::known_roughly() const {

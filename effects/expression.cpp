@@ -10,7 +10,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
+#include "base/characters.hpp"
 #include "base/config_map.hpp"
 #include "base/quantity.hpp"
 
@@ -143,6 +145,31 @@ void define_all(mu::Parser& parser) {
   parser.DefineFun("if", make3<Op::kIf>, false);
 }
 
+constexpr const char* kAllowed = "allowed are + - * / ^ < > and brackets";
+
+/// " Did you mean 'sin'?" for SIN, as did_you_mean() has it for mistyped words.
+std::string did_you_mean_in_any_case(const std::string& word, const std::vector<std::string>& candidates) {
+  const auto same = std::find_if(candidates.begin(), candidates.end(),
+                                 [&](const std::string& c) { return lower_case(c) == lower_case(word); });
+  return same == candidates.end() ? did_you_mean(word, candidates) : fmt::format(" Did you mean '{}'?", *same);
+}
+
+/// Refuses what is no character of a formula, and comparisons that it lacks.
+void require_known_characters(const std::string& text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '?') throw FormulaError("'?' is not known here; write if(condition, then, else)", at);
+    if (static_cast<unsigned char>(text[at]) >= 0x80U)
+      throw FormulaError(fmt::format("'{}' is not known here; names have ASCII letters, digits and '_', and {}",
+                                     character_at(text, at), kAllowed),
+                         at);
+    const bool is_comparison = std::strchr("<>=!", text[at]) && at + 1 < text.size() && text[at + 1] == '=';
+    if (is_comparison || text[at] == '=')
+      throw FormulaError(
+          fmt::format("'{}' is not known here; only the comparisons < and > exist", text.substr(at, is_comparison ? 2 : 1)),
+          at);
+  }
+}
+
 /// What muParser found wrong, as a sentence with a position.
 FormulaError sentence(const mu::ParserError& e, const TreeBuilder& b) {
   const std::string& text = b.text;
@@ -151,16 +178,15 @@ FormulaError sentence(const mu::ParserError& e, const TreeBuilder& b) {
     case mu::ecUNASSIGNABLE_TOKEN: {
       while (at < text.size() && text[at] == ' ') ++at;
       const std::size_t end = end_of_name(text, at);
-      if (end == at)
-        return {fmt::format("'{}' cannot follow here; allowed are + - * / ^ < > and brackets", text.substr(at, 1)), at};
+      if (end == at) return {fmt::format("'{}' cannot follow here; {}", character_at(text, at), kAllowed), at};
       const std::string name = text.substr(at, end - at);
       const std::size_t next = text.find_first_not_of(' ', end);
       if (next != std::string::npos && text[next] == '(')
         return {fmt::format("there is no function '{}'; there are {}.{}", name, fmt::join(function_names(), ", "),
-                            did_you_mean(name, function_names())),
+                            did_you_mean_in_any_case(name, function_names())),
                 at};
       return {fmt::format("'{}' is not known here; known names: {}.{}", name, fmt::join(b.names, ", "),
-                          did_you_mean(name, b.names)),
+                          did_you_mean_in_any_case(name, b.names)),
               at};
     }
     case mu::ecUNEXPECTED_EOF:
@@ -232,7 +258,7 @@ std::size_t flatten(const TreeBuilder& b, int index, std::vector<Step>& steps) {
   return deepest;
 }
 
-double applied(Op op, const double* a) {
+double applied_to_finite(Op op, const double* a) {
   switch (op) {
     case Op::kAdd:
       return a[0] + a[1];
@@ -252,8 +278,6 @@ double applied(Op op, const double* a) {
       return std::min(a[0], a[1]);
     case Op::kMax:
       return std::max(a[0], a[1]);
-    case Op::kIf:
-      return a[0] != 0.0 ? a[1] : a[2];
     case Op::kNegate:
       return -a[0];
     case Op::kAbs:
@@ -280,9 +304,20 @@ double applied(Op op, const double* a) {
       return a[0] - kZeroCelsius_K;
     case Op::kNumber:
     case Op::kName:
+    case Op::kIf:
       break;
   }
   return 0.0;
+}
+
+/// NaN if an argument or the result is not finite, so that no later operation hides it: max(0, NaN), tanh(1/0) and NaN^0 would.
+/// Only the part of an `if` that is not chosen may have no value.
+double applied(Op op, const double* a) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (op == Op::kIf) return !std::isfinite(a[0]) ? kNone : a[0] != 0.0 ? a[1] : a[2];
+  if (!std::all_of(a, a + n_arguments(op), [](double argument) { return std::isfinite(argument); })) return kNone;
+  const double value = applied_to_finite(op, a);
+  return std::isfinite(value) ? value : kNone;
 }
 
 /// Evaluates the steps. look(step, value, arguments, n) sees each value as it is made.
@@ -307,8 +342,7 @@ int n_arguments(Op op) {
 }
 
 Expression parse_expression(const std::string& text, const std::vector<std::string>& names) {
-  if (const std::size_t at = text.find('?'); at != std::string::npos)
-    throw FormulaError("'?' is not known here; write if(condition, then, else)", at);
+  require_known_characters(text);
   TreeBuilder builder{text, names};
   building = &builder;
   int root = -1;
@@ -353,14 +387,16 @@ std::vector<Step> with_constants_folded(const std::vector<Step>& steps) {
 }
 
 const Step* failing_step(std::span<const Step> steps, const double* values) {
-  const Step* failing = nullptr;
+  std::array<const Step*, kDeepest> stack;  // beside the values: the step that each owes it to if it is not finite
+  const Step** top = stack.data();
   (void)evaluated(steps, values, [&](const Step& s, double value, const double* arguments, int n) {
-    const bool fails =
-        !std::isfinite(value) && std::all_of(arguments, arguments + n, [](double a) { return std::isfinite(a); });
-    if (fails && !failing) failing = &s;
-    if (s.op == Op::kIf && std::isfinite(value) && failing && failing->begin >= s.begin) failing = nullptr;  // not chosen
+    top -= n;
+    const Step* const* of = std::find_if(top, top + n, [](const Step* a) { return a != nullptr; });
+    if (s.op == Op::kIf && !*top) of = arguments[0] != 0.0 ? top + 1 : top + 2;
+    *top = std::isfinite(value) ? nullptr : of < top + n ? *of : &s;
+    ++top;
   });
-  return failing;
+  return stack[0];
 }
 
 }  // namespace driftwright::effects

@@ -126,8 +126,9 @@ struct Bound {
           !is_given && s.name >= kind->first_parameter() && s.name < kind->first_parameter() + kind->parameters.size();
       if (is_number) continue;
       with += fmt::format("{}{} = {}", with.empty() ? "" : ", ", name,
-                          is_given ? fmt::format("{:g} {}", x[s.name], kGiven[s.name].unit)
-                                   : fmt::format("{:.6g} degC", x[s.name] - kZeroCelsius_K));
+                          is_given                    ? fmt::format("{:g} {}", x[s.name], kGiven[s.name].unit)
+                          : kind->result == "reading" ? fmt::format("{:.6g} K from the reference temperature", x[s.name])
+                                                      : fmt::format("{:.6g} degC", x[s.name] - kZeroCelsius_K));
     }
     if (!numbers.empty()) with += fmt::format("{}{}", with.empty() ? "" : ", ", numbers);
     const Expression::Step* failing = failing_step(steps, x.data());
@@ -199,6 +200,12 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
 }
 
+void check_other_end(const Effect& e, const ConfigMap& in) {
+  const auto& kind = static_cast<const DeclaredKind&>(*e.kind);
+  if (!kind.to_key.empty() && e.body() == e.references.at(kind.to_key))
+    in.fail(in.has(kind.to_key) ? kind.to_key : kind.result, "a conductance joins two bodies");
+}
+
 /// The first of the steps of the part that the step at `last` heads.
 std::size_t first_step(const std::vector<Expression::Step>& steps, std::size_t last) {
   for (int missing = n_arguments(steps[last].op); missing > 0; --missing) last = first_step(steps, last - 1);
@@ -257,7 +264,8 @@ void require_free(const ConfigMap& entry, const std::string& name) {
 }
 
 /// Reads what the entry declares, without its values.
-DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry) {
+DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry,
+                           const std::optional<std::vector<std::string>>& nodes) {
   DeclaredKind kind{base, {}, {}, {}, {}, {}, {}};
   for (const Result& r : results()) {
     if (entry.has(r.key)) kind.result = r.key;
@@ -299,6 +307,10 @@ DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry) {
       entry.fail(name, "this must be a quantity, such as 150 W, or a body whose temperature the formula uses");
     const std::string text = entry.is_map(name) ? "" : entry.text(name);
     if (text.empty() || text.find_first_of("0123456789+-.") != 0) {
+      if (!text.empty() && nodes && std::find(nodes->begin(), nodes->end(), text) == nodes->end())
+        entry.fail(name, fmt::format("'{}' is neither a quantity nor a body; bodies are {}, and {{region: NAME}} and "
+                                     "{{surface: NAME}} of a mesh.{}",
+                                     text, fmt::join(*nodes, ", "), did_you_mean(text, *nodes)));
       kind.bodies.push_back(name);
       continue;
     }
@@ -365,6 +377,7 @@ DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry) {
     kind.change_readings = change_readings;
   } else {
     kind.contribute = contribute;
+    kind.check = check_other_end;
     if (kind.result != "power") kind.exchange_finding = result.finding;
   }
   return kind;
@@ -395,9 +408,10 @@ bool has_formula(const EffectKind& kind) {
                      [](const Mention& m) { return m.of == Mention::Of::kFormula; });
 }
 
-const EffectKind& declared_kind(const EffectKind& kind, const ConfigMap& entry) {
+const EffectKind& declared_kind(const EffectKind& kind, const ConfigMap& entry,
+                                const std::optional<std::vector<std::string>>& nodes) {
   if (!has_formula(kind)) return kind;
-  formula::DeclaredKind declared = formula::read_declared(kind, entry);
+  formula::DeclaredKind declared = formula::read_declared(kind, entry, nodes);
   std::string what =
       fmt::format("{} {} {} {}", declared.result, declared.expression.text, declared.to_key, entry.has("joint"));
   for (const Parameter& p : declared.parameters) what += fmt::format("; {} {}", p.name, p.unit);

@@ -384,7 +384,10 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
     residual_ += gamma * heat_;
     zero_fixed(residual_.data());
     step.setZero();
-    count(shifted_solver_.improve(residual_.data(), step.data(), tolerance_K_, kMostPcgIterations));
+    // The first correction is computed even if it is below the tolerance, as that of a very short step is. Otherwise
+    // close_balance() would spread its heat over the whole machine, step after step.
+    count(shifted_solver_.improve(residual_.data(), step.data(), tolerance_K_, kMostPcgIterations, nullptr,
+                                  iteration == 0 ? 1 : 0));
     x_ += step;
     double sum = 0.0;
     for (int i = 0; i < n_; ++i) sum += step[i] * step[i] * weight[i] * weight[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/multigrid.hpp"
 
@@ -133,19 +134,21 @@ void Pcg::turn(double beta, const double* r, const Multigrid* multigrid) {
   });
 }
 
-PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iterations, const Multigrid* multigrid) {
+PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iterations, const Multigrid* multigrid,
+                        int least_iterations) {
   project_constant(r, x);
   PcgOutcome outcome;
   Sums sums = start(r, multigrid);
   while (true) {
     outcome.residual = sums.largest;
     if (outcome.residual <= tolerance) outcome.converged = true;
-    if (!(outcome.residual > tolerance) || outcome.iterations >= max_iterations) break;  // also ends for NaN
+    const bool is_required = outcome.iterations < least_iterations && sums.rz > std::numeric_limits<double>::min();
+    if (!(outcome.residual > tolerance || is_required) || outcome.iterations >= max_iterations) break;  // also ends for NaN
     ++outcome.iterations;
     const double alpha = sums.rz / multiply_p();
     const double rz = sums.rz;
     sums = advance(alpha, r, x, multigrid);
-    if (!(sums.largest <= tolerance)) turn(sums.rz / rz, r, multigrid);
+    if (!(sums.largest <= tolerance) || outcome.iterations < least_iterations) turn(sums.rz / rz, r, multigrid);
   }
   project_constant(r, x);
   return outcome;

@@ -32,8 +32,9 @@ class Pcg {
   /// The same if b - A x is known.
   /// @param r  in: b - A x at the given x; out: at the solution
   /// @param multigrid  of a matrix close to A, or nullptr for the diagonal
+  /// @param least_iterations  that are made however small the residual is, unless it is zero
   [[nodiscard]] PcgOutcome improve(double* r, double* x, double tolerance, int max_iterations,
-                                   const Multigrid* multigrid = nullptr);
+                                   const Multigrid* multigrid = nullptr, int least_iterations = 0);
   /// Adds a constant to x such that the sum of A x equals the sum of b; this removes rounding errors of residuals that were
   /// updated step by step.
   void conserve(const double* b, double* x) const;

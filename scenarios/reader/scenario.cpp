@@ -63,7 +63,7 @@ MachineModel read_machine(const ConfigMap& in) {
   if (const auto materials = in.optional_map("materials")) m.materials = read_materials(*materials);
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
   for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
-  for (const ConfigMap& entry : in.maps("effects")) m.effects.push_back(effects::read_effect(entry));
+  m.effects = effects::read_effects(in.maps("effects"));
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));

@@ -169,24 +169,29 @@ TEST_P(FormulaErrors, PointToTheCharacter) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Each, FormulaErrors,
-    ::testing::Values(Bad{"W*@m", "W: 1 W", "'m' is not known here; known names: n, v_x, v_y, v_z, P_cut, pi, W"},
-                      Bad{"W*@sqr(2)", "W: 1 W", "no function 'sqr'; there are abs, sqrt, exp"},
-                      Bad{"W*@", "W: 1 W", "ends where a number, a name or a bracket must follow"},
-                      Bad{"W*(n/2@", "W: 1 W", "a bracket is not closed"}, Bad{"2 @W", "W: 1 W", "'W' cannot follow here"},
-                      Bad{"W*@*2", "W: 1 W", "'*' cannot follow here"},
-                      Bad{"n > 1 @? W : 0", "W: 1 W", "write if(condition, then, else)"},
-                      Bad{"W@, n", "W: 1 W", "one value"}, Bad{"W*n @$ 3", "W: 1 W", "'$' cannot follow here"},
-                      Bad{"W*n/6000 @rpm", "W: 1 W", "is not known here"},
-                      Bad{"W*(n/6000) @+ k", "W: 1 W, k: 1 1/K", "is in W, 'k' is in 1/K"},
-                      Bad{"W*k*@T_a", "W: 1 W, k: 1 1/K, T_a: a", "'T_a' is a temperature; write the difference"},
-                      Bad{"G*(T_a @+ T_b)", "G: 1 W/K, T_a: a, T_b: b", "temperatures, which cannot be added"},
-                      Bad{"G@*(T_a - T_b)", "G: 1 W, T_a: a, T_b: b", "gives a value in W K, but"},
-                      Bad{"W*exp(@k)", "W: 1 W, k: 1 1/K", "must be a number without unit; 'k' is in 1/K"},
-                      Bad{"W*(T_a - T_b)@^x", "W: 1 W, x: 2, T_a: a, T_b: b", "must be written as a number"},
-                      Bad{"@n", "", "gives a number, but a value in W is required"},
-                      Bad{"W@*W", "W: 1 W", "but a value in W is required"},
-                      Bad{"W*if(@W, 1, 2)", "W: 1 W", "the condition of 'if' must be a number"},
-                      Bad{"@T_a", "T_a: a", "gives a temperature"}, Bad{"W*kelvin(@W)", "W: 1 W", "take a temperature"}));
+    ::testing::Values(
+        Bad{"W*@m", "W: 1 W", "'m' is not known here; known names: n, v_x, v_y, v_z, P_cut, pi, W"},
+        Bad{"W*@sqr(2)", "W: 1 W", "no function 'sqr'; there are abs, sqrt, exp"},
+        Bad{"W*@", "W: 1 W", "ends where a number, a name or a bracket must follow"},
+        Bad{"W*(n/2@", "W: 1 W", "a bracket is not closed"}, Bad{"2 @W", "W: 1 W", "'W' cannot follow here"},
+        Bad{"W*@*2", "W: 1 W", "'*' cannot follow here"}, Bad{"n > 1 @? W : 0", "W: 1 W", "write if(condition, then, else)"},
+        Bad{"W@, n", "W: 1 W", "one value"}, Bad{"W*n @$ 3", "W: 1 W", "'$' cannot follow here"},
+        Bad{"W*n/6000 @rpm", "W: 1 W", "is not known here"},
+        Bad{"W*@π", "W: 1 W", "'π' is not known here; names have ASCII letters"},
+        Bad{"W*n@²", "W: 1 W", "'²' is not known here"}, Bad{"W @− 2", "W: 1 W", "'−' is not known here"},
+        Bad{"W*(n @>= 3)", "W: 1 W", "'>=' is not known here; only the comparisons < and > exist"},
+        Bad{"W*(n @== 3)", "W: 1 W", "only the comparisons < and > exist"},
+        Bad{"W*(n @!= 3)", "W: 1 W", "only the comparisons < and > exist"},
+        Bad{"W*@SIN(1)", "W: 1 W", "Did you mean 'sin'?"}, Bad{"W*@N", "W: 1 W", "Did you mean 'n'?"},
+        Bad{"W*@Pi", "W: 1 W", "Did you mean 'pi'?"}, Bad{"W*(n/6000) @+ k", "W: 1 W, k: 1 1/K", "is in W, 'k' is in 1/K"},
+        Bad{"W*k*@T_a", "W: 1 W, k: 1 1/K, T_a: a", "'T_a' is a temperature; write the difference"},
+        Bad{"G*(T_a @+ T_b)", "G: 1 W/K, T_a: a, T_b: b", "temperatures, which cannot be added"},
+        Bad{"G@*(T_a - T_b)", "G: 1 W, T_a: a, T_b: b", "gives a value in W K, but"},
+        Bad{"W*exp(@k)", "W: 1 W, k: 1 1/K", "must be a number without unit; 'k' is in 1/K"},
+        Bad{"W*(T_a - T_b)@^x", "W: 1 W, x: 2, T_a: a, T_b: b", "must be written as a number"},
+        Bad{"@n", "", "gives a number, but a value in W is required"}, Bad{"W@*W", "W: 1 W", "but a value in W is required"},
+        Bad{"W*if(@W, 1, 2)", "W: 1 W", "the condition of 'if' must be a number"},
+        Bad{"@T_a", "T_a: a", "gives a temperature"}, Bad{"W*kelvin(@W)", "W: 1 W", "take a temperature"}));
 
 struct BadEntry {
   const char* text;
@@ -203,6 +208,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadEntry{"{type: formula, node: a, power: \"W\", W: 1 W, film: \"h\"}", "exactly one formula"},
         BadEntry{"{type: formula, node: a, film: \"h\", h: 1 W/(m^2 K)}", "requires another place: surface"},
         BadEntry{"{type: formula, node: a, to: b, power: \"W\", W: 1 W}", "have another end"},
+        BadEntry{"{type: formula, node: a, to: a, conductance: \"G\", G: 1 W/K}", "a conductance joins two bodies"},
+        BadEntry{"{type: formula, node: ambient, conductance: \"G\", G: 1 W/K}", "a conductance joins two bodies"},
         BadEntry{"{type: formula, node: a, power: \"W\", W: 1 W, knwon_to: 3 %}", "does not use 'knwon_to'"},
         BadEntry{"{type: formula, node: a, power: \"W\", W: 1 W, knwon_to: 3 %}", "Did you mean 'known_to'?"},
         BadEntry{"{type: formula, node: a, power: \"n\", n: 1 W}", "has a meaning in every formula"},
@@ -219,6 +226,70 @@ TEST(Formula, ANumberThatIsInfiniteFailsWhereItIsUsed) {
   EXPECT_THAT([] { (void)power_W(heat("P/(a - 3) + P*n/1000", "P: 1 W, a: 3"), 1000); },
               ThrowsMessage<RangeError>(HasSubstr("'P/(a - 3)' is not a finite number")));
   EXPECT_DOUBLE_EQ(power_W(heat("P*((a + 1)*(a - 1))^(1/2 + 1/2)", "P: 1 W, a: 3"), 0), 8.0);
+}
+
+struct Undefined {
+  const char* formula;
+  const char* part;
+};
+class UndefinedFormulas : public ::testing::TestWithParam<Undefined> {};
+/// At standstill. Functions that have a value for an infinite argument or lose NaN must not hide that a part has none.
+TEST_P(UndefinedFormulas, FailAtThePart) {
+  const Effect e = heat(GetParam().formula, "W: 1 W");
+  EXPECT_THAT([&] { (void)power_W(e, 0); },
+              ThrowsMessage<RangeError>(HasSubstr("'" + std::string(GetParam().part) + "' is not a finite number")));
+}
+INSTANTIATE_TEST_SUITE_P(Each, UndefinedFormulas,
+                         ::testing::Values(Undefined{"max(0*W, W*sqrt(n - 100))", "sqrt(n - 100)"},
+                                           Undefined{"max(W*sqrt(n - 100), 0*W)", "sqrt(n - 100)"},
+                                           Undefined{"W*min(3, ln(n - 1))", "ln(n - 1)"},
+                                           Undefined{"W*min(ln(n - 1), 3)", "ln(n - 1)"},
+                                           Undefined{"W*if(sqrt(n - 100) > 1, 5, 7)", "sqrt(n - 100)"},
+                                           Undefined{"W*(1 < ln(n))", "ln(n)"}, Undefined{"W*if(ln(n), 5, 7)", "ln(n)"},
+                                           Undefined{"W*tanh(1/n)", "1/n"}, Undefined{"W/(1 + 1/n)", "1/n"},
+                                           Undefined{"W*exp(-1/n)", "-1/n"}, Undefined{"W*(1/n)^0", "1/n"},
+                                           Undefined{"W*1^ln(n)", "ln(n)"}, Undefined{"W*if(n > 1, 1/n, ln(n))", "ln(n)"},
+                                           Undefined{"W*tanh(1/0)*n", "1/0"}));
+
+TEST(Formula, MayLackAValueInThePartOfAnIfThatIsNotChosen) {
+  EXPECT_DOUBLE_EQ(power_W(heat("W*if(n > 0, ln(n), 3)", "W: 1 W"), 0), 3.0);
+  EXPECT_DOUBLE_EQ(power_W(heat("W*max(1, if(n > 0, 2, 1/n))", "W: 1 W"), 1), 2.0);
+}
+
+TEST(Formula, OfAReadingThatFailsSaysWhatItsTemperaturesCountFrom) {
+  const Effect e = read("{type: formula, sensor: t, reading: \"T + b*ln((T_air - T)/d)\", b: 1 K, d: 1 K, T_air: ambient}");
+  const Cyclogram rest{.name = "rest", .sections = {{20.0, {}}}};
+  EXPECT_THAT(
+      [&] {
+        (void)reading_chain({e}, "rest")
+            .apply({"t"}, {"K"}, {0.0}, rest, {{0.0}, {-1.5}}, Eigen::RowVectorXd::Constant(1, 4.0));
+      },
+      ThrowsMessage<RangeError>(AllOf(HasSubstr("T = 4 K from the reference temperature"),
+                                      HasSubstr("T_air = -1.5 K from the reference temperature"))));
+}
+
+TEST(Formula, MayBeABlockOfYaml) {
+  const Effect line = heat("P *n/1000", "P: 2 W");
+  for (const char* block : {"|\n  P *n/1000\n", ">\n  P\n  *n/1000\n"}) {
+    const Effect e = read(std::string("type: formula\nnode: a\npower: ") + block + "P: 2 W\n");
+    EXPECT_EQ(e.words, line.words);
+    EXPECT_EQ(e.kind, line.kind);
+  }
+}
+
+TEST(Formula, UsesBodiesOfTheListWhereverTheyAre) {
+  const auto read_all = [](const std::string& name) {
+    const std::string text = "effects:\n  - {type: formula, node: a, power: \"W*T/T\", W: 1 W, T: " + name +
+                             "}\n  - {type: node, node: abutment, capacity: 1 J/K}\n";
+    return read_effects(ConfigMap::read_file(write_file("formula_list.yaml", text)).maps("effects"));
+  };
+  // The units of the formula do not fit either; a word that is no body is the reason that comes first.
+  EXPECT_THAT(
+      [&] { (void)read_all("about 5 W"); },
+      ThrowsMessage<InputError>(HasSubstr("'about 5 W' is neither a quantity nor a body; bodies are ambient, abutment")));
+  EXPECT_THAT([&] { (void)read_all("abutmnet"); }, ThrowsMessage<InputError>(HasSubstr("Did you mean 'abutment'?")));
+  EXPECT_THAT([&] { (void)read_all("abutment"); }, ThrowsMessage<InputError>(HasSubstr("'T' is a temperature")));
+  EXPECT_THAT([&] { (void)read_all("{region: r}"); }, ThrowsMessage<InputError>(HasSubstr("'T' is a temperature")));
 }
 
 TEST(Formula, SaysWhatFailedAndWithWhichValues) {

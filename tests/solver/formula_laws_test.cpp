@@ -1,9 +1,12 @@
 // Formulas that repeat laws of the catalogue, in the full model, the reduced one and its linearisation: the same temperatures.
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "solver/linearise.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
@@ -91,6 +94,32 @@ TEST(FormulaLaws, SlopeOverTemperatureIsTheDerivative) {
   const double warm_C = system.reference_K - 273.15 + 15.0;
   const double slope_W_K = 0.02 * 100.0 * std::pow(0.5, 1.7) * std::exp(-0.02 * (warm_C - 30.0));
   EXPECT_NEAR(linear.system.exchanges.back().coefficient(at), slope_W_K, 1e-5 * slope_W_K);
+}
+
+/// The body is heated, so a root of (other - body) has no value after the start: no step can be made, however short. A step
+/// whose correction is below the tolerance of the solver must not pass with its heat spread over both bodies.
+TEST(FormulaLaws, ThatLoseTheirValueEndTheRun) {
+  const auto law = [](const char* body, const char* other) {
+    return fmt::format(
+        "{{type: formula, {0}, power: \"P + Q*sqrt((T_other - T)/d)\", P: 500 W, Q: 1 W, d: 1 K, T: {{{0}}}, "
+        "T_other: {{{1}}}}}",
+        body, other);
+  };
+  FullSystem lumped = fixtures::lumped_system(
+      {"{type: node, node: a, capacity: 5.6 kJ/K}", "{type: node, node: b, capacity: 19 kJ/K}", law("node: a", "node: b"),
+       "{type: link, node: a, to: b, conductance: 12 W/K}", "{type: link, node: b, to: ambient, conductance: 5 W/K}"});
+  fixtures::observe_unknowns(lumped, {0, 1});
+  const FullSystem meshed =
+      blocks({law("region: a", "region: b"), "{type: contact, joint: a/b, conductance: 1500 W/(m^2 K)}"});
+  const Cyclogram start{.name = "start", .sections = {{1.0, 3000}}};
+  const auto run = [&](const auto& system) {
+    (void)simulate(system, start, {{0.0}, {0.0}}, {1.0}, {}, Eigen::VectorXd::Zero(system.size()));
+  };
+  const auto says_why = ::testing::ThrowsMessage<SolveError>(
+      ::testing::AllOf(::testing::HasSubstr("a law refused the state"), ::testing::HasSubstr("'sqrt((T_other - T)/d)'")));
+  EXPECT_THAT([&] { run(lumped); }, says_why);
+  EXPECT_THAT([&] { run(meshed); }, says_why);
+  EXPECT_THAT([&] { run(small(meshed)); }, says_why);
 }
 
 }  // namespace
