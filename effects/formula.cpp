@@ -80,7 +80,7 @@ constexpr const char* kOwn = "T";  ///< of a reading: the temperature of the sen
 /// The kind that an entry declares.
 struct DeclaredKind : EffectKind {
   std::string result;  ///< key of `Result`
-  std::string to_key;  ///< key of the other end, "" if there is none
+  std::string to_key;  ///< key of the other end; empty without one
   Expression expression;
   std::vector<std::string> names;   ///< those given, `T` of a reading, the parameters, the bodies
   std::vector<double> factor;       ///< of each parameter, to its value in the formula

@@ -17,7 +17,7 @@
 //   G93 G94 G95, F, S, T                    each of the three forgets the feed before it
 //   M0 M1 M60  M2 M30                       halt without time; end
 //   M3 M4 M5 M19                            spindle. S alone does not turn it; M3 at S0 waits for an S. M19 stops it
-//   M6                                      takes NcSettings::tool_change_s; the spindle stands during and after it, until
+//   M6                                      takes NcSettings::tool_change_s; no spindle turns during and after it, until
 //                                           the next M3 or M4 (one in the same block counts: it comes after the change)
 //   M98 M99, O words, #parameters, [ ]      nc/iso_source.hpp
 // Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G67 G69 G97 G15, G50 G50.1 (Fanuc, and Siemens

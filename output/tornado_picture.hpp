@@ -17,8 +17,8 @@ struct TornadoPicture {
   std::vector<Bar> bars = {};  ///< from the top
 };
 
-/// Each bar is in two colours, one for each end of its number, which stands beside it. Colour-blind readers can distinguish
-/// them. @throws std::logic_error  without bars, and for a value that is not finite
+/// Each bar is in two colours, one for each end of its number, which is written beside it. Colour-blind readers can
+/// distinguish them. @throws std::logic_error  without bars, and for a value that is not finite
 [[nodiscard]] std::string draw_tornado(const TornadoPicture& picture);
 
 }  // namespace driftwright::output
