@@ -181,8 +181,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
   }
 }
 
-/// Temperatures of readings count from the reference temperature of the scenario. The formula cannot notice: it has differences
-/// of temperatures alone, and adds them to one.
+/// Temperatures of readings count from the reference temperature of the scenario. The formula cannot notice: it has
+/// differences of temperatures alone, and adds them to one.
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kError, [b = bound(e), e](Readings& r) {
     const auto& kind = static_cast<const DeclaredKind&>(*e.kind);
@@ -416,7 +416,8 @@ const EffectKind& declared_kind(const EffectKind& kind, const ConfigMap& entry,
       fmt::format("{} {} {} {}", declared.result, declared.expression.text, declared.to_key, entry.has("joint"));
   for (const Parameter& p : declared.parameters) what += fmt::format("; {} {}", p.name, p.unit);
   for (const std::string& name : declared.bodies) what += fmt::format("; {}", name);
-  // Effects point to their kind for as long as the program runs, so what was declared is kept. One for each text of a formula.
+  // Effects point to their kind for as long as the program runs, so what was declared is kept. One for each text of a
+  // formula.
   static std::mutex one_at_a_time;
   static std::map<std::string, std::unique_ptr<const formula::DeclaredKind>> all;
   const std::lock_guard lock(one_at_a_time);
