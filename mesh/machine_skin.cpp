@@ -35,6 +35,7 @@ MachineSkin skin_of(const Mesh& mesh) {
     named[face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
   }
   MachineSkin skin;
+  int n_faces = 0;
   FaceTable(mesh.cells).for_each([&](const FaceKey& key, std::span<const FaceTable::Entry> at) {
     if (at.size() != 1) return;
     const auto name = named.find(key);
@@ -46,7 +47,9 @@ MachineSkin skin_of(const Mesh& mesh) {
       skin.part.push_back(part);
       skin.surface.push_back(surface);
       skin.region.push_back(region);
+      skin.face.push_back(n_faces);
     }
+    ++n_faces;
   });
   return skin;
 }

@@ -14,6 +14,7 @@ struct MachineSkin {
   std::vector<int> part;     ///< of each triangle: index of its named surface, or number of surfaces + region
   std::vector<int> surface;  ///< of each triangle; -1: without a name
   std::vector<int> region;   ///< of each triangle
+  std::vector<int> face;     ///< of each triangle: number of its outer face, in the order of FaceTable
 };
 /// In the order of the mesh's faces: the same mesh gives the same triangles.
 [[nodiscard]] MachineSkin skin_of(const Mesh& mesh);

@@ -8,20 +8,12 @@
 #include <cmath>
 #include <set>
 
-#include "mesh/outer_faces.hpp"
 #include "mesh/shape.hpp"
 
 namespace driftwright::mesh {
 namespace {
 
 constexpr double kLeastCosine = 0.7;  ///< between the normal of a face and the requested one
-
-struct DescribedFacet {
-  CellFace face;
-  std::vector<int> nodes;
-  int n_corners;
-  Eigen::Vector3d centre_m, normal;  // normal: unit length, out of the body
-};
 
 DescribedFacet describe(const Mesh& mesh, CellFace face) {
   DescribedFacet f{face, nodes_of(mesh.cells, face), n_corners_of(shape_of(mesh.cells, face)), {}, {}};
@@ -35,30 +27,6 @@ DescribedFacet describe(const Mesh& mesh, CellFace face) {
   f.normal = area.normalized();
   return f;
 }
-
-struct Matcher {
-  const Mesh& mesh;
-  double tolerance_m;
-
-  bool operator()(const DescribedFacet& f, const PlanePick& plane) const {
-    const Eigen::Vector3d n = plane.normal.normalized();
-    if (f.normal.dot(n) < kLeastCosine) return false;
-    return std::all_of(f.nodes.begin(), f.nodes.end(),
-                       [&](int i) { return std::abs(n.dot(mesh.coords.col(i) - plane.through_m)) <= tolerance_m; });
-  }
-  bool operator()(const DescribedFacet& f, const CylinderPick& cylinder) const {
-    const Eigen::Vector3d axis = cylinder.axis.normalized();
-    const auto radial = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-      const Eigen::Vector3d d = x - cylinder.through_m;
-      return d - axis * axis.dot(d);
-    };
-    for (int i = 0; i < f.n_corners; ++i) {  // edges may be straight, with their middle inside the cylinder
-      if (std::abs(radial(mesh.coords.col(f.nodes[i])).norm() - 0.5 * cylinder.diameter_m) > tolerance_m) return false;
-    }
-    return std::abs(f.normal.dot(radial(f.centre_m).normalized())) >= kLeastCosine;
-  }
-  bool operator()(const DescribedFacet&, const RemainingPick&) const { return true; }
-};
 
 std::string extent(const Mesh& mesh, const std::vector<DescribedFacet>& facets) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(kNoLimit), high = -low;
@@ -74,18 +42,45 @@ std::string extent(const Mesh& mesh, const std::vector<DescribedFacet>& facets) 
 
 }  // namespace
 
-void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
-  if (picks.empty()) return;
+std::vector<DescribedFacet> described_outer_faces(const Mesh& mesh) {
   std::vector<DescribedFacet> outer;
   FaceTable(mesh.cells).for_each([&](const FaceKey&, std::span<const FaceTable::Entry> at) {
     if (at.size() == 1) outer.push_back(describe(mesh, at.front().at));
   });
+  return outer;
+}
+
+PickMatcher::PickMatcher(const Mesh& mesh)
+    : mesh_(mesh),
+      tolerance_m_(kPickTolerance * (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm()) {}
+
+bool PickMatcher::operator()(const DescribedFacet& f, const PlanePick& plane) const {
+  const Eigen::Vector3d n = plane.normal.normalized();
+  if (f.normal.dot(n) < kLeastCosine) return false;
+  return std::all_of(f.nodes.begin(), f.nodes.end(),
+                     [&](int i) { return std::abs(n.dot(mesh_.coords.col(i) - plane.through_m)) <= tolerance_m_; });
+}
+
+bool PickMatcher::operator()(const DescribedFacet& f, const CylinderPick& cylinder) const {
+  const Eigen::Vector3d axis = cylinder.axis.normalized();
+  const auto radial = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    const Eigen::Vector3d d = x - cylinder.through_m;
+    return d - axis * axis.dot(d);
+  };
+  for (int i = 0; i < f.n_corners; ++i) {  // edges may be straight, with their middle inside the cylinder
+    if (std::abs(radial(mesh_.coords.col(f.nodes[i])).norm() - 0.5 * cylinder.diameter_m) > tolerance_m_) return false;
+  }
+  return std::abs(f.normal.dot(radial(f.centre_m).normalized())) >= kLeastCosine;
+}
+
+void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
+  if (picks.empty()) return;
+  const std::vector<DescribedFacet> outer = described_outer_faces(mesh);
   std::set<FaceKey> named;
   for (int f = 0; f < mesh.facets.size(); ++f) {
     named.insert(face_key(mesh.facets.nodes(f).first(n_corners_of(mesh.facets.shape[f]))));
   }
-  const double size_m = (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
-  const Matcher matches{mesh, kPickTolerance * size_m};
+  const PickMatcher matches(mesh);
   for (const SurfacePick& pick : picks) {
     if (mesh.surface(pick.name) >= 0)
       throw InputError(pick.where, fmt::format("there is a surface '{}' already", pick.name));

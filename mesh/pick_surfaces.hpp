@@ -1,9 +1,38 @@
 #pragma once
 // Names places that a mesh file does not name: outer faces by geometry, joints by pairs of surfaces.
 
+#include <vector>
+
 #include "mesh/imported_mesh.hpp"
+#include "mesh/outer_faces.hpp"
 
 namespace driftwright::mesh {
+
+/// An outer face as picks see it.
+struct DescribedFacet {
+  CellFace face;
+  std::vector<int> nodes;
+  int n_corners;
+  Eigen::Vector3d centre_m, normal;  ///< centre of the corners; normal: unit length, out of the body
+};
+/// All outer faces, in the order of FaceTable.
+[[nodiscard]] std::vector<DescribedFacet> described_outer_faces(const Mesh& mesh);
+
+/// Says whether a pick takes an outer face, whatever the face's region.
+class PickMatcher {
+ public:
+  /// @param mesh  must outlive the matcher
+  explicit PickMatcher(const Mesh& mesh);
+  /// Largest distance of a taken face from the plane or cylinder: kPickTolerance of the mesh's diagonal [m].
+  [[nodiscard]] double tolerance_m() const { return tolerance_m_; }
+  [[nodiscard]] bool operator()(const DescribedFacet& facet, const PlanePick& plane) const;
+  [[nodiscard]] bool operator()(const DescribedFacet& facet, const CylinderPick& cylinder) const;
+  [[nodiscard]] bool operator()(const DescribedFacet&, const RemainingPick&) const { return true; }
+
+ private:
+  const Mesh& mesh_;
+  double tolerance_m_;
+};
 
 /// Adds the surfaces in their order. A face may belong to several, except to those of RemainingPick.
 /// Faces count as lying in a plane or on a cylinder within 1e-4 of the mesh's size.

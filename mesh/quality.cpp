@@ -62,14 +62,18 @@ CellQuality cell_quality(const Mesh& mesh, int cell) {
   return quality;
 }
 
+/// Volume of a cell, area of a facet.
+double measure_of(const Mesh& mesh, CellShape shape, std::span<const int> nodes) {
+  const auto x = cell_coords(mesh, nodes);
+  double sum = 0.0;
+  for (const QuadraturePoint& q : mass_rule(shape)) sum += q.weight * jacobian(shape_values(shape, q.xi), x, shape).det;
+  return sum;
+}
+
 double sum_over(const Mesh& mesh, const Cells& cells, int group) {
   double sum = 0.0;
   for (int c = 0; c < cells.size(); ++c) {
-    if (cells.group[c] != group) continue;
-    const auto x = cell_coords(mesh, cells.nodes(c));
-    for (const QuadraturePoint& q : mass_rule(cells.shape[c])) {
-      sum += q.weight * jacobian(shape_values(cells.shape[c], q.xi), x, cells.shape[c]).det;
-    }
+    if (cells.group[c] == group) sum += measure_of(mesh, cells.shape[c], cells.nodes(c));
   }
   return sum;
 }
@@ -102,6 +106,9 @@ double volume_m3(const Mesh& mesh, int region) {
 }
 double area_m2(const Mesh& mesh, int surface) {
   return sum_over(mesh, mesh.facets, surface);
+}
+double facet_area_m2(const Mesh& mesh, CellShape shape, std::span<const int> nodes) {
+  return measure_of(mesh, shape, nodes);
 }
 
 }  // namespace driftwright::mesh

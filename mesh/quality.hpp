@@ -1,6 +1,7 @@
 #pragma once
 // Measures of mesh quality, which show whether a mesh is fit for computation.
 
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -28,5 +29,7 @@ struct Quality {
 /// Volume of a region [m^3], area of a surface [m^2]; by index.
 [[nodiscard]] double volume_m3(const Mesh& mesh, int region);
 [[nodiscard]] double area_m2(const Mesh& mesh, int surface);
+/// Area of one facet [m^2], given by its nodes.
+[[nodiscard]] double facet_area_m2(const Mesh& mesh, CellShape shape, std::span<const int> nodes);
 
 }  // namespace driftwright::mesh
