@@ -198,13 +198,27 @@ void add_export(CLI::App& cli, ExportOptions& options) {
 void add_view(CLI::App& cli, ViewOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "view",
-      "writes the machine as one HTML page that simulates any cyclogram in the browser, offline (docs/how-to/view.md)");
-  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
-  verb->add_option("-o,--out", options.out, "file to write, NAME.html [results/<name of the scenario>.html]");
-  verb->add_option(
+      "writes the machine as one HTML page that simulates any cyclogram in the browser, offline; with --pick: a page in "
+      "which a click on a face gives the text for a scenario (docs/how-to/view.md)");
+  verb->add_option("scenario", options.scenario,
+                   "scenario YAML; with --pick also a mesh or drawing: .step, .msh, .inp, .vtu")
+      ->required();
+  verb->add_option("-o,--out", options.out,
+                   "file to write, NAME.html [results/<name of the scenario>.html; with --pick results/<name>_pick.html]");
+  CLI::Option* cyclogram = verb->add_option(
       "--cyclogram", options.cyclogram,
       "name of the cyclogram that the page shows first [the one that `study` judges by, else the first of the scenario]");
-  verb->footer("Example:\n  driftwright view scenarios/fp3_spindle.yaml -o twin.html");
+  CLI::Option* pick =
+      verb->add_flag("--pick", options.pick,
+                     "writes a page in which a click on the machine gives the YAML of a surface, a thermometer or a "
+                     "displacement. Of a scenario it uses only `name`, `machine`, `sensors`, `displacements` and `effects`")
+          ->excludes(cyclogram);
+  verb->add_option("--units", options.units,
+                   "with --pick, unit of length of a mesh or drawing: mm, cm, m or inch [guessed from the size]")
+      ->needs(pick);
+  verb->footer(
+      "Example:\n  driftwright view scenarios/fp3_spindle.yaml -o twin.html\n  driftwright view --pick "
+      "scenarios/parts/c_frame.step -o pick.html");
   verb->callback([&] { app::view(options); });
 }
 

@@ -234,11 +234,13 @@ struct ExportOptions {
 void export_model(const ExportOptions& options);
 
 struct ViewOptions {
-  std::string scenario;
-  std::string out;        ///< file; empty: results/<name of the scenario>.html
+  std::string scenario;   ///< with `pick` it may be a mesh or a drawing, too
+  std::string out;        ///< file; empty: results/<name of the scenario>.html, with `pick` <name>_pick.html
   std::string cyclogram;  ///< with which the page begins; empty: the one that the study judges by, else the first
+  bool pick = false;      ///< write a page for picking faces and points
+  std::string units;      ///< with `pick`: as in MeshOptions
 };
-/// Writes a page in which a machine runs.
+/// Writes a page in which a machine runs, or one for picking.
 void view(const ViewOptions& options);
 
 struct SweepOptions : CommonOptions, ShardOptions {};  ///< `scenario` is the study

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/picked_machine.hpp"
 #include "app/results.hpp"
 #include "app/twin_network.hpp"
 #include "app/verbs.hpp"
 #include "base/delimited_text.hpp"
 #include "base/file_bytes.hpp"
+#include "base/file_name.hpp"
 #include "base/version.hpp"
 #include "findings/machine_section.hpp"
+#include "mesh/unnamed_geometry.hpp"
 #include "output/twin/twin_page.hpp"
 #include "studies/prediction.hpp"
 #include "studies/sensor_regressions.hpp"
@@ -21,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using scenarios::Scenario;
 
-fs::path target_of(const ViewOptions& options, const Scenario& scenario) {
-  const fs::path target = options.out.empty() ? fs::path("results") / (scenario.name + ".html") : fs::path(options.out);
+fs::path target_of(const ViewOptions& options, const std::string& name) {
+  const fs::path target = options.out.empty() ? fs::path("results") / (name + ".html") : fs::path(options.out);
   if (target.extension() != ".html")
     throw InputError(fmt::format("-o '{}': a page is one file; a name that ends with .html is required", target.string()));
   if (fs::is_directory(target)) throw InputError(fmt::format("-o '{}' is a folder; a file is required", target.string()));
@@ -67,13 +70,54 @@ output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::
           .period_um = study.encoder_period_um};
 }
 
+void write_page(const fs::path& target, const std::string& text) {
+  write_whole(target, [&](const fs::path& partial) { write_bytes(partial, text); });
+}
+
+void print_page(const fs::path& target, const std::string& text, const std::string& subtitle) {
+  fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)),
+             1e-6 * static_cast<double>(text.size()), subtitle);
+}
+
+/// Writes the page for picking. @throws InputError  for a machine without a mesh
+void view_to_pick(const ViewOptions& options) {
+  const bool is_file = mesh::is_geometry_file(options.scenario);
+  if (!is_file && !options.units.empty())
+    throw InputError(
+        "--units is allowed only with a mesh file; a scenario says the unit of its mesh itself (`machine: units`)");
+  Progress progress;
+  PickedMachine machine;
+  if (!is_file) machine = scenario_to_pick(options.scenario);
+  const std::string name = is_file ? clean_name(fs::path(options.scenario).stem().string()) : machine.page.name;
+  const fs::path target = target_of(options, file_name(name, "") + "_pick");
+  progress.begin("meshing");
+  if (is_file)
+    machine = file_to_pick(options.scenario, options.units);
+  else
+    machine.mesh = scenarios::build_mesh(machine.recipe);
+  machine.page.name = name;
+  machine.page.mesh = &machine.mesh;
+  machine.page.notes.insert(machine.page.notes.end(), machine.mesh.notes.begin(), machine.mesh.notes.end());
+  progress.begin("writing the page");
+  const std::string text = output::pick_html(machine.page, {kVersion, clean_name(options.scenario)});
+  write_page(target, text);
+  progress.end();
+  print_page(target, text, machine.page.subtitle);
+}
+
 }  // namespace
 
 void view(const ViewOptions& options) {
+  if (options.pick) return view_to_pick(options);
+  if (mesh::is_geometry_file(options.scenario))
+    throw InputError(
+        fmt::format("'{}' is a mesh or a drawing, and a machine that runs needs a scenario; `driftwright view "
+                    "--pick {}` shows it for picking, and `driftwright init` writes a scenario of it",
+                    clean_name(options.scenario), clean_name(options.scenario)));
   Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::MachineModel& machine = scenarios::require_machine(scenario, "view");
   const Cyclogram first = first_cyclogram(options, scenario);
-  const fs::path target = target_of(options, scenario);
+  const fs::path target = target_of(options, scenario.name);
   const bool is_lumped = std::holds_alternative<scenarios::LumpedMachine>(machine.mesh);
   scenario.solver.model = is_lumped ? studies::predicting_model(scenario) : scenarios::ModelKind::kReduced;
   if (scenario.solver.fields_format == FieldsFormat::kNone) scenario.solver.fields_format = FieldsFormat::kVtu;
@@ -108,10 +152,9 @@ void view(const ViewOptions& options) {
   }
   progress.listener().begin("writing the page");
   const std::string text = output::twin_html(page, {kVersion, clean_name(options.scenario)});
-  write_whole(target, [&](const fs::path& partial) { write_bytes(partial, text); });
+  write_page(target, text);
   progress.end();
-  fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)),
-             1e-6 * static_cast<double>(text.size()), page.subtitle);
+  print_page(target, text, page.subtitle);
   for (const std::string& note : page.model.notes) fmt::print("left out: {}\n", note);
 }
 

@@ -40,7 +40,37 @@ double rounded(double x) {
   return step * std::round(x / step);
 }
 
-std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry, const std::string& file) {
+/// The runs, and the study that judges them, for both kinds of machines.
+std::string runs_block() {
+  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record "
+         "(docs/how-to/cyclograms.md)\n"
+         "\ncyclograms:                              # guesses: [duration, spindle speed]\n"
+         "  warm_up: [[120 min, 3000 rpm]]\n"
+         "  steps: [[40 min, 1000 rpm], [40 min, 3000 rpm], [40 min, 0 rpm]]\n"
+         "  shift: [[60 min, 3000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm], [40 min, 0 rpm]]\n";
+}
+
+std::string study_block(const std::string& target, std::size_t n_sensors) {
+  return fmt::format(
+      "\nstudy:\n  target: {}                      # what `run` fits and judges\n  train: [warm_up, steps]\n"
+      "  judge: shift                         # on which nothing is fitted\n  sensors_to_choose: {}\n"
+      "  sensor_resolution: 0.1 K             # a guess: the step of the thermometers\n  tolerance: 10 um                   "
+      "  # a guess\n",
+      target, std::min<std::size_t>(n_sensors, 2));
+}
+
+std::string head(const std::string& name, const std::string& what) {
+  return fmt::format(
+      "# {}, as `driftwright init` has written it. It runs as it is:\n#\n#     driftwright run THIS_FILE\n#\n"
+      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/reference/scenario.md; "
+      "effects: driftwright list effects.\n"
+      "name: {}\n\nreference_temperature: 20 degC           # a guess: at it the machine is straight\n",
+      what, name);
+}
+
+}  // namespace
+
+std::string machine_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry, const std::string& file) {
   std::string text = fmt::format("machine:\n  mesh: {}\n", quoted(file));
   if (!geometry.unit.empty()) {
     const char* guess = geometry.is_drawing ? "a guess from the size, for the file says another one: its lengths"
@@ -85,42 +115,12 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
   return text;
 }
 
-/// The runs, and the study that judges them, for both kinds of machines.
-std::string runs_block() {
-  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record "
-         "(docs/how-to/cyclograms.md)\n"
-         "\ncyclograms:                              # guesses: [duration, spindle speed]\n"
-         "  warm_up: [[120 min, 3000 rpm]]\n"
-         "  steps: [[40 min, 1000 rpm], [40 min, 3000 rpm], [40 min, 0 rpm]]\n"
-         "  shift: [[60 min, 3000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm], [40 min, 0 rpm]]\n";
-}
-
-std::string study_block(const std::string& target, std::size_t n_sensors) {
-  return fmt::format(
-      "\nstudy:\n  target: {}                      # what `run` fits and judges\n  train: [warm_up, steps]\n"
-      "  judge: shift                         # on which nothing is fitted\n  sensors_to_choose: {}\n"
-      "  sensor_resolution: 0.1 K             # a guess: the step of the thermometers\n  tolerance: 10 um                   "
-      "  # a guess\n",
-      target, std::min<std::size_t>(n_sensors, 2));
-}
-
-std::string head(const std::string& name, const std::string& what) {
-  return fmt::format(
-      "# {}, as `driftwright init` has written it. It runs as it is:\n#\n#     driftwright run THIS_FILE\n#\n"
-      "# What says \"guess\" is one: put your machine's numbers in its place. All keys: docs/reference/scenario.md; "
-      "effects: driftwright list effects.\n"
-      "name: {}\n\nreference_temperature: 20 degC           # a guess: at it the machine is straight\n",
-      what, name);
-}
-
-}  // namespace
-
 std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry, const std::string& name,
                           const std::string& file) {
   std::string text = head(name, fmt::format("A machine from {}", std::filesystem::path(file).filename().string()));
   for (const std::string& remark : draft.remarks)
     text.insert(text.find("name: "), fmt::format("# Look at this: {}.\n", remark));
-  text += fmt::format("\n{}", machine_block(draft, geometry, file));
+  text += fmt::format("\n{}", machine_text(draft, geometry, file));
   text += "\nmaterials:                               # guesses from the names; driftwright list materials\n";
   for (const auto& region : draft.regions) text += fmt::format("  {}: {}\n", quoted(region.name), region.material);
   text += "\nsupports:                                # a guess: levelling feet under the lowest plane faces, with z up\n";

@@ -12,6 +12,10 @@ namespace driftwright::studies {
 [[nodiscard]] std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry,
                                         const std::string& name, const std::string& file);
 
+/// Its block `machine:` alone. @param file  as it is to be written
+[[nodiscard]] std::string machine_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry,
+                                       const std::string& file);
+
 /// The scenario of a machine of two lumped nodes; all numbers are guesses.
 [[nodiscard]] std::string lumped_scenario_text(const std::string& name);
 

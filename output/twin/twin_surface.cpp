@@ -13,8 +13,23 @@ namespace {
 
 constexpr double kSharp = 0.85;  // cosine between the normals of two triangles, below which their edge is drawn
 
-/// The edges to draw, for triangles over the nodes of the skin.
-std::vector<std::uint32_t> edges_of(const TwinSurface& surface, const std::vector<int>& region) {
+}  // namespace
+
+Quantised quantised(const Eigen::MatrixXf& modes) {
+  constexpr double kMost = 32767.0;
+  Quantised q;
+  q.value.reserve(static_cast<std::size_t>(modes.size()));
+  for (Eigen::Index c = 0; c < modes.cols(); ++c) {
+    const double most = modes.rows() > 0 ? static_cast<double>(modes.col(c).cwiseAbs().maxCoeff()) : 0.0;
+    const double scale = most > 0.0 ? most / kMost : 1.0;
+    q.scale.push_back(scale);
+    for (Eigen::Index r = 0; r < modes.rows(); ++r)
+      q.value.push_back(static_cast<std::int16_t>(std::lround(static_cast<double>(modes(r, c)) / scale)));
+  }
+  return q;
+}
+
+std::vector<std::uint32_t> drawn_edges(const TwinSurface& surface, const std::vector<int>& region) {
   const auto normal = [&](std::size_t t) -> Eigen::Vector3f {
     const auto at = [&](std::size_t k) { return surface.coords_m.col(surface.triangle[3 * t + k]); };
     return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
@@ -32,22 +47,6 @@ std::vector<std::uint32_t> edges_of(const TwinSurface& surface, const std::vecto
     if (is_drawn) edges.insert(edges.end(), {ends.first, ends.second});
   }
   return edges;
-}
-
-}  // namespace
-
-Quantised quantised(const Eigen::MatrixXf& modes) {
-  constexpr double kMost = 32767.0;
-  Quantised q;
-  q.value.reserve(static_cast<std::size_t>(modes.size()));
-  for (Eigen::Index c = 0; c < modes.cols(); ++c) {
-    const double most = modes.rows() > 0 ? static_cast<double>(modes.col(c).cwiseAbs().maxCoeff()) : 0.0;
-    const double scale = most > 0.0 ? most / kMost : 1.0;
-    q.scale.push_back(scale);
-    for (Eigen::Index r = 0; r < modes.rows(); ++r)
-      q.value.push_back(static_cast<std::int16_t>(std::lround(static_cast<double>(modes(r, c)) / scale)));
-  }
-  return q;
 }
 
 TwinSurface twin_surface(const scenarios::ReducedMachine& machine) {
@@ -74,7 +73,7 @@ TwinSurface twin_surface(const scenarios::ReducedMachine& machine) {
     temperature.row(i) = machine.temperature.row(node);
     if (displacement_m.rows() > 0) displacement_m.middleRows(3 * i, 3) = machine.displacement_m.middleRows(3 * node, 3);
   }
-  surface.edge = edges_of(surface, skin.region);
+  surface.edge = drawn_edges(surface, skin.region);
   surface.temperature = quantised(temperature);
   surface.displacement_m = quantised(displacement_m);
   return surface;

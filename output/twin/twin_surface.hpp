@@ -26,6 +26,9 @@ struct TwinSurface {
   Quantised temperature = {};                ///< of these nodes over the reference, in each state [K]
   Quantised displacement_m = {};             ///< x, y, z of each node in turn, in each state; empty without fields
 };
+/// The edges to draw of its triangles: ends of one triangle alone, where regions meet, and sharp bends.
+/// @param region  of each triangle
+[[nodiscard]] std::vector<std::uint32_t> drawn_edges(const TwinSurface& surface, const std::vector<int>& region);
 /// @throws std::logic_error  for a machine without temperature fields
 [[nodiscard]] TwinSurface twin_surface(const scenarios::ReducedMachine& machine);
 

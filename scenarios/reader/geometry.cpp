@@ -1,5 +1,6 @@
 #include "scenarios/reader/geometry.hpp"
 
+#include "effects/effect_schema.hpp"
 #include "effects/former_words.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
@@ -15,14 +16,15 @@ const schema::Map& geometry_schema() {
                schema::optional("materials", schema::map(materials_schema()), "of each region"),
                schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
                schema::optional("displacements", schema::maps(displacement_schema()),
-                                "errors of the tool against the table")},
+                                "errors of the tool against the table"),
+               schema::optional("effects", list(one_of(effects::effect_schemas())), "what heats, cools and connects")},
       .others = {schema::optional("key", schema::anything(), "of the whole scenario")}};
   return description;
 }
 
 }  // namespace
 
-Geometry read_geometry(const std::string& path) {
+Geometry read_geometry(const std::string& path, bool with_effects) {
   const ConfigMap in = ConfigMap::of_tree(effects::read_scenario_tree(path)).described_by(geometry_schema());
   Geometry geometry{in.name("name"), {}};
   MachineModel& m = geometry.machine;
@@ -33,6 +35,7 @@ Geometry read_geometry(const std::string& path) {
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
   }
+  if (with_effects) m.effects = effects::read_effects(in.maps("effects"));
   return geometry;
 }
 

@@ -10,12 +10,13 @@ namespace driftwright::scenarios {
 
 struct Geometry {
   std::string name;
-  MachineModel machine;  ///< mesh, and materials, sensors and displacements if present; nothing else
+  MachineModel machine;  ///< mesh, and materials, sensors, displacements and, if asked for, effects if present; nothing else
 };
 
 /// Reads the keys `name`, `machine`, `materials`, `sensors` and `displacements` of a scenario and ignores all others,
 /// which read_scenario() reads.
+/// @param with_effects  also reads `effects`
 /// @throws InputError
-[[nodiscard]] Geometry read_geometry(const std::string& path);
+[[nodiscard]] Geometry read_geometry(const std::string& path, bool with_effects = false);
 
 }  // namespace driftwright::scenarios
