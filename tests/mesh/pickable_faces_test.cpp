@@ -51,7 +51,7 @@ TEST(PickableFaces, OfABoxAreItsSixSides) {
   for (const PickableFace& face : faces) {
     ASSERT_TRUE(face.pick && std::holds_alternative<PlanePick>(*face.pick));
     const auto& plane = std::get<PlanePick>(*face.pick);
-    EXPECT_NEAR(plane.normal.cwiseAbs().maxCoeff(), 1.0, 0.0);
+    EXPECT_NEAR(plane.normal.cwiseAbs().maxCoeff(), 1.0, 1e-12);
     sum_m2 += face.area_m2;
   }
   EXPECT_NEAR(sum_m2, 2 * (0.1 * 0.06 + 0.1 * 0.04 + 0.06 * 0.04), 1e-12);
