@@ -45,5 +45,13 @@ with tempfile.TemporaryDirectory() as folder:
     page = browser.open(address, height=1330)
     page.wait("live.fields && live.fields.state && live.points.length > 50")
     page.screenshot(HERE / "follow.png")
-    browser.close()
     follow.kill()
+
+    # The page for picking, after a click on the table.
+    subprocess.run([PROGRAM, "view", "--pick", "scenarios/c_frame.yaml", "-o", f"{folder}/pick.html"], check=True, cwd=HERE.parent.parent, stdout=subprocess.DEVNULL)
+    page = browser.open(f"file://{folder}/pick.html", height=1250)
+    page.wait("window.pick && pick.scene && pick.scene.aspect")
+    page.value("pick.pickAt(...pick.scene.project([0.15, -0.05, 0.32]))")
+    page.wait("!pick.isDue")
+    page.screenshot(HERE / "pick.png")
+    browser.close()

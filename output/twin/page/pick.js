@@ -184,6 +184,7 @@ class PickPage {
     for (const s of names) row("name", `${s.name} (${s.carries.length ? s.carries.join(", ") : "neither heat nor film"})`);
     if (picked.touches) row("here", "touches another part");
     byId("surface-text").value = face.pick && data.may_name ? surfaceText(this.nameIn("surface-name"), face.pick) : "";
+    for (const element of [byId("surface-text"), byId("surface-name").closest("p")]) element.hidden = !byId("surface-text").value;
     byId("surface-help").textContent = !data.may_name ? data.no_names : face.pick ? "Goes below machine: surfaces." + (names.length ? " The face has a name already; it may have several." : "") :
         `A scenario cannot name this face alone: it is neither a plane nor a cylinder. {name: NAME, region: ${picked.region}, remaining: true} at the end of the list names it with all faces of the region that have no name.`;
     byId("sensor-text").value = sensorText(this.nameIn("sensor-name"), picked);
