@@ -85,6 +85,8 @@ void view_to_pick(const ViewOptions& options) {
   if (!is_file && !options.units.empty())
     throw InputError(
         "--units is allowed only with a mesh file; a scenario says the unit of its mesh itself (`machine: units`)");
+  if (is_file && !fs::is_regular_file(options.scenario))  // before the folder of -o is made
+    throw InputError(fmt::format("there is no file '{}'", options.scenario));
   Progress progress;
   PickedMachine machine;
   if (!is_file) machine = scenario_to_pick(options.scenario);
