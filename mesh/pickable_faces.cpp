@@ -20,7 +20,7 @@ namespace {
 constexpr double kSamePlane_rad = 1e-3;
 // Facets that meet at less go on smoothly: a hole meshed with six edges around turns by 60 degrees from edge to edge.
 const double kSmoothCosine = std::cos(61.0 / 180.0 * std::numbers::pi);
-// Distance of a mid-side node from the plane of the corners over the longest edge; an arc of this sagitta turns by 1.6e-3 rad.
+// Distance of a mid-side node from the plane of the corners, over the longest edge: an arc that turns by 1.6e-3 rad.
 constexpr double kCurved = 2e-4;
 constexpr std::size_t kLeastStrips = 4;  // three lines always lie on a cylinder, and so do four of a symmetric bevel
 constexpr std::size_t kLeastCurved = 2;  // curved facets: nine nodes for the five numbers of a cylinder
