@@ -89,6 +89,37 @@ TEST(CoolantChannel, HasASteadyStateThatCarriesItsHeatAway) {
   EXPECT_NEAR(theta[1], 2.0 + 300.0 / stream_W_K + 100.0 / p[1].conductance_W_K, 1e-7);
 }
 
+TEST(CoolantChannel, HasASteadyStateWhereItsLiquidComesToTheTemperatureOfTheWall) {
+  // Seven transfer units over twelve bodies: what enters the last comes from the first, step by step.
+  constexpr int kBodies = 12;
+  std::vector<std::string> entries;
+  std::string then;
+  for (int i = 0; i < kBodies; ++i) {
+    const std::string name = "b" + std::to_string(i);
+    entries.push_back("{type: node, node: " + name + ", capacity: 1 kJ/K}");
+    entries.push_back("{type: heat_source, node: " + name + ", power: 5 W}");
+    if (i > 0) {
+      entries.push_back("{type: link, node: " + name + ", to: b" + std::to_string(i - 1) + ", conductance: 2 W/K}");
+      then += (i > 1 ? ", " : "") + name;
+    }
+  }
+  entries.push_back("{type: coolant_channel, node: b0, then: [" + then +
+                    "], flow: 0.05 L/min, diameter: 8.9 mm, length: 3600 mm, set_point: 22 degC}");
+  const FullSystem system = fixtures::lumped_system(entries);
+  const Eigen::VectorXd theta = steady_state(system, {}, Eigen::VectorXd::Zero(kBodies));
+  const effects::Liquid water = effects::water_at(kReference_K + 2.0);
+  const double d_m = 8.9e-3, stream_W_K = 0.05 / 60e3 * water.heat_capacity_J_m3K;
+  const auto p = effects::passages({d_m, 0.25 * M_PI * d_m * d_m, M_PI * d_m, 3.6}, water, 0.05 / 60e3, 1.0, kBodies);
+  double liquid_K = 2.0, units = 0.0;
+  for (int i = 0; i < kBodies; ++i) {
+    const double share = p[static_cast<std::size_t>(i)].share;
+    liquid_K += share * (theta[i] - liquid_K);
+    units -= std::log1p(-share);
+  }
+  EXPECT_GT(units, 5.0);
+  EXPECT_NEAR(liquid_K, 2.0 + kBodies * 5.0 / stream_W_K, 1e-6);  // all heat leaves with the liquid
+}
+
 // --- a plate: 200 x 50 x 20 mm, heated from above, cooled from below by a jacket along x ------------------------------------
 
 constexpr double kLength_m = 0.2, kWidth_m = 0.05, kHeight_m = 0.02, kHeat_W = 150.0;
