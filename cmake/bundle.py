@@ -6,7 +6,7 @@
 
 It is what the CMake targets `archive` and `wheel` run (docs/how-to/install.md). Needs Debian (`dpkg-query` finds the licence of each library), `patchelf`
 and binutils. Libraries of the archive are Debian's files unchanged: the program finds them by an RPATH of its own, which holds for what they need in turn. Those of the
-wheel have other names, because a Python process may load other versions of the same libraries; libstdc++ and libgcc_s are the system's there, as PEP 600 has it.
+wheel have other names, but for Gmsh, because a Python process may load other versions of the same libraries; libstdc++ and libgcc_s are the system's there, as PEP 600 has it.
 """
 import argparse, base64, csv, gzip, hashlib, io, os, re, shutil, subprocess, sys, tarfile, tempfile, time, zipfile
 from pathlib import Path
@@ -43,6 +43,9 @@ class Build:
             sys.exit(f"bundle.py: {self.folder} is no build folder: it has no CMakeCache.txt")
         self.cache = dict(re.findall(r"^([^#/:\n]+):[A-Z]+=(.*)$", cache.read_text(), re.M))
         self.version = self.cache["CMAKE_PROJECT_VERSION"]
+        self.on_demand = {}  # name and path of a library that the program loads when it first needs it
+        if "DRIFTWRIGHT_ON_DEMAND_NAME" in self.cache:
+            self.on_demand[self.cache["DRIFTWRIGHT_ON_DEMAND_NAME"]] = Path(self.cache["DRIFTWRIGHT_ON_DEMAND_LIBRARY"]).resolve()
         self.lib = self.cache.get("CMAKE_INSTALL_LIBDIR", "lib")
         flags = self.cache.get("CMAKE_CXX_FLAGS", "")
         if "-march=" in flags:
@@ -176,7 +179,7 @@ def archive(build, out):
         root = Path(work, name)
         build.install(root, "runtime", "library", "dev")
         program, shared = root / "bin/driftwright", next(f for f in sorted((root / build.lib).glob("libdriftwright.so.*")) if not f.is_symlink())
-        libraries = needed_libraries([program, shared])
+        libraries = {**build.on_demand, **needed_libraries([program, shared, *build.on_demand.values()])}
         run("patchelf", "--force-rpath", "--set-rpath", f"$ORIGIN/{os.path.relpath(root / build.lib, root / 'bin')}", program)
         run("patchelf", "--force-rpath", "--set-rpath", "$ORIGIN", shared)
         copy_libraries(libraries, root / build.lib)
@@ -221,16 +224,16 @@ def write_tar(root, target):
     partial.rename(target)
 
 
-def rename_libraries(folder, others):
-    """Gives each library in the folder a name that no other file has, and says so to what needs it."""
+def rename_libraries(folder, others, on_demand):
+    """Gives each library in the folder a name that no other file has, and says so to what needs it; not to those that are loaded by their name."""
     new_name = {}
-    for file in sorted(folder.iterdir()):
+    for file in sorted(f for f in folder.iterdir() if f.name not in on_demand):
         stem, dot, rest = file.name.partition(".so")
         new_name[file.name] = f"{stem}-{hashlib.sha256(file.read_bytes()).hexdigest()[:8]}{dot}{rest}"
     for file in [*sorted(folder.iterdir()), *others]:
         origin = "$ORIGIN" if file.parent == folder else f"$ORIGIN/{os.path.relpath(folder, file.parent)}"
         changes = [[a for n in dynamic_section(file)[0] if n in new_name for a in ("--replace-needed", n, new_name[n])], ["--force-rpath", "--set-rpath", origin]]
-        if file.parent == folder:
+        if file.name in new_name:
             changes.append(["--set-soname", new_name[file.name]])
         for change in filter(None, changes):  # one kind a call: patchelf 0.14 mixes up the words of several
             run("patchelf", *change, file)
@@ -260,9 +263,9 @@ def wheel(build, out):
         build.install(Path(work, "installed"), "library")
         shared = next(f for f in sorted(Path(work, "installed", build.lib).glob("libdriftwright.so.*")) if not f.is_symlink())
         name = next(n for n in dynamic_section(core)[0] if n.startswith("libdriftwright.so"))
-        libraries = {n: f for n, f in needed_libraries([shared]).items() if n not in COMPILER}
+        libraries = {**build.on_demand, **{n: f for n, f in needed_libraries([shared, *build.on_demand.values()]).items() if n not in COMPILER}}
         copy_libraries({**libraries, name: shared}, package / "lib")
-        rename_libraries(package / "lib", [core])
+        rename_libraries(package / "lib", [core], build.on_demand)
         units = {f.name: f for f in unit_table()}
         (package / UNIT_TABLE).mkdir(parents=True)
         for file in units.values():

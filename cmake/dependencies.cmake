@@ -1,3 +1,4 @@
+include(cmake/on_demand.cmake)
 # Everything Driftwright takes from Debian 12, with the lowest version known to work. Packages: packages.txt; what tests alone need: packages-tests.txt.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
@@ -32,7 +33,8 @@ function(driftwright_import name library header suffixes)
     INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIR} INTERFACE_INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIR})
 endfunction()
 driftwright_import(SuiteSparse::CHOLMOD cholmod cholmod.h suitesparse)
-driftwright_import(Gmsh::Gmsh gmsh gmsh.h "")
+driftwright_import(Gmsh::Whole gmsh gmsh.h "")
+driftwright_on_demand(Gmsh::Gmsh Gmsh::Whole _ZN4gmsh gmsh)
 # Its own CMake files would link the first BLAS they find (ATLAS) before the one CHOLMOD is meant to run on.
 driftwright_import(Ceres::ceres ceres ceres/ceres.h "")
 find_library(GLOG_LIBRARY glog REQUIRED)  # its headers call it

@@ -11,6 +11,7 @@
 
 #include "base/c_random.hpp"
 #include "base/errors.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/read_apart.hpp"
 #include "mesh/topology.hpp"
@@ -156,6 +157,7 @@ void add_elements(Cells& cells, NodeTable& table, int part, int entity, GmshShap
 }  // namespace
 
 GmshSession::GmshSession() : alone_(alone_with_c_random()), n_threads_(omp_get_max_threads()) {
+  load_gmsh();
   gmsh::initialize();
   gmsh::option::setNumber("General.Terminal", 0);
   gmsh::option::setNumber("General.NumThreads", 1);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/characters.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/mesh_step.hpp"
 #include "mesh/pick_surfaces.hpp"
 #include "mesh/read_apart.hpp"
@@ -162,7 +163,9 @@ std::optional<ImportedMesh> with_mesh_size_times(ImportedMesh recipe, double fac
 
 Mesh import_mesh(const ImportedMesh& recipe) {
   Mesh mesh;
-  switch (format_of(recipe.path, recipe.where)) {
+  const Format format = format_of(recipe.path, recipe.where);
+  if (format == Format::kMsh || format == Format::kStep) load_gmsh();  // not anew in each child of this process
+  switch (format) {
     case Format::kMsh:
       mesh = read_apart(recipe.path, [&] { return check_and_build(read_msh(recipe.path), recipe.unit_m); });
       break;

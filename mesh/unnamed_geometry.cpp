@@ -8,6 +8,7 @@
 
 #include "base/characters.hpp"
 #include "base/errors.hpp"
+#include "mesh/gmsh_library.hpp"
 #include "mesh/imported_mesh.hpp"
 #include "mesh/mesh_step.hpp"
 #include "mesh/read_apart.hpp"
@@ -42,6 +43,7 @@ Mesh drawing_in(const std::string& path, double unit_m) {
   recipe.path = path;
   recipe.unit_m = unit_m;
   recipe.where.file = path;
+  load_gmsh();  // not anew in each child of this process
   return read_apart(path, [&] { return mesh_step(recipe, true); });
 }
 

@@ -101,7 +101,7 @@ class Basis {
 };
 
 /// The inputs of the system, each with its largest magnitude, at one set of coefficients. The start acts as an impulse.
-struct Inputs {
+struct InputLoads {
   Eigen::MatrixXd loads;    ///< n x n_inputs: steps, the start, switches between sets of coefficients
   Eigen::Index start = -1;  ///< column that is M θ0, -1 for none
   Eigen::Index n_switches = 0;
@@ -109,7 +109,7 @@ struct Inputs {
   [[nodiscard]] Eigen::Index n_steps() const { return loads.cols() - n_switches - (start >= 0 ? 1 : 0); }
 };
 
-Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
+InputLoads inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
                  const Eigen::VectorXd& c) {
   std::vector<Eigen::VectorXd> loads;
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
@@ -127,7 +127,7 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
   if (demand.ambient_K > 0.0 && any([](const auto& e) { return (e.to_ambient.array() != 0.0).any(); }))
     loads.push_back(demand.ambient_K * ambient);
   if (any([](const auto& e) { return (e.offset.array() != 0.0).any(); })) loads.push_back(offset);
-  Inputs inputs;
+  InputLoads inputs;
   if (start.cwiseAbs().maxCoeff() > 0.0) {
     inputs.start = static_cast<Eigen::Index>(loads.size());
     loads.push_back(system.mass * start);
@@ -156,7 +156,7 @@ Eigen::MatrixXd step_states(const Eigen::MatrixXd& k, const Eigen::MatrixXd& loa
 /// Largest difference of an output, by unit: the sum over steps and start, doubled because they may step back as far, and
 /// the largest of the switches.
 ReductionError difference(const Outputs& outputs, const std::vector<Eigen::MatrixXd>& a,
-                          const std::vector<Eigen::MatrixXd>& b, const Inputs& inputs) {
+                          const std::vector<Eigen::MatrixXd>& b, const InputLoads& inputs) {
   const Eigen::Index n_inputs = inputs.loads.cols();
   ReductionError error;
   for (std::size_t p = 0; p < a.size(); ++p) {
@@ -370,7 +370,7 @@ class Reducer {
   std::vector<Eigen::VectorXd> points_;  ///< sets of coefficients
   Basis basis_;
   std::optional<ConductionFactor> factor_;
-  std::vector<Inputs> inputs_;  ///< per set of coefficients
+  std::vector<InputLoads> inputs_;  ///< per set of coefficients
   std::vector<double> shifts_1_s_, times_s_;
 };
 
