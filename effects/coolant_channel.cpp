@@ -118,7 +118,7 @@ double rise_K(const std::vector<Passage>& passages, std::size_t n_sections, cons
   return rise;
 }
 
-/// Each section exchanges with the inlet's temperature, which is symmetric; what the liquid has taken up before comes back as
+/// Each section exchanges with the temperature of the inlet, which is symmetric; what it took up before comes back as
 /// heat, a law of the sections before. So the liquid has no unknowns, and is quasi-steady: it passes in seconds.
 void contribute(const Effect& e, HeatBalance& balance) {
   const std::vector<Body> walls = walls_of(e);

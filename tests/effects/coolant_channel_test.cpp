@@ -1,4 +1,4 @@
-// Liquids in channels: properties and Nusselt numbers against published values, the chain of sections against the closed form
+// Liquids in channels: properties and Nusselt numbers by published values, the chain of sections against the closed form
 // of a tube in a wall of one temperature, and what an entry may hold.
 
 #include <gmock/gmock.h>

@@ -26,7 +26,8 @@ using ::testing::HasSubstr;
 constexpr solver::TransientOptions kTight{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6};
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
 constexpr const char* kChannel =
-    "{type: coolant_channel, surface: front, along: [[50 mm, 200 mm, 300 mm], [50 mm, 200 mm, 400 mm]], sections: 2, flow: 0.5 "
+    "{type: coolant_channel, surface: front, along: [[50 mm, 200 mm, 300 mm], [50 mm, 200 mm, 400 mm]], sections: 2, flow: "
+    "0.5 "
     "L/min, diameter: 8 mm, length: 400 mm, set_point: 20 degC, runs: while_spindle_turns}";
 constexpr const char* kDark = "{type: radiation, surface: outside, emissivity: 0.9}";
 

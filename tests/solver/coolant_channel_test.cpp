@@ -120,7 +120,7 @@ TEST(CoolantChannel, HasASteadyStateWhereItsLiquidComesToTheTemperatureOfTheWall
   EXPECT_NEAR(liquid_K, 2.0 + kBodies * 5.0 / stream_W_K, 1e-6);  // all heat leaves with the liquid
 }
 
-// --- a plate: 200 x 50 x 20 mm, heated from above, cooled from below by a jacket along x ------------------------------------
+// --- a plate: 200 x 50 x 20 mm, heated from above, cooled from below by a jacket along x ----------------------------------
 
 constexpr double kLength_m = 0.2, kWidth_m = 0.05, kHeight_m = 0.02, kHeat_W = 150.0;
 constexpr double kFlow_L_min = 1.0;
