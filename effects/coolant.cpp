@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "effects/coolant_tank.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::effects::coolant {
@@ -18,45 +19,24 @@ double passage_at(const Effect& e, double flow_L_min) {
 void contribute(const Effect& e, HeatBalance& balance) {
   const double passage_W_K = passage_at(e, e["flow"]);
   const bool with_spindle = e.words.at("runs") == "while_spindle_turns";
-  const auto while_running = [=](double value) {
-    return [=](const Inputs& u) { return with_spindle && !(u.drive.speed_rpm > 0.0) ? 0.0 : value; };
-  };
-  Exchange passage{.name = e.name(), .body = e.body(), .coefficient = while_running(passage_W_K), .per = Per::kTotal};
+  const auto runs = [=](const Inputs& u) { return with_spindle && !(u.drive.speed_rpm > 0.0) ? 0.0 : 1.0; };
+  Exchange passage{.name = e.name(),
+                   .body = e.body(),
+                   .coefficient = [=](const Inputs& u) { return passage_W_K * runs(u); },
+                   .per = Per::kTotal};
   if (!e.references.contains("tank")) {
     passage.medium_K = e["set_point"];
     balance.exchanges.push_back(passage);
     return;
   }
-  const std::string tank = e.references.at("tank").name;
-  passage.name += " - " + tank;
-  passage.surrounding = tank;
+  passage.surrounding = e.references.at("tank").name;
+  passage.name += " - " + passage.surrounding;
   balance.exchanges.push_back(passage);
-  const double exchange_W_K = e["tank_exchange"], cooling_W = e["cooling_power"];
-  balance.nodes.push_back({tank, e["volume"] * e["medium_heat_capacity"]});
-  balance.exchanges.push_back({.name = "coolant tank " + tank,
-                               .body = node(tank),
-                               .coefficient = [=](const Inputs&) { return exchange_W_K; },
-                               .per = Per::kTotal});
-  balance.heats.push_back({"coolant pump " + tank, node(tank), while_running(e["pump_power"])});
-  if (!(cooling_W > 0.0)) return;
-  const double half_K = 0.5 * e["hysteresis"];
-  balance.thermostats.push_back({tank, node(tank), e["set_point"] + half_K, e["set_point"] - half_K});
-  balance.heats.push_back({"coolant chiller " + tank, node(tank), Law([=](const Inputs&) { return -cooling_W; }, {}, tank)});
+  add_tank(e, e["medium_heat_capacity"], runs, balance);
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e.references.contains("tank")) {
-    if (e.references.at("tank").name == kAmbientName)
-      in.fail("tank", "the tank must have a name of its own; the ambient is no tank");
-    if (!e.has("volume")) in.fail("volume", "`tank` and `volume` must be given together");
-    if (e.has("set_point") != (e["cooling_power"] > 0.0))
-      in.fail("set_point", "`set_point` and `cooling_power` must be given together");
-    return;
-  }
-  if (!e.has("set_point")) in.fail("set_point", "a circuit without `tank` is held at its `set_point`");
-  for (const char* of_tank : {"volume", "tank_exchange", "pump_power", "cooling_power", "hysteresis"}) {
-    if (in.has(of_tank)) in.fail(of_tank, std::string("`") + of_tank + "` is allowed only with a `tank`, which is missing");
-  }
+  check_tank(e, in, false);
 }
 
 /// A circuit in the scenario with another set point or another flow, in some records or from a time on.
@@ -126,7 +106,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }
 
 EffectKind kind() {
-  return {
+  EffectKind kind{
       .key = "coolant",
       .title = "circuit of coolant or oil with tank, pump and a chiller on a thermostat",
       .law =
@@ -143,23 +123,15 @@ EffectKind kind() {
            {"medium_heat_capacity", "J/(L K)", 100.0, 1e4, 3800.0,
             "per volume; water with 30 % of ethylene glycol at 20 degC: 1.046 kg/L times 3.65 kJ/(kg K) (ASHRAE Handbook "
             "Fundamentals, secondary coolants); water: 4170, mineral oil: 1650"},
-           {"passage_conductance", "W/K", 0.0, 1e7, {}, "film times area of the passage", 0.1, "coolant", Doubted::kFactor},
-           {"volume", "L", 1e-3, 1e6, kNotGiven, "of the medium in the tank"},
-           {"tank_exchange", "W/K", 0.0, 1e6, 0.0, "between tank and ambient", 0.1, "coolant", Doubted::kFactor},
-           {"pump_power", "W", 0.0, 1e6, 0.0, "heat of the pump, while it runs", 0.1, "coolant", Doubted::kFactor},
-           {"cooling_power", "W", 0.0, 1e6, 0.0, "of the chiller while it is on; it obeys its thermostat alone", 0.1,
-            "coolant", Doubted::kFactor},
-           {"set_point", "degC", 230.0, 400.0, kNotGiven, "of the tank", 0.0, "coolant", Doubted::kShift, 2.0},
-           {"hysteresis", "K", 1e-3, 100.0, 1.0, "between on and off", 0.0, "coolant", Doubted::kFactor}},
+           {"passage_conductance", "W/K", 0.0, 1e7, {}, "film times area of the passage", 0.1, "coolant", Doubted::kFactor}},
       .timing = Timing::kInTime,
       .contribute = contribute,
-      .references = {{"tank",
-                      {BodyKind::kNode},
-                      "",
-                      "name of the tank's node, which comes about here; left out: held at the set point"}},
-      .choices = {{"runs", {"always", "while_spindle_turns"}, "always", "when the pump runs"}},
+      .references = {tank_reference("name of the tank's node, which comes about here; left out: held at the set point")},
+      .choices = {runs_choice()},
       .check = check,
       .doubts = doubts};
+  for (Parameter& of_tank : tank_parameters()) kind.parameters.push_back(std::move(of_tank));
+  return kind;
 }
 
 }  // namespace driftwright::effects::coolant

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "effects/effect_schema.hpp"
+#include "effects/flow_path.hpp"
 #include "effects/formula.hpp"
 
 namespace driftwright::effects {
@@ -84,8 +85,30 @@ void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
   body.reject_unknown_keys();
 }
 
+std::string names_in(const ConfigMap& in, const std::string& key) {
+  const std::vector<std::string> names = in.texts(key);
+  for (const std::string& name : names) {
+    if (name.empty() || name.find(',') != std::string::npos)
+      in.fail(key, "the name of a body in this list must not be empty or contain a comma");
+  }
+  return text_of(names);
+}
+
+std::string points_in(const ConfigMap& in, const std::string& key) {
+  std::vector<Point_mm> points;
+  for (const std::vector<double>& row : in.rows(key)) points.push_back({row[0], row[1], row[2]});
+  return text_of(points);
+}
+
 void read_mention(const ConfigMap& in, const Mention& m, Effect& effect) {
-  effect.words[m.name] = m.compulsory ? in.text(m.name) : in.text(m.name, "");
+  const bool is_list = m.of == Mention::Of::kBodies || m.of == Mention::Of::kPoints;
+  if (!is_list) {
+    effect.words[m.name] = m.compulsory ? in.text(m.name) : in.text(m.name, "");
+  } else if (!in.has(m.name)) {
+    effect.words[m.name] = "";
+  } else {
+    effect.words[m.name] = m.of == Mention::Of::kBodies ? names_in(in, m.name) : points_in(in, m.name);
+  }
   if (in.has(m.name)) effect.reference_where[m.name] = in.where(m.name);
 }
 

@@ -74,14 +74,16 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to, or a formula; `Effect::words` holds its name or text,
-/// "" if left out.
+/// Another sensor, displacement or recorded column that an effect refers to, a formula, or a list of bodies or points;
+/// `Effect::words` holds its name or text, "" if left out.
 struct Mention {
   enum class Of {
     kSensor,
     kDisplacement,
     kColumn,   ///< of the cyclogram (Cyclogram::column()), with or without its unit
     kFormula,  ///< no name: a formula, whose entry declares the names in it (formula.hpp)
+    kBodies,   ///< a list of bodies of the place's kind; words as text_of() writes it (flow_path.hpp)
+    kPoints,   ///< a list of points [mm]; likewise
   };
   std::string name;
   Of of = Of::kSensor;

@@ -89,7 +89,12 @@ Key key_of(const Table& t) {
 }
 
 Key key_of(const Mention& m) {
-  Key key = compulsory(m.name, text(), m.meaning);
+  constexpr double kFarthest_mm = 1e6;
+  const Value value = m.of == Mention::Of::kBodies ? list(text(), 1)
+                      : m.of == Mention::Of::kPoints
+                          ? rows(std::vector<Value>(3, quantity("mm", -kFarthest_mm, kFarthest_mm)))
+                          : text();
+  Key key = compulsory(m.name, value, m.meaning);
   key.is_compulsory = m.compulsory;
   return key;
 }

@@ -1,6 +1,7 @@
 // Writes effects as text: the inverse of read_effect().
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -8,6 +9,7 @@
 #include "base/lists.hpp"
 #include "base/quantity.hpp"
 #include "effects/effect.hpp"
+#include "effects/flow_path.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -31,6 +33,19 @@ std::string rows(const Table& table, const TimeSeries& series) {
                         quantity(series.value[i], table.value_unit));
   }
   return "[" + text + "]";
+}
+
+/// Of a list of bodies or points the list, else the name or text.
+std::string mentioned(const Mention& m, const std::string& text) {
+  std::vector<std::string> entries;
+  if (m.of == Mention::Of::kBodies) {
+    for (const std::string& name : names_of_text(text)) entries.push_back(word(name));
+  } else if (m.of == Mention::Of::kPoints) {
+    for (const Point_mm& p : points_of_text(text)) entries.push_back(fmt::format("[{} mm, {} mm, {} mm]", p[0], p[1], p[2]));
+  } else {
+    return word(text);
+  }
+  return fmt::format("[{}]", fmt::join(entries, ", "));
 }
 
 }  // namespace
@@ -65,7 +80,7 @@ std::string yaml_of(const Effect& e) {
     if (const auto found = e.tables.find(t.name); found != e.tables.end()) add(t.name, rows(t, found->second));
   }
   for (const Mention& m : e.kind->mentions) {
-    if (!e.words.at(m.name).empty()) add(m.name, word(e.words.at(m.name)));
+    if (!e.words.at(m.name).empty()) add(m.name, mentioned(m, e.words.at(m.name)));
   }
   if (e.from_s > 0.0) add("from", quantity(e.from_s, "s"));
   if (e.until_s < kNever_s) add("until", quantity(e.until_s, "s"));

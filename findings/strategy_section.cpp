@@ -97,7 +97,8 @@ std::string choice_text(const StrategyMatrix& m, const JudgedStrategy& chosen) {
 /// Whether a chiller of the machine switches, which `place` refuses.
 bool has_chiller(const scenarios::MachineModel& machine) {
   return std::any_of(machine.effects.begin(), machine.effects.end(), [](const effects::Effect& e) {
-    return e.kind->key == "coolant" && e.has("cooling_power") && e["cooling_power"] > 0.0;
+    const bool may_have_one = e.kind->key == "coolant" || e.kind->key == "coolant_channel";
+    return may_have_one && e["cooling_power"] > 0.0;
   });
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/lists.hpp"
+#include "effects/flow_path.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -160,6 +161,16 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     for (const auto& [key, body] : e.references) {
       const auto written = e.reference_where.find(key);
       must_exist(written == e.reference_where.end() ? e.where : written->second, body.kind, body.name);
+    }
+    for (const effects::Mention& m : e.kind->mentions) {
+      if (m.of != effects::Mention::Of::kBodies) continue;
+      for (const std::string& name : effects::names_of_text(e.words.at(m.name))) {
+        const Where& where = e.reference_where.at(m.name);
+        if (e.place_kind == effects::Place::kNode && name == effects::kAmbientName)
+          throw InputError(where, "the ambient is no lumped node; it cannot be in this list");
+        must_exist(where, e.body().kind, name);
+        if (e.place_kind == effects::Place::kSurface) require_outside(mesh, name, where);
+      }
     }
   }
   for (const effects::Effect& e : model.effects) {

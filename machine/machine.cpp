@@ -10,6 +10,7 @@
 
 #include "base/quantity.hpp"
 #include "base/shown_units.hpp"
+#include "machine/channel_sections.hpp"
 #include "machine/found_in_mesh.hpp"
 #include "machine/runnable.hpp"
 #include "machine/ways_out.hpp"
@@ -169,6 +170,7 @@ PlacedMachine place(const MachineModel& model) {
 PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
   PlacedMachine placed;
   placed.mesh = std::move(meshed);
+  add_channel_sections(model, placed.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);

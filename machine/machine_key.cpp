@@ -96,6 +96,12 @@ std::string machine_text(const MachineModel& model) {
     const std::string bytes = read_bytes(imported->path);
     text += fmt::format("mesh file of {} bytes, {}\n", bytes.size(), content_hash(bytes));
   }
+  for (const effects::Effect& e : model.effects) {
+    for (const effects::Mention& m : e.kind->mentions) {
+      if (m.of == effects::Mention::Of::kPoints && !e.words.at(m.name).empty())
+        text += fmt::format("{} cut along {}\n", e.name(), e.words.at(m.name));
+    }
+  }
   if (model.start == Start::kAmbient || model.start == Start::kSteady || !balance.fixed.empty()) {
     text += fmt::format("ambient at the start {} K\n", felt_ambient_at_start_K(model));
   }

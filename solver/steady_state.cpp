@@ -51,7 +51,7 @@ void require_thermostats_at_rest(const FullSystem& system, const HeatRate& rate,
 Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& start) {
   constexpr int kMostIterations = 200;
   HeatRate rate(system);
-  Eigen::VectorXd theta = start, heat(system.size());
+  Eigen::VectorXd theta = start, heat(system.size()), last_step;
   for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
     const int t = static_cast<int>(i);
     rate.set_thermostat(t, rate.thermostat_probe_K(t, start.data(), at.ambient_K) > system.thermostats[i].on_above_K);
@@ -80,8 +80,11 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     const double moved_K = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(moved_K)) break;
     // K does not contain the slope of laws: where it is steeper than K, whole steps would oscillate with growing amplitude.
-    if (moved_K > 0.9 * last_moved_K) share = std::max(0.5 * share, 1.0 / 64.0);
+    // Steps that shrink slowly in one direction are those of a liquid that carries heat from body to body.
+    const bool turns = iteration > 0 && step.dot(last_step) < 0.0;
+    if (moved_K > last_moved_K || (turns && moved_K > 0.9 * last_moved_K)) share = std::max(0.5 * share, 1.0 / 64.0);
     last_moved_K = moved_K;
+    last_step = step;
     try {
       advance(rate, at.ambient_K, step, share, theta, heat);
     } catch (const RangeError& e) {

@@ -7,7 +7,7 @@ namespace driftwright::solver {
 
 /// Temperatures θ at which no unknown gains heat, for constant drive and ambient. Laws, radiation and properties are
 /// evaluated at the temperatures found (Newton's method without the slope of laws over their probes; the residual is exact).
-/// Steps are halved if they would leave the range of a law, or if they do not shrink.
+/// Steps are halved if they would leave the range of a law, if they grow, or if they turn round without shrinking.
 ///
 /// @param at     drive, ambient and time; prescribed temperatures are those of that time
 /// @param start  first guess; it also sets the thermostats

@@ -66,7 +66,8 @@ Effect drawn(const EffectKind& kind, Place place, Random& random) {
     e.tables[t.name] = {{10.0, 70.5}, {t.low + 0.3 * (high - t.low), t.low + 0.7 * (high - t.low)}};
   }
   for (const Mention& m : kind.mentions) {
-    if (m.compulsory || random.chance(0.5)) e.words[m.name] = "z_2";
+    if (m.compulsory || random.chance(0.5))
+      e.words[m.name] = m.of == Mention::Of::kPoints ? "0 0 0, 100.5 -25 1e-05" : "z_2";
   }
   if (kind.timing != Timing::kAlways && random.chance(0.7)) e.in = "monday";
   if (kind.timing == Timing::kInTime && random.chance(0.7)) {

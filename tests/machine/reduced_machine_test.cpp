@@ -25,6 +25,10 @@ using ::testing::HasSubstr;
 
 constexpr solver::TransientOptions kTight{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6};
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
+constexpr const char* kChannel =
+    "{type: coolant_channel, surface: front, along: [[50 mm, 200 mm, 300 mm], [50 mm, 200 mm, 400 mm]], sections: 2, flow: "
+    "0.5 "
+    "L/min, diameter: 8 mm, length: 400 mm, set_point: 20 degC, runs: while_spindle_turns}";
 constexpr const char* kDark = "{type: radiation, surface: outside, emissivity: 0.9}";
 
 /// Scenario, its machine and its reduced machine.
@@ -137,6 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
                                                     ColumnAndHead::kContact}}},
         std::pair{"NaturalConvection",
                   ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, kUpwards, ColumnAndHead::kContact}}},
+        std::pair{"AChannel",
+                  ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, kChannel, ColumnAndHead::kContact}}},
         std::pair{"AnAmbientToStartFrom",
                   ColumnAndHead{.ambient = "[[0 min, 26 degC], [60 min, 22 degC]]", .start = "ambient"}},
         std::pair{"ASteadyStart",
