@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,7 +75,7 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to, or a formula; `Effect::words` holds its name or text,
+/// Another sensor, displacement or recorded column that an effect refers to, a formula or a file; `Effect::words` holds its name or text,
 /// "" if left out.
 struct Mention {
   enum class Of {
@@ -82,6 +83,8 @@ struct Mention {
     kDisplacement,
     kColumn,   ///< of the cyclogram (Cyclogram::column()), with or without its unit
     kFormula,  ///< no name: a formula, whose entry declares the names in it (formula.hpp)
+    kFile,     ///< a file; scenarios/reader/film_files reads it
+    kText,     ///< a name in that file
   };
   std::string name;
   Of of = Of::kSensor;
@@ -161,6 +164,8 @@ struct Effect {
   double from_s = 0.0, until_s = kNever_s;        ///< when it acts, `until` excluded; for Timing::kInTime
   std::string in = {};                            ///< the cyclogram in which it acts; "": in all
   KnownTo known_to = {};                          ///< how well its values are known, where the scenario says so
+  /// Values of its file, once scenarios/reader/film_files has read it. Shared, because effects are copied often.
+  std::shared_ptr<const SurfaceField> field = {};
   Where where = {};  ///< position in the scenario, for errors that are found only once the mesh exists
 
   /// Value by parameter name, in the parameter's unit. @throws std::logic_error  if the kind has no such parameter

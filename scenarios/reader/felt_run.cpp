@@ -164,8 +164,9 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
     }
     for (const effects::Mention& mention : e.kind->mentions) {
       const std::string& name = e.words.at(mention.name);
-      const bool is_other = mention.of == effects::Mention::Of::kColumn || mention.of == effects::Mention::Of::kFormula;
-      if (name.empty() || is_other) continue;  // not given; or a column, which require_columns() checks; or a formula
+      const bool is_instrument =
+          mention.of == effects::Mention::Of::kSensor || mention.of == effects::Mention::Of::kDisplacement;
+      if (name.empty() || !is_instrument) continue;  // not given; or a column, which require_columns() checks
       const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
       must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "displacement", name,
                      is_sensor ? sensors : by_sensitivities);
