@@ -1,6 +1,9 @@
 #include "scenarios/reader/geometry.hpp"
 
+#include <filesystem>
+
 #include "effects/former_words.hpp"
+#include "scenarios/reader/film_files.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -15,9 +18,23 @@ const schema::Map& geometry_schema() {
                schema::optional("materials", schema::map(materials_schema()), "of each region"),
                schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
                schema::optional("displacements", schema::maps(displacement_schema()),
-                                "errors of the tool against the table")},
+                                "errors of the tool against the table"),
+               schema::optional("effects", schema::anything(), "those of them that take their film from a file")},
       .others = {schema::optional("key", schema::anything(), "of the whole scenario")}};
   return description;
+}
+
+/// The effects that take their film from a file; the others may still be unfinished.
+std::vector<effects::Effect> read_films(const ConfigMap& in) {
+  std::vector<effects::Effect> films;
+  if (!in.has("effects") || !in.is_list("effects")) return films;
+  for (const ConfigNodePtr& entry : in.value("effects")->items) {
+    const ConfigNode* type = entry->is_map() ? entry->find("type") : nullptr;
+    if (type && type->is_scalar() && type->text == "film_field")
+      films.push_back(effects::read_effect(ConfigMap::of_tree(entry)));
+  }
+  read_film_files(films, std::filesystem::path(in.file()).parent_path().string());
+  return films;
 }
 
 }  // namespace
@@ -33,6 +50,7 @@ Geometry read_geometry(const std::string& path) {
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
   }
+  m.effects = read_films(in);
   return geometry;
 }
 

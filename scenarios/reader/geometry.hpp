@@ -10,11 +10,11 @@ namespace driftwright::scenarios {
 
 struct Geometry {
   std::string name;
-  MachineModel machine;  ///< mesh, and materials, sensors and displacements if present; nothing else
+  MachineModel machine;  ///< mesh, and materials, sensors, displacements and effects film_field if present; nothing else
 };
 
-/// Reads the keys `name`, `machine`, `materials`, `sensors` and `displacements` of a scenario and ignores all others,
-/// which read_scenario() reads.
+/// Reads the keys `name`, `machine`, `materials`, `sensors` and `displacements` of a scenario, and of `effects` those that
+/// take a film from a file. It ignores all others, which read_scenario() reads.
 /// @throws InputError
 [[nodiscard]] Geometry read_geometry(const std::string& path);
 
