@@ -121,14 +121,14 @@ class Mapper {
   void add(int facet, FilmMapping& mapping) {
     const std::vector<Triangle> triangles = triangles_of(mesh_, facet);
     std::vector<Piece> pieces;
-    double whole_m2 = 0.0, edge_m = 0.0;
+    double whole_m2 = 0.0;
     for (const Triangle& t : triangles) {
       whole_m2 += t.area_m2;
-      for (std::size_t i = 0; i < 3; ++i) edge_m = std::max(edge_m, (t.x[(i + 1) % 3] - t.x[i]).norm());
       field_.has_cells() ? add_cells(t, pieces) : add_points(t, pieces);
     }
     double covered_m2 = 0.0;
     for (const Piece& p : pieces) covered_m2 += p.area_m2;
+    const double side_m = std::sqrt(whole_m2 * (mesh::n_corners_of(mesh_.facets.shape[facet]) == 3 ? 2.0 : 1.0));
     double scale = 1.0;
     bool is_open = covered_m2 < (1.0 - kOpenShare) * whole_m2;
     if (pieces.empty() && field_.has_cells()) {
@@ -136,7 +136,7 @@ class Mapper {
         for (const Triangle& t : triangles) pieces.push_back({&t, {t.x.begin(), t.x.end()}, near, t.area_m2});
         is_open = false;
       }
-    } else if (field_.has_cells() && (whole_m2 - covered_m2) / edge_m <= reach_m_) {
+    } else if (field_.has_cells() && (whole_m2 - covered_m2) / side_m <= reach_m_) {
       scale = whole_m2 / covered_m2;
       is_open = false;
     } else if (!is_open && covered_m2 > 0.0) {
@@ -260,7 +260,8 @@ class Mapper {
       others.clear();
       for (const int other : candidates) {
         const double distance = (field_.point_m.col(other) - p).norm();
-        if (other != v) others.emplace_back(distance, other);
+        // Farther ones are nearer to no place within the octagon, whose corners are 1.09 times the reach away.
+        if (other != v && distance <= 2.2 * reach_m_) others.emplace_back(distance, other);
       }
       std::sort(others.begin(), others.end());
       for (const auto& [distance, other] : others) {

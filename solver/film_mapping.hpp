@@ -37,7 +37,8 @@ struct FilmMapping {
 /// Cells: a piece is the intersection of the face with a cell, projected along the face's normal. Where both lie in one
 /// plane, ∫ h dA = Σ_c h_c A_c, exactly, cell by cell. Cells that make an angle of more than 60° with the face, or whose middle
 /// is further than `reach` from its plane, do not count. A part of a face at the edge of the file that is no wider than
-/// `reach` is covered by the face's other pieces, which count for the whole face; a face without any piece takes the nearest
+/// `reach` (its area over the side of a square or half a square as large as the face) is covered by the face's other pieces, which
+/// count for the whole face; a face without any piece takes the nearest
 /// cell within `reach`. Where cells overlap, the mean counts.
 ///
 /// Points: a piece is the part of the face that is nearer to a point than to any other and within `reach` of it (in the plane

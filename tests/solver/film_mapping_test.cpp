@@ -145,7 +145,8 @@ TEST(FilmMapping, PointsCountUpToTheirReach) {
   // The last points are at x = 0.115 m; they count 20 mm further, in the octagons about them at least that.
   const FilmMapping mapping = map_film(m, m.surface("z1"), field);
   EXPECT_NEAR(mapping.reach_m, 0.02, 1e-12);
-  EXPECT_NEAR(mapping.uncovered_m2, 0.065 * 0.1, 1e-4 * 0.1);
+  EXPECT_LE(mapping.uncovered_m2, 0.065 * 0.1 + 1e-12);
+  EXPECT_GE(mapping.uncovered_m2, (0.085 - 0.02 / std::cos(M_PI / 8)) * 0.1 - 1e-12);  // to the octagons' corners
   const FilmMapping far = map_film(m, m.surface("z1"), field, 0.2);
   EXPECT_NEAR(far.uncovered_m2, 0.0, 1e-15);
 }
