@@ -62,34 +62,6 @@ Largest largest_of(const effects::Law& law, const effects::Effect& effect, const
   return largest;
 }
 
-void add_effects(const Scenario& scenario, std::vector<std::string>& found) {
-  const std::vector<NamedDrive> drives = drives_of(scenario);
-  for (const effects::Effect& effect : scenario.machine->effects) {
-    if (!effect.kind->contribute) continue;
-    effects::HeatBalance balance;
-    effect.kind->contribute(effect, balance);
-    add_film_of_file(effect, drives, scenario, found);
-    const auto judge = [&](const std::string& name, const effects::Law& law, Usual kind) {
-      const Largest largest = largest_of(law, effect, drives, *scenario.machine);
-      const std::string when = fmt::format(" at {:g} rpm in cyclogram '{}'", largest.speed_rpm, largest.cyclogram);
-      if (const auto what = beyond_usual(kind, largest.value, when))
-        found.push_back(at_line(effect.where, fmt::format("{}: the {} is {}", name, usual_range(kind).what, *what)));
-    };
-    for (const effects::HeatInput& heat : balance.heats) judge(heat.name, heat.power_W, Usual::kHeat);
-    for (const effects::Exchange& e : balance.exchanges) {
-      if (!e.part.is_even()) continue;  // a number without a unit: add_film_of_file()
-      const Usual kind = e.per == effects::Per::kTotal              ? Usual::kLink
-                         : e.body.kind == effects::BodyKind::kJoint ? Usual::kContact
-                                                                    : Usual::kFilm;
-      judge(e.name, e.coefficient, kind);
-    }
-    for (const effects::LumpedNode& node : balance.nodes) {
-      if (const auto what = beyond_usual(Usual::kCapacity, node.capacity_J_K))
-        found.push_back(at_line(effect.where, fmt::format("heat capacity of {} is {}", node.name, *what)));
-    }
-  }
-}
-
 /// Films of a file: the largest value, and speeds or times beyond those of the file.
 void add_film_of_file(const effects::Effect& effect, const std::vector<NamedDrive>& drives, const Scenario& scenario,
                       std::vector<std::string>& found) {
@@ -119,6 +91,34 @@ void add_film_of_file(const effects::Effect& effect, const std::vector<NamedDriv
                                                         "min, and beyond the ends that of the end counts",
                                                         effect.name(), at.front() / 60.0, at.back() / 60.0, c.name,
                                                         c.duration_s() / 60.0)));
+    }
+  }
+}
+
+void add_effects(const Scenario& scenario, std::vector<std::string>& found) {
+  const std::vector<NamedDrive> drives = drives_of(scenario);
+  for (const effects::Effect& effect : scenario.machine->effects) {
+    if (!effect.kind->contribute) continue;
+    effects::HeatBalance balance;
+    effect.kind->contribute(effect, balance);
+    add_film_of_file(effect, drives, scenario, found);
+    const auto judge = [&](const std::string& name, const effects::Law& law, Usual kind) {
+      const Largest largest = largest_of(law, effect, drives, *scenario.machine);
+      const std::string when = fmt::format(" at {:g} rpm in cyclogram '{}'", largest.speed_rpm, largest.cyclogram);
+      if (const auto what = beyond_usual(kind, largest.value, when))
+        found.push_back(at_line(effect.where, fmt::format("{}: the {} is {}", name, usual_range(kind).what, *what)));
+    };
+    for (const effects::HeatInput& heat : balance.heats) judge(heat.name, heat.power_W, Usual::kHeat);
+    for (const effects::Exchange& e : balance.exchanges) {
+      if (!e.part.is_even()) continue;  // a number without a unit: add_film_of_file()
+      const Usual kind = e.per == effects::Per::kTotal              ? Usual::kLink
+                         : e.body.kind == effects::BodyKind::kJoint ? Usual::kContact
+                                                                    : Usual::kFilm;
+      judge(e.name, e.coefficient, kind);
+    }
+    for (const effects::LumpedNode& node : balance.nodes) {
+      if (const auto what = beyond_usual(Usual::kCapacity, node.capacity_J_K))
+        found.push_back(at_line(effect.where, fmt::format("heat capacity of {} is {}", node.name, *what)));
     }
   }
 }
