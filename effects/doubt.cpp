@@ -66,9 +66,8 @@ bool have_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
 }
 
 bool has_even_film(const HeatBalance& balance, const std::string& on) {
-  return std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const Exchange& e) {
-    return e.body == surface(on) && e.per == Per::kArea && e.part.is_even();
-  });
+  return std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
+                     [&](const Exchange& e) { return e.body == surface(on) && e.per == Per::kArea && e.part.is_even(); });
 }
 
 bool has_film(const HeatBalance& balance, const std::string& on) {

@@ -118,15 +118,16 @@ EffectKind kind() {
       .tables = {{"over_speed", "rpm", "W/(m^2 K)", 0.0, 1e9, false,
                   "mean film at each speed, as the program writes it into a model's file; a scenario needs none"},
                  {"over_time", "s", "W/(m^2 K)", 0.0, 1e9, false, "or: at each time"}},
-      .mentions = {{"file", Mention::Of::kFile, true,
-                    "CSV, .vtu, .vtp, .vtk or OpenFOAM's raw file, relative to the scenario; with <rpm>, <s> or <min> in its "
-                    "name all files of that pattern, one an operating point or time"},
-                   {"film_column", Mention::Of::kText, false,
-                    "column or array of the film coefficient in W/(m^2 K); left out: h_W_m2K of a CSV, the only value of a "
-                    "raw file"},
-                   {"air_column", Mention::Of::kText, false,
-                    "column or array of the air temperature, in degC if its name ends with _degC, else in K; left out: "
-                    "T_air_degC or T_air_K of a CSV, if there is one"}},
+      .mentions =
+          {{"file", Mention::Of::kFile, true,
+            "CSV, .vtu, .vtp, .vtk or OpenFOAM's raw file, relative to the scenario; with <rpm>, <s> or <min> in its "
+            "name all files of that pattern, one an operating point or time"},
+           {"film_column", Mention::Of::kText, false,
+            "column or array of the film coefficient in W/(m^2 K); left out: h_W_m2K of a CSV, the only value of a "
+            "raw file"},
+           {"air_column", Mention::Of::kText, false,
+            "column or array of the air temperature, in degC if its name ends with _degC, else in K; left out: "
+            "T_air_degC or T_air_K of a CSV, if there is one"}},
       .exchange_finding = "convection"};
 }
 

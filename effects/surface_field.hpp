@@ -16,20 +16,20 @@ enum class FieldOver { kNothing, kSpeed, kTime };
 /// The states of a field as numbers: all that its laws use, without the file.
 struct FieldStates {
   FieldOver over = FieldOver::kNothing;
-  std::vector<double> at = {0.0};                ///< rising: speeds [rpm] or times [s]; a single 0 for one state
-  std::vector<double> mean_film_W_m2K = {1.0};   ///< of each state
+  std::vector<double> at = {0.0};                           ///< rising: speeds [rpm] or times [s]; a single 0 for one state
+  std::vector<double> mean_film_W_m2K = {1.0};              ///< of each state
   double air_K = std::numeric_limits<double>::quiet_NaN();  ///< mean air temperature; NaN: the file has none
 };
 
 /// The values of a file. They never change once they are read.
 struct SurfaceField {
-  Eigen::Matrix3Xd point_m;         ///< one column per value: the point, or the middle of the cell
-  std::vector<int> corner_from;     ///< corners of cell c: columns corner_from[c] to corner_from[c + 1] - 1; empty: points
-  Eigen::Matrix3Xd corner_m;        ///< corners of plane convex polygons, in order
-  Eigen::MatrixXd film_W_m2K;       ///< values x states, >= 0
-  Eigen::MatrixXd air_K;            ///< values x states, absolute; empty without air temperatures
+  Eigen::Matrix3Xd point_m;      ///< one column per value: the point, or the middle of the cell
+  std::vector<int> corner_from;  ///< corners of cell c: columns corner_from[c] to corner_from[c + 1] - 1; empty: points
+  Eigen::Matrix3Xd corner_m;     ///< corners of plane convex polygons, in order
+  Eigen::MatrixXd film_W_m2K;    ///< values x states, >= 0
+  Eigen::MatrixXd air_K;         ///< values x states, absolute; empty without air temperatures
   FieldStates states;
-  std::string hash;                 ///< of the files
+  std::string hash;  ///< of the files
 
   [[nodiscard]] int n_values() const { return static_cast<int>(point_m.cols()); }
   [[nodiscard]] bool has_cells() const { return !corner_from.empty(); }
@@ -54,8 +54,9 @@ struct FieldPart {
   static constexpr int kNone = -1, kUncovered = -2;
   std::shared_ptr<const SurfaceField> field = {};  ///< shared, because effects are copied often; null: no mesh is needed
   std::string id = {};                             ///< of the pattern; "": an even film
-  int from = kNone, to = 0;  ///< states: the pattern is `to`, or `to` minus `from`; kUncovered: 1 where the file has no value
-  double reach_m = 0.0;      ///< see film_mapping; NaN: the default
+  int from = kNone,
+      to = 0;            ///< states: the pattern is `to`, or `to` minus `from`; kUncovered: 1 where the file has no value
+  double reach_m = 0.0;  ///< see film_mapping; NaN: the default
   double even_air_K = std::numeric_limits<double>::quiet_NaN();  ///< air temperature of all values if the file has none
 
   [[nodiscard]] bool is_even() const { return id.empty(); }

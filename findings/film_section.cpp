@@ -23,8 +23,9 @@ std::string state_words(const scenarios::MappedFilm& film, const scenarios::Mapp
 Table films_table(std::span<const scenarios::MappedFilm> films) {
   Table table{.key = "films",
               .title = "Films of files on the mesh",
-              .caption = "The integral of the film coefficient over the cells of the file, and over the faces of the machine; "
-                         "points of a CSV or raw file have no areas of their own.",
+              .caption =
+                  "The integral of the film coefficient over the cells of the file, and over the faces of the machine; "
+                  "points of a CSV or raw file have no areas of their own.",
               .columns = {{.key = "film", .title = "film"},
                           {.key = "speed_rpm", .title = "at", .unit = "rpm", .digits = output::decimals(0)},
                           {.key = "time_min", .title = "at", .unit = "min"},
@@ -37,11 +38,11 @@ Table films_table(std::span<const scenarios::MappedFilm> films) {
   for (const scenarios::MappedFilm& film : films) {
     const double covered_m2 = film.area_m2 - film.uncovered_m2;
     for (const scenarios::MappedState& state : film.states) {
-      table.rows.push_back(
-          {film.name, film.over == effects::FieldOver::kSpeed ? Datum(state.at) : Datum(),
-           film.over == effects::FieldOver::kTime ? Datum(state.at / 60.0) : Datum(), film.n_values, covered_m2 / film.area_m2,
-           1e4 * film.uncovered_m2, covered_m2 > 0.0 ? Datum(state.mapped_W_K / covered_m2) : Datum(),
-           std::isnan(state.in_file_W_K) ? Datum() : Datum(state.in_file_W_K), state.mapped_W_K});
+      table.rows.push_back({film.name, film.over == effects::FieldOver::kSpeed ? Datum(state.at) : Datum(),
+                            film.over == effects::FieldOver::kTime ? Datum(state.at / 60.0) : Datum(), film.n_values,
+                            covered_m2 / film.area_m2, 1e4 * film.uncovered_m2,
+                            covered_m2 > 0.0 ? Datum(state.mapped_W_K / covered_m2) : Datum(),
+                            std::isnan(state.in_file_W_K) ? Datum() : Datum(state.in_file_W_K), state.mapped_W_K});
     }
   }
   return table;
@@ -53,15 +54,14 @@ void add_films(output::Section& section, std::span<const scenarios::MappedFilm> 
   if (films.empty()) return;
   add(section, films_table(films));
   for (const scenarios::MappedFilm& film : films) {
-    const auto largest =
-        std::max_element(film.states.begin(), film.states.end(),
-                         [](const auto& a, const auto& b) { return a.mapped_W_K < b.mapped_W_K; });
+    const auto largest = std::max_element(film.states.begin(), film.states.end(),
+                                          [](const auto& a, const auto& b) { return a.mapped_W_K < b.mapped_W_K; });
     if (!(film.uncovered_m2 < film.area_m2)) continue;  // no node has a value
     const std::string title = film.name + state_words(film, *largest);
-    add(section, output::Picture{.title = title,
-                                 .svg = output::draw_machine({.mesh = &mesh,
-                                                              .field = output::PictureField{"film [W/(m² K)]",
-                                                                                            largest->node_film_W_m2K}})});
+    add(section,
+        output::Picture{.title = title,
+                        .svg = output::draw_machine(
+                            {.mesh = &mesh, .field = output::PictureField{"film [W/(m² K)]", largest->node_film_W_m2K}})});
   }
 }
 

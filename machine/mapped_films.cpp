@@ -21,10 +21,12 @@ void require_covered(const effects::Effect& e, const solver::FilmMapping& mappin
   if (e.has("elsewhere") || !(share > kNoticedShare)) return;
   const Eigen::Vector3d x_mm = 1e3 * mapping.uncovered_at_m;
   throw InputError(
-      e.where, fmt::format("the file does not cover {:.3g} cm2 ({:.2g} %) of surface '{}', such as the face at [{:.1f} mm, {:.1f} mm, "
-                           "{:.1f} mm]; values count up to {:.3g} mm from their point or cell. Give these faces a film with "
-                           "`elsewhere: ... W/(m^2 K)`, let values count further with `reach`, or check `units`",
-                           1e4 * mapping.uncovered_m2, 100.0 * share, e.place, x_mm[0], x_mm[1], x_mm[2], 1e3 * mapping.reach_m));
+      e.where,
+      fmt::format(
+          "the file does not cover {:.3g} cm2 ({:.2g} %) of surface '{}', such as the face at [{:.1f} mm, {:.1f} mm, "
+          "{:.1f} mm]; values count up to {:.3g} mm from their point or cell. Give these faces a film with "
+          "`elsewhere: ... W/(m^2 K)`, let values count further with `reach`, or check `units`",
+          1e4 * mapping.uncovered_m2, 100.0 * share, e.place, x_mm[0], x_mm[1], x_mm[2], 1e3 * mapping.reach_m));
 }
 
 MappedState state_of(const effects::Effect& e, const mesh::Mesh& mesh, const solver::FilmMapping& mapping, int state) {

@@ -12,9 +12,9 @@ namespace driftwright::scenarios {
 
 /// One state of a film on the mesh. Vectors have NaN where the file has no value.
 struct MappedState {
-  double at = 0.0;           ///< [rpm] or [s]
-  double in_file_W_K = 0.0;  ///< ∫ h dA over the cells of the file; NaN: it has points
-  double mapped_W_K = 0.0;   ///< over the surface
+  double at = 0.0;                                    ///< [rpm] or [s]
+  double in_file_W_K = 0.0;                           ///< ∫ h dA over the cells of the file; NaN: it has points
+  double mapped_W_K = 0.0;                            ///< over the surface
   std::vector<double> facet_film_W_m2K, facet_air_K;  ///< means of each facet of the mesh; air empty without it
   Eigen::VectorXd node_film_W_m2K;                    ///< ∫ h |N_i| dA / ∫ |N_i| dA of each node, for pictures
 };

@@ -114,7 +114,8 @@ SurfaceValues read_surface_values(const std::string& path) {
   }
   for (int a = 0; a < data->GetPointData()->GetNumberOfArrays(); ++a) {
     vtkDataArray* array = data->GetPointData()->GetArray(a);
-    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != n_points) continue;
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != n_points)
+      continue;
     std::vector<double>& of_faces = values.arrays[array->GetName()];
     for (const auto& of_face : corners) {
       double sum = 0.0;

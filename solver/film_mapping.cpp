@@ -17,10 +17,10 @@ namespace {
 using effects::SurfaceField;
 using Eigen::Vector3d;
 
-constexpr double kLeastCosine = 0.5;    // of the angle between a face and a cell that may lie on it: 60 degrees
-constexpr int kSidesOfReach = 8;        // of the polygon about the circle of the reach
-constexpr double kLeastPiece = 1e-12;   // of a face: a smaller piece is rounding
-constexpr double kOpenShare = 1e-9;     // of a face: a larger part without a piece is not rounding
+constexpr double kLeastCosine = 0.5;   // of the angle between a face and a cell that may lie on it: 60 degrees
+constexpr int kSidesOfReach = 8;       // of the polygon about the circle of the reach
+constexpr double kLeastPiece = 1e-12;  // of a face: a smaller piece is rounding
+constexpr double kOpenShare = 1e-9;    // of a face: a larger part without a piece is not rounding
 
 /// A plane convex polygon in space.
 using Polygon = std::vector<Vector3d>;

@@ -12,9 +12,9 @@ namespace driftwright::solver {
 /// A quadrature point of a face that belongs to one value of the file.
 struct FilmPoint {
   int facet = -1;
-  int value = -1;           ///< column of SurfaceField::point_m; -1: the file does not cover it
+  int value = -1;                                ///< column of SurfaceField::point_m; -1: the file does not cover it
   Eigen::Vector3d xi = Eigen::Vector3d::Zero();  ///< reference coordinates in the facet
-  double area_m2 = 0.0;     ///< weight; negative where a covered part is taken out of a whole face that is not covered
+  double area_m2 = 0.0;  ///< weight; negative where a covered part is taken out of a whole face that is not covered
 };
 
 /// All faces of a surface, cut into the parts that belong to the values of a file.
@@ -23,7 +23,8 @@ struct FilmMapping {
   double reach_m = 0.0;           ///< that was used
   double area_m2 = 0.0;           ///< of the surface
   double uncovered_m2 = 0.0;      ///< part of it that the file does not cover
-  Eigen::Vector3d uncovered_at_m = Eigen::Vector3d::Zero();  ///< middle of the largest face that is not covered at all or in part
+  Eigen::Vector3d uncovered_at_m =
+      Eigen::Vector3d::Zero();  ///< middle of the largest face that is not covered at all or in part
 
   /// ∫ h dA over the covered part, of a pattern [W/K].
   [[nodiscard]] double film_W_K(const effects::FieldPart& part) const;

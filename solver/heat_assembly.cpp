@@ -209,8 +209,7 @@ Exchange<SparseRow> of_pattern(const Mesh& mesh, const Places& places, const Fil
       const int row = nodes[static_cast<std::size_t>(i)];
       e.flow[row] += once[i];
       offset[row] += excess[i];
-      for (Eigen::Index j = 0; j < n_nodes; ++j)
-        entries.emplace_back(row, nodes[static_cast<std::size_t>(j)], square(i, j));
+      for (Eigen::Index j = 0; j < n_nodes; ++j) entries.emplace_back(row, nodes[static_cast<std::size_t>(j)], square(i, j));
       if (unknown < 0) continue;
       entries.emplace_back(row, unknown, -once[i]);
       entries.emplace_back(unknown, row, -once[i]);
@@ -330,8 +329,8 @@ std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& 
       const std::tuple key(e.body.name, e.part.field.get(), std::isnan(e.part.reach_m) ? 0.0 : e.part.reach_m);
       if (!mapped.contains(key))
         mapped.emplace(key, map_film(mesh, places.surface(e.body.name), *e.part.field, e.part.reach_m));
-      exchanges.push_back(of_pattern(mesh, places, mapped.at(key), e, binder.bind(e.coefficient), balance.stratifications,
-                                     reference_K));
+      exchanges.push_back(
+          of_pattern(mesh, places, mapped.at(key), e, binder.bind(e.coefficient), balance.stratifications, reference_K));
     } else if (e.body.kind == BodyKind::kJoint) {
       const mesh::Joint* joint = mesh.joint(e.body.name);
       must_exist(joint ? 0 : -1, e.body.name);

@@ -78,9 +78,9 @@ struct Exchange {
   /// Of an exchange with a medium: G 1; o is this times the medium's temperature, or of a pattern ∫ N_i h (T_air - T_ref) dA.
   /// Else empty.
   Eigen::VectorXd medium = {};
-  double medium_sum = 0.0;      ///< 1'G 1
-  bool prescribes = false;      ///< it replaces a prescribed temperature (hold_by_exchanges())
-  int slope_of = -1;            ///< index of the source whose power over temperature it contains (linearise()); -1: none
+  double medium_sum = 0.0;  ///< 1'G 1
+  bool prescribes = false;  ///< it replaces a prescribed temperature (hold_by_exchanges())
+  int slope_of = -1;        ///< index of the source whose power over temperature it contains (linearise()); -1: none
 
   [[nodiscard]] bool reaches_ambient() const { return ambient_sum != 0.0; }
   /// True for an exchange with the ambient or with a medium of fixed temperature.

@@ -88,7 +88,8 @@ std::vector<FilmFile> files_of(const Effect& e, const std::string& folder, Field
   }
   std::sort(files.begin(), files.end(), [](const FilmFile& a, const FilmFile& b) { return a.at < b.at; });
   if (files.empty())
-    fail_at_file(e, fmt::format("no file matches '{}'; {} must be a number in the name", clean_name(path.string()), holder->text));
+    fail_at_file(
+        e, fmt::format("no file matches '{}'; {} must be a number in the name", clean_name(path.string()), holder->text));
   for (std::size_t i = 1; i < files.size(); ++i) {
     if (files[i].at == files[i - 1].at)
       fail_at_file(e, fmt::format("'{}' and '{}' give the same {}", clean_name(files[i - 1].path), clean_name(files[i].path),
@@ -114,8 +115,8 @@ struct FilmTable {
     return {.file = path, .line = line, .column = 1, .key = key, .excerpt = lines[static_cast<std::size_t>(line) - 1]};
   }
   [[noreturn]] void lacks(const std::string& name, const std::string& advice) const {
-    throw InputError(where(header_line, name), fmt::format("there is no column {}; the columns are {}. {}", name,
-                                                           fmt::join(names, ", "), advice));
+    throw InputError(where(header_line, name),
+                     fmt::format("there is no column {}; the columns are {}. {}", name, fmt::join(names, ", "), advice));
   }
 };
 
@@ -162,12 +163,9 @@ FilmTable read_film_table(const std::string& path, bool is_raw) {
         try {
           row.push_back(parse_number(cells[c].text, has_comma ? ',' : '.'));
         } catch (const RangeError& error) {
-          throw InputError(Where{.file = table.path,
-                                 .line = number,
-                                 .column = cells[c].column,
-                                 .key = table.names[c],
-                                 .excerpt = line},
-                           error.what());
+          throw InputError(
+              Where{.file = table.path, .line = number, .column = cells[c].column, .key = table.names[c], .excerpt = line},
+              error.what());
         }
       }
       table.rows.push_back(std::move(row));
@@ -283,14 +281,15 @@ SurfaceField read_points(const Effect& e, const std::vector<FilmFile>& files, bo
   Eigen::Index s = 0;
   for (const auto& [at, state] : states) {
     field.states.at.push_back(states.size() > 1 ? at : 0.0);
-    const bool is_same = state.has_air == first.has_air &&
-                         std::equal(state.film_and_air.begin(), state.film_and_air.end(), first.film_and_air.begin(),
-                                    first.film_and_air.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+    const bool is_same =
+        state.has_air == first.has_air &&
+        std::equal(state.film_and_air.begin(), state.film_and_air.end(), first.film_and_air.begin(),
+                   first.film_and_air.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
     if (!is_same)
-      fail_at_file(e, fmt::format("the {} points at {:g} {} are not those at {:g} ({}); give all speeds or times on the same "
-                                  "points, with the same columns",
-                                  state.film_and_air.size(), at, over == FieldOver::kSpeed ? "rpm" : "s",
-                                  states.begin()->first, n));
+      fail_at_file(
+          e, fmt::format("the {} points at {:g} {} are not those at {:g} ({}); give all speeds or times on the same "
+                         "points, with the same columns",
+                         state.film_and_air.size(), at, over == FieldOver::kSpeed ? "rpm" : "s", states.begin()->first, n));
     Eigen::Index v = 0;
     for (const auto& [x_m, values] : state.film_and_air) {
       field.point_m.col(v) = Eigen::Vector3d(x_m[0], x_m[1], x_m[2]);
@@ -353,9 +352,10 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
       const bool is_same = values.corner_from == field.corner_from &&
                            (corner_m - field.corner_m).cwiseAbs().maxCoeff() <= 1e-5 * size_m;  // files in single precision
       if (!is_same || (air != nullptr) != (field.air_K.size() > 0))
-        fail_at_file(e, fmt::format("the faces or arrays of '{}' are not those of '{}'; give all speeds or times on the same "
-                                    "faces, with the same arrays",
-                                    clean_name(files[s].path), clean_name(files[0].path)));
+        fail_at_file(e,
+                     fmt::format("the faces or arrays of '{}' are not those of '{}'; give all speeds or times on the same "
+                                 "faces, with the same arrays",
+                                 clean_name(files[s].path), clean_name(files[0].path)));
     }
     for (Eigen::Index c = 0; c < n; ++c) {
       const auto where = [&](const std::string& name) {
@@ -373,9 +373,8 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
 
 void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
   for (Effect& e : effects) {
-    const bool has_file = std::any_of(e.kind->mentions.begin(), e.kind->mentions.end(), [](const effects::Mention& m) {
-      return m.of == effects::Mention::Of::kFile;
-    });
+    const bool has_file = std::any_of(e.kind->mentions.begin(), e.kind->mentions.end(),
+                                      [](const effects::Mention& m) { return m.of == effects::Mention::Of::kFile; });
     if (!has_file) continue;
     FieldOver over = FieldOver::kNothing;
     const std::vector<FilmFile> files = files_of(e, folder, over);

@@ -68,7 +68,8 @@ void add_film_of_file(const effects::Effect& effect, const std::vector<NamedDriv
   if (!effect.field) return;
   const double largest_W_m2K = effect["factor"] * effect.field->film_W_m2K.maxCoeff();
   if (const auto what = beyond_usual(Usual::kFilm, largest_W_m2K, " in its file"))
-    found.push_back(at_line(effect.where, fmt::format("{}: the {} is {}", effect.name(), usual_range(Usual::kFilm).what, *what)));
+    found.push_back(
+        at_line(effect.where, fmt::format("{}: the {} is {}", effect.name(), usual_range(Usual::kFilm).what, *what)));
   const std::vector<double>& at = effect.field->states.at;
   if (effect.field->states.over == effects::FieldOver::kSpeed) {
     const NamedDrive* farthest = nullptr;
@@ -79,18 +80,18 @@ void add_film_of_file(const effects::Effect& effect, const std::vector<NamedDriv
       if (beyond > beyond_rpm) beyond_rpm = beyond, farthest = &d;
     }
     if (farthest)
-      found.push_back(at_line(effect.where, fmt::format("{}: the file has films from {:g} to {:g} rpm; at {:g} rpm in cyclogram "
-                                                        "'{}' that at {:g} rpm counts",
-                                                        effect.name(), at.front(), at.back(), farthest->drive.speed_rpm,
-                                                        farthest->cyclogram,
-                                                        farthest->drive.speed_rpm < at.front() ? at.front() : at.back())));
+      found.push_back(at_line(
+          effect.where, fmt::format("{}: the file has films from {:g} to {:g} rpm; at {:g} rpm in cyclogram "
+                                    "'{}' that at {:g} rpm counts",
+                                    effect.name(), at.front(), at.back(), farthest->drive.speed_rpm, farthest->cyclogram,
+                                    farthest->drive.speed_rpm < at.front() ? at.front() : at.back())));
   } else if (effect.field->states.over == effects::FieldOver::kTime) {
     for (const Cyclogram& c : scenario.cyclograms) {
       if (!effect.acts_in(c.name) || (c.duration_s() <= at.back() && at.front() <= 0.0)) continue;
-      found.push_back(at_line(effect.where, fmt::format("{}: the file has films from {:g} to {:g} min; cyclogram '{}' lasts {:g} "
-                                                        "min, and beyond the ends that of the end counts",
-                                                        effect.name(), at.front() / 60.0, at.back() / 60.0, c.name,
-                                                        c.duration_s() / 60.0)));
+      found.push_back(at_line(
+          effect.where, fmt::format("{}: the file has films from {:g} to {:g} min; cyclogram '{}' lasts {:g} "
+                                    "min, and beyond the ends that of the end counts",
+                                    effect.name(), at.front() / 60.0, at.back() / 60.0, c.name, c.duration_s() / 60.0)));
     }
   }
 }

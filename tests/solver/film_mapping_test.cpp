@@ -71,8 +71,10 @@ TEST_P(OnEveryShape, AConstantFilmIsThatOfConvection) {
   even.exchanges.push_back(fixtures::film("z1", 12.5));
   even.exchanges.back().coefficient = fixtures::constant(1.0);
   uneven_balance.exchanges.push_back(film_of(pattern(cells_on_top(7, 5, [](const auto&) { return 12.5; }))));
-  const FullSystem a = assemble_heat(m, {fixtures::steel()}, even), b = assemble_heat(m, {fixtures::steel()}, uneven_balance);
-  const Eigen::MatrixXd expected = 12.5 * Eigen::MatrixXd(a.exchanges[0].matrix), found = Eigen::MatrixXd(b.exchanges[0].matrix);
+  const FullSystem a = assemble_heat(m, {fixtures::steel()}, even),
+                   b = assemble_heat(m, {fixtures::steel()}, uneven_balance);
+  const Eigen::MatrixXd expected = 12.5 * Eigen::MatrixXd(a.exchanges[0].matrix),
+                        found = Eigen::MatrixXd(b.exchanges[0].matrix);
   const double scale = expected.cwiseAbs().maxCoeff();
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-12 * scale);
   EXPECT_LT((b.exchanges[0].to_ambient - 12.5 * a.exchanges[0].to_ambient).cwiseAbs().maxCoeff(), 1e-12);
@@ -153,7 +155,8 @@ TEST(FilmMapping, PointsCountUpToTheirReach) {
 
 TEST(FilmMapping, AStripNarrowerThanACellIsCovered) {
   const mesh::Mesh m = box(mesh::CellShape::kTet10);
-  SurfaceField field = cells_on_top(20, 10, [](const auto&) { return 30.0; }, 0.004, 0.196);
+  SurfaceField field = cells_on_top(
+      20, 10, [](const auto&) { return 30.0; }, 0.004, 0.196);
   const FilmMapping mapping = map_film(m, m.surface("z1"), field);
   EXPECT_NEAR(mapping.uncovered_m2, 0.0, 1e-15);
   EXPECT_NEAR(mapping.film_W_K(pattern(field)), 30.0 * 0.02, 1e-13);  // the strips have the film of their faces
