@@ -75,8 +75,8 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to, a formula or a file; `Effect::words` holds its name or text,
-/// "" if left out.
+/// Another sensor, displacement or recorded column that an effect refers to, a formula or a file; `Effect::words` holds its
+/// name or text, "" if left out.
 struct Mention {
   enum class Of {
     kSensor,

@@ -8,7 +8,8 @@
 
 namespace driftwright::findings {
 
-/// Nothing for a machine without such films. The picture shows the state with the largest film, grey where the file has none.
+/// Nothing for a machine without such films. The picture shows the state with the largest film, grey where the file has
+/// none.
 void add_films(output::Section& section, std::span<const scenarios::MappedFilm> films, const mesh::Mesh& mesh);
 
 }  // namespace driftwright::findings

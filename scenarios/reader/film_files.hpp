@@ -11,9 +11,9 @@ namespace driftwright::scenarios {
 
 /// Reads the file of each effect that names one and gives it to the effect (Effect::field).
 /// @param folder  of the scenario file; relative paths start there
-/// @throws InputError  for a file that is missing or damaged, with line and column of a text file: a column that is missing, a
-///                     cell that is no number, a negative film, an air temperature outside of 150 to 1000 K (another unit),
-///                     states on different points
+/// @throws InputError  for a file that is missing or damaged, with line and column of a text file: a column that is
+///                     missing, a cell that is no number, a negative film, an air temperature outside of 150 to 1000 K
+///                     (another unit), states on different points
 void read_film_files(std::vector<effects::Effect>& effects, const std::string& folder);
 
 }  // namespace driftwright::scenarios
