@@ -49,9 +49,8 @@ constexpr Placeholder kPlaceholders[] = {
 }
 
 /// The files that a name stands for, by rising operating point or time; `over` is what its placeholder says.
-std::vector<FilmFile> files_of(const Effect& e, const std::string& folder, FieldOver& over) {
-  const fs::path written = e.words.at("file");
-  const fs::path path = written.is_absolute() || folder.empty() ? written : fs::path(folder) / written;
+std::vector<FilmFile> files_of(const Effect& e, FieldOver& over) {
+  const fs::path path = e.words.at("file");
   const Placeholder* holder = nullptr;
   fs::path before, after;
   std::string piece;
@@ -376,8 +375,11 @@ void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
     const bool has_file = std::any_of(e.kind->mentions.begin(), e.kind->mentions.end(),
                                       [](const effects::Mention& m) { return m.of == effects::Mention::Of::kFile; });
     if (!has_file) continue;
+    // As give_absolute_paths() writes it, so that a scenario in another folder has the same effect.
+    std::string& name = e.words.at("file");
+    name = (fs::absolute(folder) / name).lexically_normal().string();
     FieldOver over = FieldOver::kNothing;
-    const std::vector<FilmFile> files = files_of(e, folder, over);
+    const std::vector<FilmFile> files = files_of(e, over);
     const std::string extension = fs::path(files.front().path).extension().string();
     SurfaceField field;
     if (extension == ".csv") {

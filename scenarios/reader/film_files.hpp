@@ -9,7 +9,7 @@
 
 namespace driftwright::scenarios {
 
-/// Reads the file of each effect that names one and gives it to the effect (Effect::field).
+/// Reads the file of each effect that names one, gives it to the effect (Effect::field) and makes its path absolute.
 /// @param folder  of the scenario file; relative paths start there
 /// @throws InputError  for a file that is missing or damaged, with line and column of a text file: a column that is
 ///                     missing, a cell that is no number, a negative film, an air temperature outside of 150 to 1000 K
