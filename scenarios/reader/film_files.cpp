@@ -377,7 +377,7 @@ void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
     if (!has_file) continue;
     // As give_absolute_paths() writes it, so that a scenario in another folder has the same effect.
     std::string& name = e.words.at("file");
-    name = (fs::absolute(folder) / name).lexically_normal().string();
+    name = fs::absolute(fs::path(folder) / name).lexically_normal().string();
     FieldOver over = FieldOver::kNothing;
     const std::vector<FilmFile> files = files_of(e, over);
     const std::string extension = fs::path(files.front().path).extension().string();
