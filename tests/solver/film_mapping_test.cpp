@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mesh/quality.hpp"
+#include "solver/heat_assembly.hpp"
 #include "tests/shared/heat_runs.hpp"
 
 namespace driftwright::solver::film_mapping_test {
