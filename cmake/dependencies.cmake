@@ -10,7 +10,7 @@ find_package(date 3.0 REQUIRED)
 find_package(Protobuf 3.21 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOImage)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOLegacy IOXML IOImage)
 # HDF5 also comes as a parallel library; this is the plain one.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10)
 pkg_check_modules(mosquitto REQUIRED IMPORTED_TARGET libmosquitto>=2.0)

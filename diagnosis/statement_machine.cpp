@@ -172,7 +172,8 @@ void StatementBuilder::exchanges() {
     const auto& place = system.exchanges[e].place;
     const bool of_bodies =
         place.per == effects::Per::kTotal && (place.body.kind == effects::BodyKind::kNode || !place.surrounding.empty());
-    if (of_bodies) continue;
+    // A film from a file: what is stated of its surface is stated of the even film that lies there as well.
+    if (of_bodies || !place.part.empty()) continue;
     auto loads = std::make_shared<Loads>();
     double squares = 0.0;
     for (const LinearOperator& m : machine_) {

@@ -51,8 +51,12 @@ std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatB
   for (const std::string& s : mesh.surfaces) {
     if (!is_outer(s)) continue;
     list.push_back(make_effect("heat_source", Place::kSurface, s, {{"power", 0.5 * expected_W}}));
-    if (!effects::has_film(own, s))
-      list.push_back(make_effect("convection", Place::kSurface, s, {{"film", kExpectedFilm_W_m2K}}));
+    if (effects::has_even_film(own, s)) continue;
+    list.push_back(make_effect("convection", Place::kSurface, s, {{"film", kExpectedFilm_W_m2K}}));
+    for (const effects::Exchange& x : own.exchanges) {  // a film from a file: what is added to it leads where it leads
+      if (x.body == effects::surface(s) && x.per == effects::Per::kArea)
+        list.back().references["surrounding"] = effects::node(x.surrounding);
+    }
   }
   if (own.stratifications.empty() && mesh.n_nodes() > 0)
     list.push_back(make_effect("stratification", Place::kAmbient, effects::kAmbientName, {{"gradient", 1.0}}));

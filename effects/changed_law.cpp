@@ -420,7 +420,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   for (const Body& body : s.bodies) doubt_heat(s, body, list);
   for (const Effect& e : s.own) {
     if (e.kind->exchange_finding.empty()) continue;
+    bool is_doubted = false;
     for (const Exchange& x : heat_balance({e}).exchanges) {
+      if (is_doubted && !x.part.is_even()) continue;  // one law, whatever patterns it is made of
+      is_doubted = true;
       doubt_exchange(s, e.kind->exchange_finding, x, list);
       doubt_stirred(s, e.kind->exchange_finding, x, list);
       doubt_free(x, list);

@@ -65,6 +65,11 @@ bool have_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
                      [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
 }
 
+bool has_even_film(const HeatBalance& balance, const std::string& on) {
+  return std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
+                     [&](const Exchange& e) { return e.body == surface(on) && e.per == Per::kArea && e.part.is_even(); });
+}
+
 bool has_film(const HeatBalance& balance, const std::string& on) {
   return std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
                      [&](const Exchange& e) { return e.body == surface(on) && e.per == Per::kArea; });

@@ -123,6 +123,8 @@ struct Doubt {
 /// True if both are joined to a common third body.
 [[nodiscard]] bool have_common_neighbour(const DoubtScene& s, const Body& a, const Body& b);
 
+/// True if the surface has a film that is the same everywhere on it.
+[[nodiscard]] bool has_even_film(const HeatBalance& balance, const std::string& surface);
 /// True if the surface has a film.
 [[nodiscard]] bool has_film(const HeatBalance& balance, const std::string& surface);
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,8 +75,8 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to, a formula, or a list of bodies or points;
-/// `Effect::words` holds its name or text, "" if left out.
+/// Another sensor, displacement or recorded column that an effect refers to, a formula, a file, or a list of bodies or
+/// points; `Effect::words` holds its name or text, "" if left out.
 struct Mention {
   enum class Of {
     kSensor,
@@ -84,6 +85,8 @@ struct Mention {
     kFormula,  ///< no name: a formula, whose entry declares the names in it (formula.hpp)
     kBodies,   ///< a list of bodies of the place's kind; words as text_of() writes it (flow_path.hpp)
     kPoints,   ///< a list of points [mm]; likewise
+    kFile,     ///< a file; scenarios/reader/film_files reads it
+    kText,     ///< a name in that file
   };
   std::string name;
   Of of = Of::kSensor;
@@ -163,6 +166,8 @@ struct Effect {
   double from_s = 0.0, until_s = kNever_s;        ///< when it acts, `until` excluded; for Timing::kInTime
   std::string in = {};                            ///< the cyclogram in which it acts; "": in all
   KnownTo known_to = {};                          ///< how well its values are known, where the scenario says so
+  /// Values of its file, once scenarios/reader/film_files has read it. Shared, because effects are copied often.
+  std::shared_ptr<const SurfaceField> field = {};
   Where where = {};  ///< position in the scenario, for errors that are found only once the mesh exists
 
   /// Value by parameter name, in the parameter's unit. @throws std::logic_error  if the kind has no such parameter

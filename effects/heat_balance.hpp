@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/cyclogram.hpp"
+#include "effects/surface_field.hpp"
 
 namespace driftwright::effects {
 
@@ -87,11 +88,14 @@ struct Exchange {
   Per per = Per::kArea;
   std::string surrounding = kAmbientName;  ///< the other temperature: the ambient or a lumped node; unused for a joint
   std::optional<double> medium_K = {};     ///< replaces the surrounding: a medium of this absolute temperature
+  /// Of a film that differs from place to place: its pattern, which the coefficient multiplies. With medium_K, the medium's
+  /// temperature is that of the field, and medium_K its mean.
+  FieldPart part = {};
 
   [[nodiscard]] bool is_same_place(const Exchange& other) const {
     const bool same_end = body.kind == BodyKind::kJoint ||
                           (surrounding == other.surrounding && medium_K.has_value() == other.medium_K.has_value());
-    return body == other.body && per == other.per && same_end;
+    return body == other.body && per == other.per && same_end && part.id == other.part.id;
   }
 };
 

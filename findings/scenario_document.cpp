@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "findings/film_section.hpp"
 #include "findings/machine_section.hpp"
 #include "mesh/quality.hpp"
 #include "solver/joint.hpp"
@@ -128,6 +129,7 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
     add(body, Value{.key = "effects", .words = "effects", .datum = scenario.machine->effects.size()});
     add(body, Value{.key = "sensors", .words = "sensors", .datum = scenario.machine->sensors.size()});
     add(body, cyclograms_table(scenario.cyclograms));
+    add_films(body, placed->films, placed->mesh);
   }
   std::vector<std::string> notes;
   for (const Cyclogram& cyclogram : scenario.cyclograms) {
@@ -142,7 +144,7 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
 }
 
 output::Document mesh_document(const std::string& name, const scenarios::MachineModel& machine, const mesh::Mesh& m,
-                               const output::Provenance& made_by) {
+                               std::span<const scenarios::MappedFilm> films, const output::Provenance& made_by) {
   const mesh::Quality quality = mesh::worst_quality(m);
   output::Document document{.made_by = made_by, .title = name + ": mesh"};
   output::Section& body = document.body;
@@ -174,6 +176,7 @@ output::Document mesh_document(const std::string& name, const scenarios::Machine
   }
   Table joints = joints_table(m);
   for (Table* table : {&regions, &surfaces, &joints}) add(body, std::move(*table));
+  add_films(body, films, m);
   add(body, output::Notes{.key = "notes", .sort = "note", .lines = m.notes});
   return document;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // The results of `check`, `mesh` and `list`, as documents.
 
+#include <span>
+
 #include "machine/machine.hpp"
 #include "machine/mesh_demand.hpp"
 #include "output/document.hpp"
@@ -14,8 +16,10 @@ namespace driftwright::findings {
                                                  const scenarios::MeshDemand* demand, const output::Provenance& made_by);
 
 /// Size and quality of a mesh, its regions, surfaces and joints. @param machine  source of marks and masses, if it has them
+/// @param films  that files have on it
 [[nodiscard]] output::Document mesh_document(const std::string& name, const scenarios::MachineModel& machine,
-                                             const mesh::Mesh& mesh, const output::Provenance& made_by);
+                                             const mesh::Mesh& mesh, std::span<const scenarios::MappedFilm> films,
+                                             const output::Provenance& made_by);
 
 /// The cyclograms of a scenario, and the joints of a mesh, as `list` shows them.
 [[nodiscard]] output::Document cyclograms_document(const scenarios::Scenario& scenario, const output::Provenance& made_by);

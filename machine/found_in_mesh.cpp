@@ -147,8 +147,9 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
       }
       if (is_of_joint && e["decay"] != 0.0)
         throw InputError(e.where, "`decay` requires a temperature, but a joint has none of its own");
-      const bool has_medium = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
-                                          [&](const auto& x) { return x.name == e.place && x.medium_K.has_value(); });
+      const bool has_medium = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
+        return x.name == e.place && x.medium_K.has_value() && x.part.is_even();
+      });
       if (e["warmer"] != 0.0 && !has_medium)
         throw InputError(e.where, fmt::format("'{}' has no medium of a stated temperature, which `warmer` requires: a "
                                               "coolant's `set_point` without `tank`, or a `medium`",

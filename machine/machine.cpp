@@ -175,6 +175,7 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
   placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
   check_effects(model, mesh, placed.balance);
+  placed.films = mapped_films(model.effects, mesh);
   require_reached(mesh, placed.balance, model.where);
   for (const SupportEntry& s : model.supports) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));

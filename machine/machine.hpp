@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/record.hpp"
+#include "machine/mapped_films.hpp"
 #include "mesh/mesh.hpp"
 #include "scenarios/reader/scenario.hpp"
 #include "solver/elasticity.hpp"
@@ -16,6 +17,7 @@ struct PlacedMachine {
   mesh::Mesh mesh;
   solver::RegionMaterials materials;
   effects::HeatBalance balance;
+  std::vector<MappedFilm> films;  ///< of files
   std::vector<solver::Support> supports;
   std::vector<solver::JointMechanics> joints;
   /// Weights of the unknowns for each thermometer; empty for one that reads the ambient.

@@ -37,6 +37,7 @@ std::string structure(const effects::HeatBalance& balance) {
   for (const auto& e : balance.exchanges) {
     add(e.per == effects::Per::kArea ? "per area" : "in total", e.name, words(e.body), e.surrounding, words(e.coefficient),
         e.medium_K.value_or(0.0));
+    if (e.part.field) add("pattern", e.part.id, e.part.field->hash, e.part.reach_m, e.part.even_air_K);
   }
   for (const auto& r : balance.radiations) add("radiation", r.name, r.surface, r.surrounding);
   for (const auto& n : balance.nodes) add("node", n.name, n.capacity_J_K);

@@ -53,6 +53,24 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   fields.take(whole);
 }
 
+/// Adds the heat of further patterns of a film to that of the first one: the film is one law, whatever it is made of.
+void sum_parts(solver::Trajectory& run) {
+  std::vector<solver::HeatFlow> flows;
+  Eigen::Index n = 0;
+  for (std::size_t j = 0; j < run.flows.size(); ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    if (run.flows[j].continues && flows.back().kind == run.flows[j].kind) {
+      run.heat_J.row(n - 1) += run.heat_J.row(row);
+      continue;
+    }
+    flows.push_back(run.flows[j]);
+    if (n != row) run.heat_J.row(n) = run.heat_J.row(row);
+    ++n;
+  }
+  run.flows = std::move(flows);
+  run.heat_J.conservativeResize(n, Eigen::NoChange);
+}
+
 /// The largest source of heat or cooling when temperatures leave all bounds: "heat_source spindle is 1.5e+05 W at 6000 rpm;
 /// "; "" if there is none.
 std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& felt, const MachineModel& machine,
@@ -94,6 +112,7 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
   const double capacity_J_K = model.reduced()
                                   ? model.reduced()->system.ones.squaredNorm()  // M = 1
                                   : model.full()->system.ones.dot(model.full()->system.mass * model.full()->system.ones);
+  sum_parts(simulated.trajectory);
   solver::require_balance(simulated.trajectory, capacity_J_K);
   simulated.record = as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
   return simulated;

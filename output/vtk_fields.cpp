@@ -163,7 +163,8 @@ std::unique_ptr<FieldWriter> make_vtu_writer(ResultsFolder& folder, const mesh::
   return std::make_unique<VtuWriter>(folder, mesh);
 }
 
-void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file) {
+void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file,
+                std::span<const FacetField> fields) {
   vtkNew<vtkUnstructuredGrid> grid;
   build_grid(mesh, true, grid);
   if (!quality.empty()) {
@@ -173,6 +174,14 @@ void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const s
     auto* array = add_array<vtkFloatArray>(grid->GetCellData(), "quality", 1, grid->GetNumberOfCells());
     array->FillValue(std::numeric_limits<float>::quiet_NaN());
     for (int c = 0; c < mesh.cells.size(); ++c) array->SetValue(c, static_cast<float>(quality[c]));
+  }
+  for (const FacetField& field : fields) {
+    if (field.value.size() != static_cast<std::size_t>(mesh.facets.size()))
+      throw std::logic_error(fmt::format("{}: {} values for {} facets", field.name, field.value.size(), mesh.facets.size()));
+    auto* array = add_array<vtkFloatArray>(grid->GetCellData(), field.name.c_str(), 1, grid->GetNumberOfCells());
+    array->FillValue(std::numeric_limits<float>::quiet_NaN());
+    for (int f = 0; f < mesh.facets.size(); ++f)
+      array->SetValue(mesh.cells.size() + f, static_cast<float>(field.value[static_cast<std::size_t>(f)]));
   }
   write_grid(grid, file);
 }

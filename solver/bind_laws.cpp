@@ -145,7 +145,8 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
       laws.emplace_back();
       entry = laws.size() - 1;
     }
-    if (asked.medium_K) system.exchanges[entry].hold_medium(*asked.medium_K - system.reference_K);
+    // The air temperatures of a pattern are those of its file, and stay.
+    if (asked.medium_K && asked.part.is_even()) system.exchanges[entry].hold_medium(*asked.medium_K - system.reference_K);
     laws[entry].push_back(&asked.coefficient);
   }
   const Law one([](const Inputs&) { return 1.0; });

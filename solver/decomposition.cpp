@@ -83,6 +83,7 @@ std::vector<HeatFlow> flows_of(const ReducedSystem& system) {
     flows.push_back({e.name, e.prescribes         ? FlowKind::kPrescribed
                              : e.leaves_machine() ? FlowKind::kSurrounding
                                                   : FlowKind::kInternal});
+    flows.back().continues = !e.place.part.empty() && flows.size() > 1 && flows[flows.size() - 2].name == e.name;
   }
   return flows;
 }

@@ -1,10 +1,15 @@
 #include "solver/heat_assembly.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <stdexcept>
+#include <tuple>
 
 #include "mesh/shape.hpp"
 #include "solver/cell_heat.hpp"
+#include "solver/film_mapping.hpp"
 #include "solver/joint.hpp"
 #include "solver/radiation.hpp"
 
@@ -159,6 +164,82 @@ Exchange<SparseRow> to_surrounding(const Places& places, const effects::Exchange
   return e;
 }
 
+/// What a pattern of a film exchanges with a surrounding or with the air temperatures of its file:
+/// G_ij = ∫ h N_i N_j dA, o_i = ∫ N_i h (T_air - T_ref) dA.
+Exchange<SparseRow> of_pattern(const Mesh& mesh, const Places& places, const FilmMapping& mapping,
+                               const effects::Exchange& exchange, BoundLaw coefficient,
+                               const std::vector<effects::Stratification>& air, double reference_K) {
+  const int n = places.n_unknowns();
+  const int unknown = exchange.medium_K ? -1 : places.unknown_of_surrounding(exchange.surrounding);
+  Exchange<SparseRow> e{.name = exchange.name,
+                        .place = place_of(exchange),
+                        .matrix = {},
+                        .to_ambient = Eigen::VectorXd::Zero(n),
+                        .coefficient = std::move(coefficient),
+                        .flow = Eigen::VectorXd::Zero(n),
+                        .offset = {}};
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(n);
+  std::vector<Eigen::Triplet<double>> entries;
+  double film_W_K = 0.0;
+  for (std::size_t p = 0; p < mapping.points.size();) {
+    const int facet = mapping.points[p].facet;
+    const auto nodes = mesh.facets.nodes(facet);
+    const mesh::CellShape shape = mesh.facets.shape[facet];
+    const auto x = mesh::cell_coords(mesh, nodes);
+    const auto n_nodes = static_cast<Eigen::Index>(nodes.size());
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n_nodes, n_nodes);  // one entry a pair of nodes, of many points
+    Eigen::VectorXd once = Eigen::VectorXd::Zero(n_nodes), excess = once;
+    for (; p < mapping.points.size() && mapping.points[p].facet == facet; ++p) {
+      const FilmPoint& point = mapping.points[p];
+      const double film = point.area_m2 * exchange.part.film_W_m2K(point.value);
+      double excess_W = 0.0;  // h (T_air - T_ref) or h (T_air(z) - T_ambient)
+      const mesh::ShapeValues s = mesh::shape_values(shape, point.xi);
+      const Eigen::RowVectorXd values = s.N.head(s.n);
+      if (exchange.medium_K) {
+        excess_W = point.area_m2 * exchange.part.film_times_air_W_m2(point.value) - film * reference_K;
+      } else if (!air.empty() && unknown < 0) {
+        excess_W = film * ambient_offset_K(air, (x * values.transpose()).z());
+      }
+      square.noalias() += film * values.transpose() * values;
+      once += film * values.transpose();
+      excess += excess_W * values.transpose();
+      film_W_K += film;
+    }
+    for (Eigen::Index i = 0; i < n_nodes; ++i) {
+      const int row = nodes[static_cast<std::size_t>(i)];
+      e.flow[row] += once[i];
+      offset[row] += excess[i];
+      for (Eigen::Index j = 0; j < n_nodes; ++j) entries.emplace_back(row, nodes[static_cast<std::size_t>(j)], square(i, j));
+      if (unknown < 0) continue;
+      entries.emplace_back(row, unknown, -once[i]);
+      entries.emplace_back(unknown, row, -once[i]);
+    }
+  }
+  if (unknown >= 0) {
+    entries.emplace_back(unknown, unknown, film_W_K);
+    e.flow[unknown] -= film_W_K;
+    e.matrix = from_entries(n, entries);
+    return e;
+  }
+  e.matrix = from_entries(n, entries);
+  // A change between two states may have no film in all, and yet reaches its surrounding: the smallest sum says so.
+  const double sum = film_W_K == 0.0 && e.flow.cwiseAbs().maxCoeff() > 0.0 ? std::numeric_limits<double>::min() : film_W_K;
+  if (exchange.medium_K) {
+    e.medium = e.flow;
+    e.medium_sum = sum;
+    e.offset = std::move(offset);
+    e.offset_sum = e.offset.sum();
+    return e;
+  }
+  e.to_ambient = e.flow;
+  e.ambient_sum = sum;
+  if (!air.empty()) {
+    e.offset = std::move(offset);
+    e.offset_sum = e.offset.sum();
+  }
+  return e;
+}
+
 Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const mesh::Joint& joint,
                                  const effects::Exchange& exchange, BoundLaw coefficient) {
   const int n = places.n_unknowns();
@@ -240,8 +321,17 @@ class Binder {
 std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& places, const effects::HeatBalance& balance,
                                                 Binder& binder, double reference_K) {
   std::vector<Exchange<SparseRow>> exchanges;
+  std::map<std::tuple<std::string, const effects::SurfaceField*, double>, FilmMapping> mapped;  // patterns share them
   for (const effects::Exchange& e : balance.exchanges) {
-    if (e.body.kind == BodyKind::kJoint) {
+    if (!e.part.is_even()) {
+      if (!e.part.field) throw std::logic_error("assemble_heat: the file of " + e.name + " has not been read");
+      // NaN has no order: 0 for the usual reach
+      const std::tuple key(e.body.name, e.part.field.get(), std::isnan(e.part.reach_m) ? 0.0 : e.part.reach_m);
+      if (!mapped.contains(key))
+        mapped.emplace(key, map_film(mesh, places.surface(e.body.name), *e.part.field, e.part.reach_m));
+      exchanges.push_back(
+          of_pattern(mesh, places, mapped.at(key), e, binder.bind(e.coefficient), balance.stratifications, reference_K));
+    } else if (e.body.kind == BodyKind::kJoint) {
       const mesh::Joint* joint = mesh.joint(e.body.name);
       must_exist(joint ? 0 : -1, e.body.name);
       exchanges.push_back(across_joint(mesh, places, *joint, e, binder.bind(e.coefficient)));
@@ -276,7 +366,7 @@ double at_reference(double constant, const PropertyCurve& curve, double referenc
 
 ExchangePlace place_of(const effects::Exchange& exchange) {
   const bool has_surrounding = exchange.body.kind != BodyKind::kJoint && !exchange.medium_K;
-  return {exchange.body, has_surrounding ? exchange.surrounding : "", exchange.per};
+  return {exchange.body, has_surrounding ? exchange.surrounding : "", exchange.per, exchange.part.id};
 }
 
 Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body) {

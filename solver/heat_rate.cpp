@@ -64,7 +64,8 @@ HeatRate::HeatRate(const FullSystem& system)
   }
   for (const auto& e : system.exchanges) {
     crossings_.push_back({Sparse(e.flow), Sparse(e.to_ambient), Sparse(e.offset), slots_of(e.matrix, system.conduction)});
-    flows_.push_back({e.name, e.leaves_machine() ? FlowKind::kSurrounding : FlowKind::kInternal});
+    const bool continues = !e.place.part.empty() && !flows_.empty() && flows_.back().name == e.name;
+    flows_.push_back({e.name, e.leaves_machine() ? FlowKind::kSurrounding : FlowKind::kInternal, continues});
     looks_at_state_ |= e.coefficient.looks_at_state();
   }
   for (const auto& term : system.nonlinear) {

@@ -78,6 +78,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
     entry["body"] = body_json(e.place.body);
     entry["surrounding"] = e.place.surrounding;
     entry["per"] = static_cast<int>(e.place.per);
+    if (!e.place.part.empty()) entry["part"] = e.place.part;
     entry["medium_sum"] = e.medium_sum;
     entry["has_medium"] = e.medium.size() > 0;
     entry["hall_sum"] = e.ambient_sum;
@@ -151,7 +152,7 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
     system.exchanges.push_back(
         {.name = effects::name_in_present_words(e.at("name")),
          .place = {body_from(e.at("body")), effects::name_in_present_words(e.at("surrounding")),
-                   static_cast<effects::Per>(e.at("per").get<int>())},
+                   static_cast<effects::Per>(e.at("per").get<int>()), e.value("part", std::string())},
          .matrix = matrices.middleRows(r * i, r),
          .to_ambient = to_ambient.col(i),
          .ambient_sum = e.at("hall_sum"),

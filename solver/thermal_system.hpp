@@ -57,6 +57,7 @@ struct ExchangePlace {
   effects::Body body;
   std::string surrounding;  ///< ambient or lumped node; "" for a joint and for a medium with its own temperature
   effects::Per per = effects::Per::kArea;
+  std::string part = {};  ///< pattern of a film that differs from place to place (FieldPart::id); "": an even film
   bool operator==(const ExchangePlace&) const = default;
 };
 [[nodiscard]] ExchangePlace place_of(const effects::Exchange& exchange);
@@ -74,10 +75,12 @@ struct Exchange {
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_ambient) dA where the ambient is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
-  Eigen::VectorXd medium = {};  ///< of an exchange with a medium: G 1; o is this times the medium's temperature. Else empty
-  double medium_sum = 0.0;      ///< 1'G 1
-  bool prescribes = false;      ///< it replaces a prescribed temperature (hold_by_exchanges())
-  int slope_of = -1;            ///< index of the source whose power over temperature it contains (linearise()); -1: none
+  /// Of an exchange with a medium: G 1; o is this times the medium's temperature, or of a pattern ∫ N_i h (T_air - T_ref) dA.
+  /// Else empty.
+  Eigen::VectorXd medium = {};
+  double medium_sum = 0.0;  ///< 1'G 1
+  bool prescribes = false;  ///< it replaces a prescribed temperature (hold_by_exchanges())
+  int slope_of = -1;        ///< index of the source whose power over temperature it contains (linearise()); -1: none
 
   [[nodiscard]] bool reaches_ambient() const { return ambient_sum != 0.0; }
   /// True for an exchange with the ambient or with a medium of fixed temperature.
@@ -208,6 +211,7 @@ enum class FlowKind {
 struct HeatFlow {
   std::string name;
   FlowKind kind = FlowKind::kSource;
+  bool continues = false;  ///< a further pattern of the film before it, which differs from place to place: one flow in parts
 };
 
 /// A violation of the bounds that conduction obeys: an undershoot of the consistent mass matrix beside a jump.

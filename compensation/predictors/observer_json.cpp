@@ -7,6 +7,7 @@
 #include "base/json_value.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/predictors/predictor_kind.hpp"
+#include "effects/film_field.hpp"
 #include "effects/former_words.hpp"
 #include "solver/system_json.hpp"
 
@@ -106,7 +107,7 @@ std::optional<Written> Observer::written() const {
   Json system = solver::write_system(s.system, s.start, [&](const std::string& name, const Eigen::MatrixXd& values) {
     arrays[name] = matrix_json(values);
   });
-  for (const effects::Effect& e : s.laws) laws.push_back(effects::yaml_of(e));
+  for (const effects::Effect& e : s.laws) laws.push_back(effects::yaml_of(effects::without_its_file(e)));
   Json content = {{"sensors", s.sensors},
                   {"drift", s.drift},
                   {"start_hall_K", s.start_ambient_K},

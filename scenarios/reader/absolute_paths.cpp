@@ -19,7 +19,7 @@ void give(YamlText& yaml, const ConfigNode& node, const std::filesystem::path& f
 }  // namespace
 
 bool is_path_key(const std::string& key) {
-  return key == "csv" || key == "nc_program" || key == "mesh";
+  return key == "csv" || key == "nc_program" || key == "mesh" || key == "file";
 }
 
 std::string absolute_path_text(const std::string& path, const std::filesystem::path& folder_of_scenario) {

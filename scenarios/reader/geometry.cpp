@@ -1,7 +1,10 @@
 #include "scenarios/reader/geometry.hpp"
 
+#include <filesystem>
+
 #include "effects/effect_schema.hpp"
 #include "effects/former_words.hpp"
+#include "scenarios/reader/film_files.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -22,6 +25,19 @@ const schema::Map& geometry_schema() {
   return description;
 }
 
+/// The effects that take their film from a file; the others may still be unfinished.
+std::vector<effects::Effect> read_films(const ConfigMap& in) {
+  std::vector<effects::Effect> films;
+  if (!in.has("effects") || !in.is_list("effects")) return films;
+  for (const ConfigNodePtr& entry : in.value("effects")->items) {
+    const ConfigNode* type = entry->is_map() ? entry->find("type") : nullptr;
+    if (type && type->is_scalar() && type->text == "film_field")
+      films.push_back(effects::read_effect(ConfigMap::of_tree(entry)));
+  }
+  read_film_files(films, std::filesystem::path(in.file()).parent_path().string());
+  return films;
+}
+
 }  // namespace
 
 Geometry read_geometry(const std::string& path, bool with_effects) {
@@ -35,7 +51,7 @@ Geometry read_geometry(const std::string& path, bool with_effects) {
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
   }
-  if (with_effects) m.effects = effects::read_effects(in.maps("effects"));
+  m.effects = with_effects ? effects::read_effects(in.maps("effects")) : read_films(in);
   return geometry;
 }
 

@@ -5,11 +5,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "effects/effect_schema.hpp"
 #include "effects/former_words.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/film_files.hpp"
 #include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
@@ -64,6 +66,7 @@ MachineModel read_machine(const ConfigMap& in) {
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
   for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
   m.effects = effects::read_effects(in.maps("effects"));
+  read_film_files(m.effects, std::filesystem::path(in.file()).parent_path().string());
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));

@@ -62,12 +62,47 @@ Largest largest_of(const effects::Law& law, const effects::Effect& effect, const
   return largest;
 }
 
+/// Films of a file: the largest value, and speeds or times beyond those of the file.
+void add_film_of_file(const effects::Effect& effect, const std::vector<NamedDrive>& drives, const Scenario& scenario,
+                      std::vector<std::string>& found) {
+  if (!effect.field) return;
+  const double largest_W_m2K = effect["factor"] * effect.field->film_W_m2K.maxCoeff();
+  if (const auto what = beyond_usual(Usual::kFilm, largest_W_m2K, " in its file"))
+    found.push_back(
+        at_line(effect.where, fmt::format("{}: the {} is {}", effect.name(), usual_range(Usual::kFilm).what, *what)));
+  const std::vector<double>& at = effect.field->states.at;
+  if (effect.field->states.over == effects::FieldOver::kSpeed) {
+    const NamedDrive* farthest = nullptr;
+    double beyond_rpm = 0.0;
+    for (const NamedDrive& d : drives) {
+      if (!effect.acts_in(d.cyclogram)) continue;
+      const double beyond = std::max(at.front() - d.drive.speed_rpm, d.drive.speed_rpm - at.back());
+      if (beyond > beyond_rpm) beyond_rpm = beyond, farthest = &d;
+    }
+    if (farthest)
+      found.push_back(at_line(
+          effect.where, fmt::format("{}: the file has films from {:g} to {:g} rpm; at {:g} rpm in cyclogram "
+                                    "'{}' that at {:g} rpm counts",
+                                    effect.name(), at.front(), at.back(), farthest->drive.speed_rpm, farthest->cyclogram,
+                                    farthest->drive.speed_rpm < at.front() ? at.front() : at.back())));
+  } else if (effect.field->states.over == effects::FieldOver::kTime) {
+    for (const Cyclogram& c : scenario.cyclograms) {
+      if (!effect.acts_in(c.name) || (c.duration_s() <= at.back() && at.front() <= 0.0)) continue;
+      found.push_back(at_line(
+          effect.where, fmt::format("{}: the file has films from {:g} to {:g} min; cyclogram '{}' lasts {:g} "
+                                    "min, and beyond the ends that of the end counts",
+                                    effect.name(), at.front() / 60.0, at.back() / 60.0, c.name, c.duration_s() / 60.0)));
+    }
+  }
+}
+
 void add_effects(const Scenario& scenario, std::vector<std::string>& found) {
   const std::vector<NamedDrive> drives = drives_of(scenario);
   for (const effects::Effect& effect : scenario.machine->effects) {
     if (!effect.kind->contribute) continue;
     effects::HeatBalance balance;
     effect.kind->contribute(effect, balance);
+    add_film_of_file(effect, drives, scenario, found);
     const auto judge = [&](const std::string& name, const effects::Law& law, Usual kind) {
       const Largest largest = largest_of(law, effect, drives, *scenario.machine);
       const std::string when = fmt::format(" at {:g} rpm in cyclogram '{}'", largest.speed_rpm, largest.cyclogram);
@@ -76,6 +111,7 @@ void add_effects(const Scenario& scenario, std::vector<std::string>& found) {
     };
     for (const effects::HeatInput& heat : balance.heats) judge(heat.name, heat.power_W, Usual::kHeat);
     for (const effects::Exchange& e : balance.exchanges) {
+      if (!e.part.is_even()) continue;  // a number without a unit: add_film_of_file()
       const Usual kind = e.per == effects::Per::kTotal              ? Usual::kLink
                          : e.body.kind == effects::BodyKind::kJoint ? Usual::kContact
                                                                     : Usual::kFilm;
