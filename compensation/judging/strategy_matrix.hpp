@@ -104,6 +104,8 @@ struct Judgement {
   Case scores;                        ///< without `run` and `failed`, which the matrix sets
   std::vector<double> correction_um;  ///< as sent to the axis
   std::vector<double> left_um;        ///< drift - correction; NaN where the drift is unknown
+  /// The same for each member of a blend whose weights move with probings (GuardedCorrection::members_um).
+  std::vector<std::vector<double>> members_left_um = {};
 };
 /// Judges one predictor on one run. @param drift_um true, per row of the run's readings; from the start if the predictor
 /// counts so
