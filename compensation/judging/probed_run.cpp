@@ -48,6 +48,7 @@ ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const doub
   }
   run.n_refused = feedback.n_refused();
   run.left = score(left_um);
+  if (how.keeps_rows) run.left_um = std::move(left_um);
   if (mean_weights) {
     for (double& w : sum_weights) w /= static_cast<double>(t_s.size());
     *mean_weights = std::move(sum_weights);

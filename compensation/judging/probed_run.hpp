@@ -31,6 +31,7 @@ struct RunProbing {
   ProbeFault fault = ProbeFault::kNone;
   double fails_at_s = 0.0;
   double error_um = 0.0;  ///< of a biased probe
+  bool keeps_rows = false;
 };
 
 struct ProbedRun {
@@ -38,6 +39,7 @@ struct ProbedRun {
   int n_probings = 0, n_refused = 0;
   /// Number of the probing after the fault that was refused or taken as a jump, from one; none: no one notices it.
   std::optional<int> noticed_at = {};
+  std::vector<double> left_um = {};  ///< per row, if RunProbing asks for it
 };
 
 /// Probings at the first row after each interval. Each counts from the row after it. With one member it is corrected as

@@ -326,6 +326,14 @@ const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix) {
                            [](const JudgedStrategy& a, const JudgedStrategy& b) { return overall_rms(a) < overall_rms(b); });
 }
 
+std::vector<ProbedMember> probed_members(const DeployedPredictor& strategy, const Judgement& judged) {
+  const std::vector<probe_process> processes = probe_processes_of(strategy, {.noise_um = strategy.probe.noise_um});
+  std::vector<ProbedMember> members = {{processes.front(), judged.left_um}};
+  for (std::size_t m = 0; m < judged.members_left_um.size(); ++m)
+    members.push_back({processes[m + 1], judged.members_left_um[m]});
+  return members;
+}
+
 Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const std::vector<double>& drift_um) {
   Case c;
   const std::vector<double> predicted = live(*strategy.predictor, run);
@@ -365,10 +373,7 @@ void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, co
   const std::optional<Probing>& probing = settings.strategies.probing;
   if (!probing || !strategy.residual) return;
   const std::vector<double>& t_s = run.readings.time_s;
-  const std::vector<probe_process> processes = probe_processes_of(strategy, {.noise_um = strategy.probe.noise_um});
-  std::vector<ProbedMember> members = {{processes.front(), judged.left_um}};
-  for (std::size_t m = 0; m < judged.members_left_um.size(); ++m)
-    members.push_back({processes[m + 1], judged.members_left_um[m]});
+  const std::vector<ProbedMember> members = probed_members(strategy, judged);
   RunProbing how{.noise_um = probing->noise_um, .seed = seed};
   for (double every_s : probing->every_s) {
     how.every_s = every_s;
