@@ -373,7 +373,7 @@ TEST(CFunction, MovesTheWeightsOfABlendAsTheProgramDoes) {
     most_first = std::max(most_first, y[4]);
   }
   EXPECT_EQ(n_refused, 1);
-  EXPECT_GT(most_first, 0.5);  // the weights have moved there and back
+  EXPECT_GT(most_first, 0.36);  // it begins at a third: the weights have moved there and back
   EXPECT_LT(least_first, 0.25);
 }
 
