@@ -7,6 +7,7 @@
 
 #include "app/machine_predictor.hpp"
 #include "app/results.hpp"
+#include "base/option_quantity.hpp"
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "findings/correction_document.hpp"
@@ -115,13 +116,30 @@ void require_axis(const Scenario& scenario, const std::string& target) {
                     scenario.axis_loop->displacement, target, target));
 }
 
+/// The time between probings; none: not probed. @param d  gets the noise of the probe
+std::optional<double> probings_of(const CompensateOptions& options, DeployedPredictor* d) {
+  if (options.probe.empty()) return std::nullopt;
+  if (!d || !d->residual)
+    throw InputError(fmt::format(
+        "--probe: {} does not say what its strategy leaves (key `probing` is null or missing); `validate` writes it "
+        "where parts of the training runs could be left out",
+        options.model));
+  const double every_s = option_quantity("--probe", options.probe, "s");
+  if (!options.probe_noise.empty()) d->probe.noise_um = option_quantity("--probe-noise", options.probe_noise, "um");
+  if (!(every_s > 0.0) || !(d->probe.noise_um > 0.0))
+    throw InputError(fmt::format("--probe '{}' and --probe-noise '{}' must be above 0", options.probe, options.probe_noise));
+  return every_s;
+}
+
 std::string corrected_csv(const studies::CorrectionStudy& o, const std::vector<std::string>& comments) {
   std::string csv;
   for (const std::string& c : comments) csv += "# " + c + "\n";
-  csv += fmt::format("time_s,drift_um,predicted_um,left_um{}\n", o.at_rest.empty() ? "" : ",at_rest");
+  csv += fmt::format("time_s,drift_um,predicted_um,left_um{}{}\n", o.at_rest.empty() ? "" : ",at_rest",
+                     o.probed ? ",left_probed_um" : "");
   for (std::size_t i = 0; i < o.time_s.size(); ++i) {
     csv += fmt::format("{:.7g},{:.7g},{:.7g},{:.7g}", o.time_s[i], o.drift_um[i], o.predicted_um[i], o.left_um[i]);
-    csv += o.at_rest.empty() ? "\n" : o.at_rest[i] ? ",1\n" : ",0\n";
+    csv += o.at_rest.empty() ? "" : o.at_rest[i] ? ",1" : ",0";
+    csv += o.probed ? fmt::format(",{:.7g}\n", o.probed->left_um[i]) : "\n";
   }
   return csv;
 }
@@ -157,6 +175,11 @@ void require_options_that_go_together(const CompensateOptions& options) {
         "--measured is allowed only with --through none and a predictor's file, and without --cyclogram: a record says what "
         "happened");
   if (!options.after.empty() && !is_measured) throw InputError("--after requires --measured, the record that continues it");
+  if (!options.probe.empty() && (options.through != "none" || options.model == "modes"))
+    throw InputError(
+        "--probe is allowed only with --through none and a predictor's file: a plan is written before the run and knows no "
+        "probing, the injector is simulated without one, and the words of --model have no file that says how their errors "
+        "fade");
   const auto& frame_models = studies::kFrameModels;
   if (through_frame && std::find(frame_models.begin(), frame_models.end(), options.model) == frame_models.end())
     throw InputError(
@@ -193,13 +216,17 @@ void compensate(const CompensateOptions& options) {
     refuse_trained_on_cyclogram(judged_as, options.model, cyclogram->name);
   }
   if (predictor && !is_measured) require_inputs(scenario, *predictor, options.model);
+  const std::optional<double> probed_every_s = probings_of(options, predictor ? &*predictor : nullptr);
   if (options.through == "injector") require_axis(scenario, predictor ? predictor->target : study.target);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
-  const studies::CorrectionStudy corrected = studies::correct_run(
-      scenario, std::move(predictor),
-      {.through = options.through, .cyclogram = cyclogram, .measured = options.measured, .after = options.after},
-      progress.listener());
+  const studies::CorrectionStudy corrected = studies::correct_run(scenario, std::move(predictor),
+                                                                  {.through = options.through,
+                                                                   .cyclogram = cyclogram,
+                                                                   .measured = options.measured,
+                                                                   .after = options.after,
+                                                                   .probed_every_s = probed_every_s},
+                                                                  progress.listener());
   folder.write_text("corrected.csv",
                     corrected_csv(corrected, provenance_lines(folder.made_by(),
                                                               (is_measured ? "record " : "cyclogram ") + corrected.run)));

@@ -131,7 +131,10 @@ void export_model(const ExportOptions& options) {
   if (of_observer) {
     const output::PredictorFile file = output::read_predictor(options.model);
     const compensation::Observer& observer = observer_in(file, options.model);
-    order.model = output::observer_fmu(scenario, observer);
+    const compensation::DeployedPredictor& d = file.predictor;
+    order.model = output::observer_fmu(
+        scenario, observer,
+        d.residual ? std::optional(compensation::probe_process_of(*d.residual, d.probe, d.from_start)) : std::nullopt);
     order.step_s = scenario.solver.output_interval_s = observer.state().settings.period_s;
     const studies::Prediction prediction =
         studies::predict_drift(scenario, cyclogram, {.model = "reduced"}, progress.listener(), "export");

@@ -52,6 +52,12 @@ void add_compensate(CLI::App& cli, CompensateOptions& options) {
   verb->add_option("--after", options.after,
                    "record CSV that ends where --measured begins; lags start from it. Without it the machine is assumed to "
                    "have been at rest before");
+  CLI::Option* probe = verb->add_option("--probe", options.probe,
+                                        "time between two probings of the corrected axis, such as '60 min'; shows what is "
+                                        "left with them beside what is left without; requires --through none [not probed]");
+  verb->add_option("--probe-noise", options.probe_noise,
+                   "noise of one probing, 1 sigma, such as '1 um' [that of the model's file]")
+      ->needs(probe);
   verb->callback([&] { app::compensate(options); });
 }
 

@@ -164,11 +164,13 @@ void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 
 struct CompensateOptions : CommonOptions {
-  std::string model;      ///< a predictor's file of `validate`, or modes; through the frame modes, observer, regression
-  std::string through;    ///< none, injector, schedule, frame
-  std::string cyclogram;  ///< name; empty: the one that the study judges by
-  std::string measured;   ///< a record CSV in place of a simulation; empty: simulate
-  std::string after;      ///< with `measured`: the record that it continues; empty: none
+  std::string model;        ///< a predictor's file of `validate`, or modes; through the frame modes, observer, regression
+  std::string through;      ///< none, injector, schedule, frame
+  std::string cyclogram;    ///< name; empty: the one that the study judges by
+  std::string measured;     ///< a record CSV in place of a simulation; empty: simulate
+  std::string after;        ///< with `measured`: the record that it continues; empty: none
+  std::string probe;        ///< time between probings of the corrected axis; empty: not probed
+  std::string probe_noise;  ///< of a probing, 1 sigma; empty: that of the model's file
 };
 void compensate(const CompensateOptions& options);
 

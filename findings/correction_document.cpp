@@ -34,13 +34,16 @@ output::Plot plot_of(const CorrectionStudy& study, double tolerance_um) {
   std::vector<double> t_min;
   for (double t_s : judged_rows(study, study.time_s)) t_min.push_back(t_s / 60.0);
   const std::string& target = study.predictor.target;
-  return {.title = target,
-          .x_label = "time [min]",
-          .y_label = target + " [µm]",
-          .series = {{.label = "without correction", .x = t_min, .y = judged_rows(study, study.drift_um), .width = 3.0},
-                     {.label = "predicted", .x = t_min, .y = judged_rows(study, study.predicted_um)},
-                     {.label = "left", .x = t_min, .y = judged_rows(study, study.left_um)}},
-          .bands = {{.label = "tolerance", .low = -tolerance_um, .high = tolerance_um}}};
+  output::Plot plot{
+      .title = target,
+      .x_label = "time [min]",
+      .y_label = target + " [µm]",
+      .series = {{.label = "without correction", .x = t_min, .y = judged_rows(study, study.drift_um), .width = 3.0},
+                 {.label = "predicted", .x = t_min, .y = judged_rows(study, study.predicted_um)},
+                 {.label = "left", .x = t_min, .y = judged_rows(study, study.left_um)}},
+      .bands = {{.label = "tolerance", .low = -tolerance_um, .high = tolerance_um}}};
+  if (study.probed) plot.series.push_back({.label = "left with probings", .x = t_min, .y = study.probed->left_um});
+  return plot;
 }
 
 }  // namespace
@@ -76,6 +79,19 @@ output::Document document_of(const CorrectionStudy& study, const scenarios::Scen
   for (const auto& [key, words, score] : {std::tuple{"rms_before_um", "RMS without correction", &study.before},
                                           std::tuple{"rms_left_um", "RMS left", &study.after}})
     add(body, Value{.key = key, .words = words, .datum = score->rmse, .unit = "um", .digits = output::decimals(2)});
+  if (study.probed) {
+    add(body, Value{.key = "rms_probed_um",
+                    .words = "RMS left with probings",
+                    .datum = study.probed->left.rmse,
+                    .unit = "um",
+                    .digits = output::decimals(2)});
+    add(body, Value{.key = "peak_probed_um",
+                    .words = "peak left with probings",
+                    .datum = study.probed->left.peak_abs,
+                    .unit = "um"});
+    add(body, Value{.key = "n_probings", .words = "probings", .datum = study.probed->n_probings});
+    add(body, Value{.key = "n_refused_probings", .words = "refused probings", .datum = study.probed->n_refused});
+  }
   if (study.margin_um) {
     add(body, Value{.key = "margin_um",
                     .words = "margin of the plan",

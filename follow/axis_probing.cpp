@@ -26,9 +26,10 @@ std::optional<std::size_t> channel_named(const std::string& name, const std::vec
 
 }  // namespace
 
-AxisProbing::AxisProbing(const std::string& target, const compensation::ResidualProcess& process,
-                         const compensation::Probe& probe, bool is_known, const std::vector<Channel>& channels)
-    : feedback_(process, probe, is_known),
+AxisProbing::AxisProbing(const std::string& target, std::vector<std::string> names, std::vector<probe_process> processes,
+                         const std::vector<Channel>& channels)
+    : names_(std::move(names)),
+      feedback_(std::move(processes)),
       drift_(channel_named(kProbePrefix + target, channels)),
       left_(channel_named(kProbeLeftPrefix + target, channels)) {}
 
@@ -45,7 +46,13 @@ std::vector<std::string> AxisProbing::columns_of(const std::string& target, cons
   return columns;
 }
 
-void AxisProbing::wait(double predicted_um, double correction_um, double step_s) {
+std::vector<double> AxisProbing::predicted_um() const {
+  std::vector<double> um;
+  for (const probe_member& m : feedback_.members()) um.push_back(m.prediction_um);
+  return um;
+}
+
+void AxisProbing::wait(std::span<const double> predicted_um, double correction_um, double step_s) {
   feedback_.row(predicted_um, correction_um, step_s);
   is_probed_ = false;
 }
@@ -89,7 +96,10 @@ std::string AxisProbing::words() const {
 
 ProbingState AxisProbing::state(std::optional<double> without_um) const {
   const probe_state& s = feedback_.state();
-  ProbingState said{.residual_um = residual_um(), .deviation_um = feedback_.deviation_um(), .n_refused = s.n_refused};
+  ProbingState said{
+      .residual_um = residual_um(), .deviation_um = feedback_.deviation_um(), .n_refused = feedback_.n_refused()};
+  for (std::size_t k = 0; names_.size() > 1 && k < names_.size(); ++k)
+    said.weights.emplace_back(names_[k], feedback_.members()[k].weight);
   if (!is_probed_) return said;
   ProbingAnswer answer{.is_taken = s.verdict == PROBE_TAKEN || s.verdict == PROBE_JUMP,
                        .off_um = s.off_um,

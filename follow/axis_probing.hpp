@@ -2,6 +2,7 @@
 // Probings of one followed axis: which columns have them, what they do to its residual, and the same in words.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,18 +14,21 @@ namespace driftwright::follow {
 class AxisProbing {
  public:
   /// @param target  the displacement that is corrected
-  /// @param is_known  the drift counts from the first row
-  AxisProbing(const std::string& target, const compensation::ResidualProcess& process, const compensation::Probe& probe,
-              bool is_known, const std::vector<Channel>& channels);
+  /// @param names  of the predictors; more than one: a blend and its members, whose weights move with probings
+  /// @param processes  probe_processes_of()
+  AxisProbing(const std::string& target, std::vector<std::string> names, std::vector<probe_process> processes,
+              const std::vector<Channel>& channels);
 
   /// The columns of a stream that are probings of an axis. @throws InputError  where it has both kinds
   [[nodiscard]] static std::vector<std::string> columns_of(const std::string& target, const std::vector<Channel>& channels);
 
-  /// Time passes, with a row or without. @param correction_um  in force until now
-  void wait(double predicted_um, double correction_um, double step_s);
+  /// Time passes, with a row or without. @param predicted_um  of each predictor @param correction_um  in force until now
+  void wait(std::span<const double> predicted_um, double correction_um, double step_s);
   /// The probing of a row, if it has one. Call it after wait(); before the first wait() a probing is refused.
   void hear(const std::vector<double>& values);
 
+  /// The last prediction of each predictor, as wait() was given it.
+  [[nodiscard]] std::vector<double> predicted_um() const;
   [[nodiscard]] double residual_um() const { return feedback_.estimate_um(); }
   /// Half width of the 95 % interval after some time: that without probings, times the deviation of the residual over that
   /// of its process. Unchanged until a probing was taken.
@@ -37,6 +41,7 @@ class AxisProbing {
 
  private:
   [[nodiscard]] std::string words() const;
+  std::vector<std::string> names_;
   compensation::ProbeFeedback feedback_;
   std::optional<std::size_t> drift_, left_;  // channels
   bool is_probed_ = false;                   // in the last row

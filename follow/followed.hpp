@@ -26,8 +26,9 @@ struct ProbingState {
   double residual_um = 0.0;   ///< part of the correction
   double deviation_um = 0.0;  ///< 1 sigma of what is left
   int n_refused = 0;
-  std::optional<ProbingAnswer> answer = {};  ///< to a probing of this row
-  std::string probe_now = {};                ///< why a probing is due; "": none is
+  std::vector<std::pair<std::string, double>> weights = {};  ///< of a blend and its members, by name; empty for others
+  std::optional<ProbingAnswer> answer = {};                  ///< to a probing of this row
+  std::string probe_now = {};                                ///< why a probing is due; "": none is
 };
 
 /// The correction of one axis at one row.

@@ -124,7 +124,12 @@ class FollowedPredictor final : public Followed {
   }
 
   void begin(const std::vector<Channel>& channels) override {
-    if (!probings(channels).empty()) probing_.emplace(d().target, *d().residual, probe_, d().from_start, channels);
+    if (!probings(channels).empty()) {
+      std::vector<std::string> names = {d().name};
+      for (const MemberResidual& m : d().member_residuals) names.push_back(m.name);
+      probing_.emplace(d().target, std::move(names), probe_processes_of(d(), probe_), channels);
+      predicted_um_.assign(1 + d().member_residuals.size(), 0.0);
+    }
     const bool is_driven = d().predictor->is_driven();
     for (std::size_t k = 0; k < channels.size(); ++k) {
       if (channels[k].name == "speed" && channels[k].unit == "rpm") speed_ = k;
@@ -151,12 +156,14 @@ class FollowedPredictor final : public Followed {
     axis_.interval_um = c.interval_um;
     half_width_um_ = c.half_width_um;
     axis_.predicted_um = c.correction_um * covered;
+    predicted_um_ = {axis_.predicted_um};
+    for (double member_um : c.members_um) predicted_um_.push_back(member_um * covered);
     probe(step_s, values);
     stage_.take(wanted_um(), step_s, run_->drive_age_s());
     return true;
   }
   void wait(double step_s) override {
-    if (has_begun() && probing_) probing_->wait(axis_.predicted_um, stage_.state().correction_um, step_s);
+    if (has_begun() && probing_) probing_->wait(predicted_um_, stage_.state().correction_um, step_s);
     stage_.wait(step_s);
   }
   [[nodiscard]] bool has_begun() const override { return run_ && run_->n_rows() > 0; }
@@ -208,6 +215,8 @@ class FollowedPredictor final : public Followed {
     if (probing_) probing_->recall(numbers_of(j, "probing"));  // a state of the same columns has it
     trust_ = output::finite(j, "trust");
     axis_.predicted_um = output::finite(j, "predicted_um");
+    if (probing_) predicted_um_ = probing_->predicted_um();
+    if (predicted_um_.size() == 1) predicted_um_ = {axis_.predicted_um};
   }
 
  private:
@@ -253,7 +262,7 @@ class FollowedPredictor final : public Followed {
   /// A row for the probings, with the prediction that it has led to.
   void probe(double step_s, const std::vector<double>& values) {
     if (!probing_) return;
-    probing_->wait(axis_.predicted_um, stage_.state().correction_um, step_s);
+    probing_->wait(predicted_um_, stage_.state().correction_um, step_s);
     probing_->hear(values);
   }
   /// The predictor's value with what probings have found, within the clamp of the fail-safe.
@@ -283,6 +292,7 @@ class FollowedPredictor final : public Followed {
   std::optional<double> tolerance_um_;
   std::optional<AxisProbing> probing_;   // with a column of probings
   std::optional<double> half_width_um_;  // of the interval about the prediction, in the last row
+  std::vector<double> predicted_um_;     // of the axis, then of each member of a blend whose weights move
   AxisCorrection axis_;
   std::optional<std::size_t> speed_;  // channel
   double trust_ = 0.0;

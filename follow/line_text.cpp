@@ -20,6 +20,9 @@ std::string number_or_null(const std::optional<double>& x) {
 std::string probing_text(const ProbingState& p) {
   std::string text = fmt::format(R"({{"residual_um":{},"deviation_um":{},"refused":{})", number(p.residual_um),
                                  number(p.deviation_um), p.n_refused);
+  std::vector<std::string> weights;
+  for (const auto& [name, weight] : p.weights) weights.push_back(fmt::format("{}:{:.4g}", quoted(name), weight));
+  if (!weights.empty()) text += fmt::format(R"(,"weights":{{{}}})", fmt::join(weights, ","));
   if (p.answer) {
     const ProbingAnswer& a = *p.answer;
     text += fmt::format(R"(,"is_taken":{},"off_um":{},"bound_um":{},"words":{})", a.is_taken, number(a.off_um),

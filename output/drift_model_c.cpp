@@ -55,6 +55,7 @@ const std::vector<std::string> kTaken = {"s",
                                          "probe_noise_um",
                                          "probe_lag_s",
                                          "probing",
+                                         "processes",
                                          "prediction_um",
                                          "probe_waited_s",
                                          "strobe_was_on"};
@@ -102,11 +103,44 @@ std::string quoted(std::string text) {
   return text;
 }
 
-/// The settings of the filter of probings, as C has them.
-std::string probing_numbers(const DeployedModel& d) {
-  const probe_process p = compensation::probe_process_of(*d.residual, d.probe, d.model.from_start);
-  return fmt::format("{}, {}, {}, {}, {}", c_number(p.deviation_um), c_number(p.time_constant_s), c_number(p.noise_um),
-                     c_number(p.lag_s), p.is_known_at_start);
+/// What each filter of probings knows: of the model, then of its members if their weights move.
+std::vector<compensation::ResidualProcess> processes_of(const DeployedModel& d) {
+  std::vector<compensation::ResidualProcess> processes = {*d.residual};
+  for (const compensation::MemberResidual& m : d.member_residuals) processes.push_back(m.process);
+  return processes;
+}
+
+/// `{deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start}`.
+std::string process_text(const compensation::ResidualProcess& p, const std::string& noise_um, const std::string& lag_s,
+                         bool is_known) {
+  return fmt::format("{{{}, {}, {}, {}, {}}}", c_number(p.deviation_um), c_number(p.time_constant_s), noise_um, lag_s,
+                     is_known ? 1 : 0);
+}
+
+/// How C calls the filter of probings: of one model (probe_feedback.h), or of a blend whose weights move (probe_members.h).
+struct ProbeCalls {
+  std::string prefix;                 ///< of the functions
+  std::string arguments;              ///< settings and state
+  std::string prediction, corrected;  ///< their next arguments in ..._row() and ..._corrected_um()
+  std::string said;                   ///< before what is said of the last probing
+  std::string refused;                ///< number of refused ones
+};
+ProbeCalls probe_calls(const DeployedModel& d, const std::string& settings, const std::string& state,
+                       const std::string& prediction) {
+  if (d.members.empty())
+    return {.prefix = "probe",
+            .arguments = fmt::format("&{}, &{}", settings, state),
+            .prediction = prediction,
+            .corrected = prediction + ", ",
+            .said = state + ".",
+            .refused = state + ".n_refused"};
+  const std::size_t n = 1 + d.members.size();
+  return {.prefix = "probe_members",
+          .arguments = fmt::format("{}, {}.members, {}", settings, state, n),
+          .prediction = state + ".predictions_um",
+          .corrected = "",
+          .said = fmt::format("probe_leading({}.members, {})->", state, n),
+          .refused = state + ".members[0].n_refused"};
 }
 
 /// `static const TYPE NAME[] = {rows};`, with one row of zeros for an empty table: C has no empty arrays.
@@ -126,18 +160,18 @@ pin out float probe_off_um "of the last probing: read minus expected, um";
 pin out signed refused_probings "how many were refused";
 )";
 constexpr const char* kProbeRow =
-    "    probe_row(&process, &probing, prediction_um, axis_offset_correction_um(&axis), probe_waited_s);\n"
+    "    {0}_row({1}, {2}, axis_offset_correction_um(&axis), probe_waited_s);\n"
     "    probe_waited_s = 0.0;\n";
 constexpr const char* kProbeCycle =
     "  if (probe_strobe && !strobe_was_on) {{\n    if (is_started) {{\n{row}    }}\n"
-    "    probe_left(&process, &probing, probe_um);\n  }}\n"
+    "    {prefix}_left({arguments}, probe_um);\n  }}\n"
     "  strobe_was_on = probe_strobe;\n"
     "  if (is_started && probe_waited_s == 0.0)\n"
-    "    correction_um = probe_corrected_um(&process, &probing, prediction_um, {lowest}, {highest});\n";
+    "    correction_um = {prefix}_corrected_um({arguments}, {corrected}{lowest}, {highest});\n";
 constexpr const char* kProbeOutputs =
-    "  probe_residual_um = probe_expected_um(&process, &probing, 0.0);\n"
-    "  probe_sigma_um = probe_deviation_um(&process, &probing, 0.0);\n"
-    "  probe_verdict = probing.verdict;\n  probe_off_um = probing.off_um;\n  refused_probings = probing.n_refused;\n";
+    "  probe_residual_um = {0}_expected_um({1}, 0.0);\n"
+    "  probe_sigma_um = {0}_deviation_um({1}, 0.0);\n"
+    "  probe_verdict = {2}verdict;\n  probe_off_um = {2}off_um;\n  refused_probings = {3};\n";
 /// @}
 
 /// The component, as halcompile reads it.
@@ -214,31 +248,100 @@ FUNCTION(_) {{
 {outputs}{set_doubts}}}
 )";
 
+/// The settings of the filters, for both files. @param noise_um, lag_s  as C has them
+std::string processes_text(const DeployedModel& d, const std::string& noise_um, const std::string& lag_s) {
+  std::vector<std::string> texts;
+  for (const compensation::ResidualProcess& p : processes_of(d))
+    texts.push_back(process_text(p, noise_um, lag_s, d.model.from_start));
+  return d.members.empty() ? texts.front() : fmt::format("{{{}}}", fmt::join(texts, ", "));
+}
+
+std::string c_term(const drift_term& t) {
+  return fmt::format("{{{}, {}, {}, {}, {}, {}, {}}}", t.input, t.is_rise, t.holds, t.is_running, t.power,
+                     c_number(t.coefficient), c_number(t.lag_s));
+}
+
+/// The formulas of a blend whose weights move, and the state of its filters.
+std::string member_tables(const DeployedModel& d, const std::string& name, const std::vector<std::string>& inputs) {
+  std::string text = "/* The formulas of which the one above is the mean:";
+  std::vector<std::string> formulas;
+  for (const compensation::MemberResidual& m : d.member_residuals) text += fmt::format("\n * - {}", quoted(m.name));
+  text += " */\n";
+  for (std::size_t k = 0; k < d.members.size(); ++k) {
+    const compensation::FormulaTable formula = compensation::formula_table(d.members[k], inputs);
+    std::vector<std::string> terms;
+    for (const drift_term& t : formula.terms) terms.push_back(c_term(t));
+    const std::string of_member = fmt::format("{}_terms_{}", name, k + 1);
+    text += table("drift_term", of_member, terms);
+    formulas.push_back(fmt::format("{{{}, {}, {}}}", c_number(formula.formula.intercept_um), terms.size(), of_member));
+  }
+  text += table("drift_formula", name + "_members", formulas);
+  text += fmt::format(
+      "/* Of the mean, then of its members. All zero before the first call. */\n"
+      "typedef struct {{\n  probe_member members[{0}];\n  double predictions_um[{0}];\n}} {1}_probing_state;\n\n",
+      1 + d.members.size(), name);
+  return text;
+}
+
+/// What the mean and its members may send to an axis.
+std::string member_predictions(const DeployedModel& d, const std::string& name) {
+  return fmt::format(
+      "\n/* What the mean and its members may send to the axis [um], after {0}_correction_um() of the same row, which has "
+      "returned\n"
+      " * correction_um. predictions_um: {1} numbers. */\n"
+      "static void {0}_predictions_um({0}_state *s, double correction_um, double dt_s, double *predictions_um) {{\n"
+      "  drift_term_state *terms = s->member_terms;\n"
+      "  int k;\n"
+      "  predictions_um[0] = correction_um;\n"
+      "  for (k = 0; k < {2}; ++k) {{\n"
+      "    const double member_um = drift_formula_value(&{0}_members[k], terms, s->repaired, dt_s);\n"
+      "    predictions_um[k + 1] = probe_member_um(correction_um, s->run.trust, s->run.prediction_um, member_um);\n"
+      "    terms += {0}_members[k].n_terms;\n"
+      "  }}\n}}\n",
+      name, 1 + d.members.size(), d.members.size());
+}
+
 /// The second function of a model whose residual is known.
 std::string probed_function(const DeployedModel& d, const std::string& name, const std::vector<std::string>& arguments,
                             const std::vector<std::string>& readings) {
   std::vector<std::string> values = readings;
   values.emplace_back("");
-  return fmt::format(
-      "\n/* deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start; probe_feedback.h says what is computed. */\n"
-      "static const probe_process {0}_probing = {{{1}}};\n\n"
+  const bool is_blend = !d.members.empty();
+  const ProbeCalls calls = probe_calls(d, name + "_probing", "s->probing", "prediction_um");
+  std::string text = is_blend ? member_predictions(d, name) : "";
+  text += fmt::format(
+      "\n/* deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start; {0}.h says what is computed. */\n"
+      "static const probe_process {1}_probing{2} = {3};\n\n",
+      is_blend ? "probe_members" : "probe_feedback", name, is_blend ? "[]" : "",
+      processes_text(d, c_number(d.probe.noise_um), c_number(d.probe.lag_s)));
+  text += fmt::format(
       "/* The same with what probings have found, within the clamp and the slew limit. probed_um: the drift of the axis "
       "without\n"
       " * correction by a probing whose value has come since the call before [um], which is what the probe read on the "
       "corrected\n"
       " * axis plus the correction that was in force then; NAN without one. Call either this function or the one above.\n"
-      " * s->probing.verdict says what became of the last probing, s->probing.n_refused how many were refused;\n"
-      " * probe_deviation_um(&{0}_probing, &s->probing, 0.0) is the standard deviation of what is left. */\n"
-      "double {0}_probed_correction_um({0}_state *s, {2}double probed_um, double dt_s) {{\n"
-      "  const int is_first = !s->probing.has_begun;\n"
-      "  const double prediction_um = {0}_correction_um(s, {3}dt_s), before_um = is_first ? prediction_um : s->probed_um;\n"
-      "  probe_row(&{0}_probing, &s->probing, prediction_um, before_um, dt_s);\n"
-      "  if (!isnan(probed_um)) probe_drift(&{0}_probing, &s->probing, probed_um);\n"
-      "  s->probed_um = probe_corrected_um(&{0}_probing, &s->probing, prediction_um, {0}_safe.lowest_um,\n"
+      " * {1}verdict says what became of the last probing, {2} how many were refused;\n"
+      " * {3}_deviation_um({4}, 0.0) is the standard deviation of what is left.{5} */\n"
+      "double {0}_probed_correction_um({0}_state *s, {6}double probed_um, double dt_s) {{\n",
+      name, calls.said, calls.refused, calls.prefix, calls.arguments,
+      is_blend ? "\n * Weights among the mean and its members move with what they expected at probings: "
+                 "s->probing.members[k].weight."
+               : "",
+      fmt::join(arguments, ""));
+  text += fmt::format(
+      "  const int is_first = !{0}has_begun;\n"
+      "  const double prediction_um = {1}_correction_um(s, {2}dt_s), before_um = is_first ? prediction_um : s->probed_um;\n",
+      is_blend ? "s->probing.members[0].probing." : "s->probing.", name, fmt::join(values, ", "));
+  if (is_blend) text += fmt::format("  {0}_predictions_um(s, prediction_um, dt_s, s->probing.predictions_um);\n", name);
+  text += fmt::format(
+      "  {1}_row({2}, {3}, before_um, dt_s);\n"
+      "  if (!isnan(probed_um)) {1}_drift({2}, probed_um);\n"
+      "  s->probed_um = {1}_corrected_um({2}, {4}{0}_safe.lowest_um,\n"
       "                                    {0}_safe.highest_um);\n"
       "  if (!is_first) s->probed_um = probe_slewed_um(before_um, s->probed_um, {0}_safe.most_rate_um_s, dt_s);\n"
       "  return s->probed_um;\n}}\n",
-      name, probing_numbers(d), fmt::join(arguments, ""), fmt::join(values, ", "));
+      name, calls.prefix, calls.arguments, calls.prediction, calls.corrected);
+  return text;
 }
 
 }  // namespace
@@ -261,14 +364,19 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
     comment.replace(at, 1, "\n * ");
   std::string text = fmt::format("/* Correction of {} [um], by {}. {}\n *\n * {} *\n", quoted(d.model.target),
                                  quoted(d.model.kind), quoted(made_by), comment);
-  const char* probing_file = d.residual ? " probe_feedback.c" : "";
+  const char* probing_file = !d.members.empty() ? " probe_feedback.c probe_members.c"
+                             : d.residual       ? " probe_feedback.c"
+                                                : "";
+  const char* probing_include = !d.members.empty() ? "#include \"probe_members.h\"\n"
+                                : d.residual       ? "#include \"probe_feedback.h\"\n"
+                                                   : "";
   text += fmt::format(
       " * Compile it with drift_correction.c, which lies beside it; drift_correction.h says what is computed, and how it "
       "must be\n"
       " * compiled to give the numbers that were judged, to the last bit: cc -std=c99 -ffp-contract=off THIS.c "
       "drift_correction.c{} -lm */\n"
       "#include \"drift_correction.h\"\n{}\n#include <math.h>\n\n",
-      probing_file, d.residual ? "#include \"probe_feedback.h\"\n" : "");
+      probing_file, probing_include);
   text += fmt::format("#define {}_INPUTS {}\n#define {}_TERMS {}\n\n", capitals, n, capitals, formula.terms.size());
 
   for (std::size_t k = 0; k < n; ++k) {
@@ -284,10 +392,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
                                  c_number(g.high), c_number(g.most_jump), c_number(g.others_intercept), others,
                                  c_number(g.most_apart)));
   }
-  for (const drift_term& t : formula.terms) {
-    terms.push_back(fmt::format("{{{}, {}, {}, {}, {}, {}, {}}}", t.input, t.is_rise, t.holds, t.is_running, t.power,
-                                c_number(t.coefficient), c_number(t.lag_s)));
-  }
+  for (const drift_term& t : formula.terms) terms.push_back(c_term(t));
   text += "/* is_rise, low, high, most_jump, others_intercept, others_coefficient, most_apart */\n";
   text += table("drift_guard", name + "_guards", guards);
   text += fmt::format(
@@ -303,12 +408,20 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   text += fmt::format("static const drift_formula {0}_formula = {{{2}, {1}_TERMS, {0}_terms}};\n\n", name, capitals,
                       c_number(formula.formula.intercept_um));
 
+  std::string probing = d.residual ? "  probe_state probing;\n  double probed_um;\n" : "";
+  if (!d.members.empty()) {
+    std::size_t n_member_terms = 0;
+    for (const compensation::DriftModel& m : d.members) n_member_terms += m.terms.size();
+    text += member_tables(d, name, inputs);
+    probing = fmt::format("  drift_term_state member_terms[{}];\n  {}_probing_state probing;\n  double probed_um;\n",
+                          std::max<std::size_t>(1, n_member_terms), name);
+  }
   const std::size_t room = std::max<std::size_t>(1, n), n_terms = std::max<std::size_t>(1, formula.terms.size());
   text += fmt::format(
       "/* All zero before the first call. Afterwards run.trust, inputs[k].is_doubted and repaired[k] may be read. */\n"
       "typedef struct {{\n  drift_state run;\n  drift_input_state inputs[{}];\n  drift_term_state terms[{}];\n"
       "  double repaired[{}], room[{}];\n{}}} {}_state;\n\n",
-      room, n_terms, room, room * (room + 1), d.residual ? "  probe_state probing;\n  double probed_um;\n" : "", name);
+      room, n_terms, room, room * (room + 1), probing, name);
   text += fmt::format(
       "/* What to take away from the position [um]: the axis moves by its negative. Readings that are missing are NAN.\n"
       " * dt_s: since the call before; it does not matter in the first one. */\n"
@@ -342,6 +455,7 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
   }
   std::string step = fmt::format("    correction_um = {}_correction_um(&model, {}waited_s);\n", target, values);
   std::string probe_pins, probe_parameters, probe_variables, begin, probe, outputs, is_wrong = "axis.is_wrong";
+  std::string probe_include = d.residual ? "include \"probe_feedback.c\";\n" : "";
   std::string description_files =
       "drift_correction.c the code. Both, with\ndrift_correction.h, axis_offset.h and axis_offset.c,";
   if (d.residual) {
@@ -349,24 +463,36 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
         "drift_correction.c and\nprobe_feedback.c the code. They, with drift_correction.h, probe_feedback.h, axis_offset.h "
         "and "
         "axis_offset.c,";
-    const compensation::ResidualProcess& r = *d.residual;
+    const bool is_blend = !d.members.empty();
+    const ProbeCalls calls = probe_calls(d, is_blend ? "processes" : "process", "probing", "prediction_um");
+    const std::string state_type = is_blend ? target + "_probing_state" : "probe_state";
+    const std::string row = fmt::format(kProbeRow, calls.prefix, calls.arguments, calls.prediction);
+    if (is_blend) {
+      description_files =
+          "drift_correction.c,\nprobe_feedback.c and probe_members.c the code. They, with drift_correction.h, "
+          "probe_feedback.h, probe_members.h,\naxis_offset.h and axis_offset.c,";
+      probe_include = "include \"probe_feedback.c\";\ninclude \"probe_members.c\";\n";
+    }
     probe_pins = kProbePins;
     probe_parameters = fmt::format(
         "param rw float probe_noise_um = {} \"of a probing, 1 sigma, um; above 0\";\n"
         "param rw float probe_lag_s = {} \"from the touch until probe-strobe turns on, s; 0 or more\";\n",
         c_number(d.probe.noise_um), c_number(d.probe.lag_s));
-    probe_variables =
-        "variable probe_state probing;\nvariable double prediction_um;\nvariable double probe_waited_s;\n"
-        "variable int strobe_was_on;\n";
-    begin = fmt::format(
-        "  static const probe_state unprobed;\n"
-        "  const probe_process process = {{{}, {}, probe_noise_um, probe_lag_s, {}}};\n",
-        c_number(r.deviation_um), c_number(r.time_constant_s), d.model.from_start ? 1 : 0);
-    step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, values) + kProbeRow;
-    probe = fmt::format(kProbeCycle, fmt::arg("row", kProbeRow), fmt::arg("lowest", c_number(d.safe.lowest_um)),
-                        fmt::arg("highest", c_number(d.safe.highest_um)));
-    outputs = kProbeOutputs;
-    is_wrong = "axis.is_wrong || !probe_is_valid(&process)";
+    probe_variables = fmt::format(
+        "variable {} probing;\nvariable double prediction_um;\nvariable double probe_waited_s;\n"
+        "variable int strobe_was_on;\n",
+        state_type);
+    begin = fmt::format("  static const {} unprobed;\n  const probe_process process{} = {};\n", state_type,
+                        is_blend ? "es[]" : "", processes_text(d, "probe_noise_um", "probe_lag_s"));
+    step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, values);
+    if (is_blend)
+      step += fmt::format("    {}_predictions_um(&model, prediction_um, waited_s, probing.predictions_um);\n", target);
+    step += row;
+    probe = fmt::format(kProbeCycle, fmt::arg("row", row), fmt::arg("prefix", calls.prefix),
+                        fmt::arg("arguments", calls.arguments), fmt::arg("corrected", calls.corrected),
+                        fmt::arg("lowest", c_number(d.safe.lowest_um)), fmt::arg("highest", c_number(d.safe.highest_um)));
+    outputs = fmt::format(kProbeOutputs, calls.prefix, calls.arguments, calls.said, calls.refused);
+    is_wrong = fmt::format("axis.is_wrong || !probe_is_valid({})", is_blend ? "&processes[0]" : "&process");
   }
   return fmt::format(kComponent, fmt::arg("name", name), fmt::arg("target", quoted(d.model.target)),
                      fmt::arg("kind", quoted(d.model.kind)), fmt::arg("made_by", quoted(made_by)),
@@ -374,9 +500,9 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
                      fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
                      fmt::arg("files", description_files), fmt::arg("probe_pins", probe_pins),
                      fmt::arg("probe_parameters", probe_parameters), fmt::arg("probe_variables", probe_variables),
-                     fmt::arg("probe_include", d.residual ? "include \"probe_feedback.c\";\n" : ""),
-                     fmt::arg("begin", begin), fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""),
-                     fmt::arg("probe", probe), fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
+                     fmt::arg("probe_include", probe_include), fmt::arg("begin", begin),
+                     fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""), fmt::arg("probe", probe),
+                     fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
                      fmt::arg("forget", d.residual ? "    probing = unprobed;\n    probe_waited_s = 0.0;\n" : ""),
                      fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
                      fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))),

@@ -40,7 +40,13 @@ DeployedModel deployed_model(const compensation::DeployedPredictor& d) {
                     "Predictor::formula() of its class must give",
                     d.name));
   if (!d.fail_safe) throw std::logic_error(fmt::format("'{}' has no fail-safe; a control needs one", d.name));
-  return {*formula, *d.fail_safe, d.interval_um.value_or(std::numeric_limits<double>::quiet_NaN()), d.residual, d.probe};
+  DeployedModel model{*formula, *d.fail_safe, d.interval_um.value_or(std::numeric_limits<double>::quiet_NaN()), d.residual,
+                      d.probe};
+  if (d.residual && d.predictor->members() && !d.member_residuals.empty()) {
+    model.members = *d.predictor->members();
+    model.member_residuals = d.member_residuals;
+  }
+  return model;
 }
 
 std::string formula_text(const DeployedModel& d) {

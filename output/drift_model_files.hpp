@@ -15,6 +15,9 @@ struct DeployedModel {
   double interval_um = 0.0;                                    ///< half width of its 95 % prediction interval; NaN: unknown
   std::optional<compensation::ResidualProcess> residual = {};  ///< what it leaves, for probings; none: unknown
   compensation::Probe probe = {};
+  /// Of a mean whose weights move with probings: its formulas, and what each leaves; otherwise both are empty.
+  std::vector<compensation::DriftModel> members = {};
+  std::vector<compensation::MemberResidual> member_residuals = {};
 };
 
 /// What a control can run of a predictor: its formula with its fail-safe.

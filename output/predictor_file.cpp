@@ -9,6 +9,7 @@
 #include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
 #include "base/hashed_json.hpp"
+#include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/predictor_kind.hpp"
 #include "output/fail_safe_json.hpp"
 #include "output/json_value.hpp"
@@ -62,13 +63,41 @@ Written written_of(const DeployedPredictor& d) {
   return *std::move(written);
 }
 
+Json process_json(const ResidualProcess& process) {
+  return {{"deviation_um", process.deviation_um},
+          {"time_constant_s", process.time_constant_s},
+          {"reading_um", process.reading_um}};
+}
+
 Json probing_json(const DeployedPredictor& d) {
   if (!d.residual) return nullptr;
-  return {{"deviation_um", d.residual->deviation_um},
-          {"time_constant_s", d.residual->time_constant_s},
-          {"reading_um", d.residual->reading_um},
-          {"noise_um", d.probe.noise_um},
-          {"lag_s", d.probe.lag_s}};
+  Json j = process_json(*d.residual);
+  j["noise_um"] = d.probe.noise_um;
+  j["lag_s"] = d.probe.lag_s;
+  for (const MemberResidual& m : d.member_residuals) {
+    Json member = {{"name", m.name}};
+    member.update(process_json(m.process));
+    j["members"].push_back(std::move(member));
+  }
+  return j;
+}
+
+ResidualProcess read_process(const Json& j) {
+  const ResidualProcess process{positive(j, "deviation_um"), positive(j, "time_constant_s"), finite(j, "reading_um")};
+  if (process.reading_um < 0.0)
+    throw InputError(fmt::format("key `reading_um` is {}; it must be 0 or more", process.reading_um));
+  return process;
+}
+
+/// What the members of a blend leave. Without it, its weights do not move.
+void read_members(const Json& j, DeployedPredictor& d) {
+  const Json members = list(j, "members");
+  const std::size_t n = d.predictor->members() ? d.predictor->members()->size() : 0;
+  if (members.size() != n)
+    throw InputError(fmt::format("key `members` has {} entries, but the formula has {} `members`; each must have one",
+                                 members.size(), n));
+  for (const Json& member : members)
+    d.member_residuals.push_back({value<std::string>(member, "name"), read_process(member)});
 }
 
 /// What probings need. Files of earlier versions have none.
@@ -77,11 +106,10 @@ void read_probing(const Json& file, DeployedPredictor& d) {
   const auto j = value<Json>(file, "probing");
   if (!j.is_object()) throw InputError(fmt::format("key `probing` is {}; it must be a map, or null", j.dump()));
   try {
-    d.residual = {positive(j, "deviation_um"), positive(j, "time_constant_s"), finite(j, "reading_um")};
+    d.residual = read_process(j);
     d.probe = {positive(j, "noise_um"), finite(j, "lag_s")};
-    for (const char* key : {"reading_um", "lag_s"}) {
-      if (finite(j, key) < 0.0) throw InputError(fmt::format("key `{}` is {}; it must be 0 or more", key, finite(j, key)));
-    }
+    if (d.probe.lag_s < 0.0) throw InputError(fmt::format("key `lag_s` is {}; it must be 0 or more", d.probe.lag_s));
+    if (j.contains("members")) read_members(j, d);
   } catch (const InputError& e) {
     throw InputError(fmt::format("key `probing`: {}", e.what()));
   }
@@ -107,6 +135,8 @@ PredictorFile file_of(const Json& j) {
   read_probing(j, d);
   if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
   require_guards(d);
+  if (!d.member_residuals.empty() && !d.fail_safe)
+    throw InputError("key `fail_safe` is null; a formula whose `members` have probings must have one");
   file.judged = value<Json>(j, "judged");
   if (j.contains("watch")) file.watch = j["watch"];
   if (j.contains("covered") && !j["covered"].is_null()) {

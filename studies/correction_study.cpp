@@ -56,15 +56,21 @@ void require_model_follows(const Scenario& scenario, const DeployedPredictor& d,
 }
 
 /// The correction without an actuator, as `validate` judges it.
-CorrectionStudy through_none(const DeployedPredictor& d, const MachineRun& run) {
+CorrectionStudy through_none(const DeployedPredictor& d, const MachineRun& run,
+                             const std::optional<double>& probed_every_s) {
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
   compensation::Judgement j = compensation::judge(d, run, drift_um);
+  std::optional<ProbedRun> probed;
+  if (probed_every_s)
+    probed = probed_run(probed_members(d, j), run.readings.time_s,
+                        {.every_s = *probed_every_s, .noise_um = d.probe.noise_um, .keeps_rows = true});
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = std::move(j.correction_um),
           .left_um = std::move(j.left_um),
           .before = j.scores.before,
-          .after = j.scores.after};
+          .after = j.scores.after,
+          .probed = std::move(probed)};
 }
 
 CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredictor& d, const MachineRun& run) {
@@ -114,6 +120,8 @@ void drop_lead_in(CorrectionStudy& o, std::size_t n_before) {
   if (n_before == 0) return;
   for (std::vector<double>* values : {&o.time_s, &o.drift_um, &o.predicted_um, &o.left_um})
     values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(n_before));
+  if (o.probed)
+    o.probed->left_um.erase(o.probed->left_um.begin(), o.probed->left_um.begin() + static_cast<std::ptrdiff_t>(n_before));
   const double start_s = o.time_s.front();
   for (double& t_s : o.time_s) t_s -= start_s;
 }
@@ -205,7 +213,7 @@ CorrectionStudy correct_run(const Scenario& scenario, std::optional<DeployedPred
   const DeployedPredictor& d = *predictor;
   listener.begin("correcting");
   changeable_channel(run.readings, d.target) = scored_readings(run, d.target, d.from_start).at(d.target);
-  CorrectionStudy o = request.through == "none"       ? through_none(d, run)
+  CorrectionStudy o = request.through == "none"       ? through_none(d, run, request.probed_every_s)
                       : request.through == "injector" ? through_injector(scenario, d, run)
                                                       : through_schedule(scenario, d, run, ahead_um);
   drop_lead_in(o, run.n_before);

@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/predictors/residual_process.hpp"
 #include "compensation/predictors/score.hpp"
 
 namespace driftwright::compensation {
 
-/// A predictor with what its correction leaves per row [um]; NaN where the drift is unknown. The loan lasts for the call.
+/// What the correction of a predictor leaves per row [um]; NaN where the drift is unknown. The loan lasts for the call.
 struct ProbedMember {
-  const DeployedPredictor* predictor = nullptr;  ///< with a process of its residual
+  probe_process process;  ///< of its residual; without lag
   std::span<const double> left_um = {};
 };
 
@@ -31,6 +31,7 @@ struct RunProbing {
   ProbeFault fault = ProbeFault::kNone;
   double fails_at_s = 0.0;
   double error_um = 0.0;  ///< of a biased probe
+  bool keeps_rows = false;
 };
 
 struct ProbedRun {
@@ -38,11 +39,12 @@ struct ProbedRun {
   int n_probings = 0, n_refused = 0;
   /// Number of the probing after the fault that was refused or taken as a jump, from one; none: no one notices it.
   std::optional<int> noticed_at = {};
+  std::vector<double> left_um = {};  ///< per row, if RunProbing asks for it
 };
 
 /// Probings at the first row after each interval. Each counts from the row after it. With one member it is corrected as
-/// `follow` does. With several, each has a filter of its own, and the correction is the mean of theirs with its residual by
-/// MemberWeights (member_weights.hpp), whose losses are probing_loss().
+/// `follow` does. With several, each has a filter of its own, and the correction is the mean of theirs with weights that move
+/// with their losses, by the C code of controls (control/probe_members.h).
 /// @param time_s  of the rows
 /// @param weights  null, or the mean weights over the rows
 [[nodiscard]] ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const double> time_s,

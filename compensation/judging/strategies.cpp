@@ -320,6 +320,10 @@ std::optional<DeployedPredictor> blend(std::vector<Member> members, const Folded
   if (s.probing) d.probe.noise_um = s.probing->noise_um;
   const double room = set_left_out(d, in_folds, folds, left_out_settings(s));
   d.fail_safe = fail_safe_of(*d.predictor, training, left_out_settings(s), room);
+  const auto has_residual = [](const Member& m) { return m.deployed.residual.has_value(); };
+  if (d.residual && std::all_of(members.begin(), members.end(), has_residual)) {
+    for (const Member& m : members) d.member_residuals.push_back({m.deployed.name, *m.deployed.residual});
+  }
   return d;
 }
 

@@ -326,6 +326,14 @@ const JudgedStrategy& best_in_hindsight(const StrategyMatrix& matrix) {
                            [](const JudgedStrategy& a, const JudgedStrategy& b) { return overall_rms(a) < overall_rms(b); });
 }
 
+std::vector<ProbedMember> probed_members(const DeployedPredictor& strategy, const Judgement& judged) {
+  const std::vector<probe_process> processes = probe_processes_of(strategy, {.noise_um = strategy.probe.noise_um});
+  std::vector<ProbedMember> members = {{processes.front(), judged.left_um}};
+  for (std::size_t m = 0; m < judged.members_left_um.size(); ++m)
+    members.push_back({processes[m + 1], judged.members_left_um[m]});
+  return members;
+}
+
 Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const std::vector<double>& drift_um) {
   Case c;
   const std::vector<double> predicted = live(*strategy.predictor, run);
@@ -351,7 +359,10 @@ Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const 
   c.whole_um = range_until(run.readings.time_s, left, run.n_before, std::numeric_limits<double>::infinity());
   c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
   c.events = std::move(correction.events);
-  return {std::move(c), std::move(correction.correction_um), std::move(left)};
+  for (std::vector<double>& member_um : correction.members_um) {  // of corrections, now of what they leave
+    for (std::size_t i = 0; i < drift_um.size(); ++i) member_um[i] = drift_um[i] - member_um[i];
+  }
+  return {std::move(c), std::move(correction.correction_um), std::move(left), std::move(correction.members_um)};
 }
 
 namespace {
@@ -362,11 +373,11 @@ void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, co
   const std::optional<Probing>& probing = settings.strategies.probing;
   if (!probing || !strategy.residual) return;
   const std::vector<double>& t_s = run.readings.time_s;
-  const std::vector<ProbedMember> alone = {{&strategy, judged.left_um}};
+  const std::vector<ProbedMember> members = probed_members(strategy, judged);
   RunProbing how{.noise_um = probing->noise_um, .seed = seed};
   for (double every_s : probing->every_s) {
     how.every_s = every_s;
-    c.probed.push_back(probed_run(alone, t_s, how));
+    c.probed.push_back(probed_run(members, t_s, how));
   }
   if (!c.failed.empty()) return;
   const double start_s = t_s[run.n_before];
@@ -374,9 +385,9 @@ void probe(const MatrixSettings& settings, const DeployedPredictor& strategy, co
   how.fails_at_s = start_s + settings.fails_at.value_or(0.5) * (t_s.back() - start_s);
   how.error_um = settings.tolerance_um;
   how.fault = ProbeFault::kStuck;
-  c.stuck_probe = probed_run(alone, t_s, how);
+  c.stuck_probe = probed_run(members, t_s, how);
   how.fault = ProbeFault::kBiased;
-  c.biased_probe = probed_run(alone, t_s, how);
+  c.biased_probe = probed_run(members, t_s, how);
 }
 
 /// What a correction leaves in each case of a strategy on a run, in the order of the cases.
@@ -410,7 +421,9 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
       const std::vector<Case>& own = cases[s * n_runs + weighted.run];
       const auto at = std::find_if(own.begin(), own.end(), [&](const Case& c) { return c.failed == weighted.failed; });
       const std::size_t index = at == own.end() ? 0 : static_cast<std::size_t>(at - own.begin());  // the first is intact
-      with.push_back({&strategies[s], left_um[s * n_runs + weighted.run][index]});
+      with.push_back(
+          {probe_process_of(*strategies[s].residual, {.noise_um = strategies[s].probe.noise_um}, strategies[s].from_start),
+           left_um[s * n_runs + weighted.run][index]});
     }
     for (double every_s : probing->every_s) {
       const bool is_first = weighted.probed.empty();

@@ -104,7 +104,12 @@ struct Judgement {
   Case scores;                        ///< without `run` and `failed`, which the matrix sets
   std::vector<double> correction_um;  ///< as sent to the axis
   std::vector<double> left_um;        ///< drift - correction; NaN where the drift is unknown
+  /// The same for each member of a blend whose weights move with probings (GuardedCorrection::members_um).
+  std::vector<std::vector<double>> members_left_um = {};
 };
+/// The strategy with what it leaves, then its members if their weights move with probings. The loan lasts as long as both.
+/// @throws std::logic_error  for a strategy without a process
+[[nodiscard]] std::vector<ProbedMember> probed_members(const DeployedPredictor& strategy, const Judgement& judged);
 /// Judges one predictor on one run. @param drift_um true, per row of the run's readings; from the start if the predictor
 /// counts so
 [[nodiscard]] Judgement judge(const DeployedPredictor& strategy, const MachineRun& run, const std::vector<double>& drift_um);

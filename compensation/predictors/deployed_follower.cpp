@@ -92,11 +92,15 @@ FollowedCorrection DeployedFollower::next(MachineRun& run) {
   std::optional<double> interval_um = interval_in_force_um(deployed_, least_trust_, follower_->deviation_um());
   const std::optional<double> half_width_um = interval_um;
   if (interval_um) *interval_um += std::abs(guard_.prediction_um - correction_um);
-  return {.prediction_um = drift_um,
-          .correction_um = correction_um,
-          .trust = guard_.trust,
-          .interval_um = interval_um,
-          .half_width_um = half_width_um};
+  FollowedCorrection c{.prediction_um = drift_um,
+                       .correction_um = correction_um,
+                       .trust = guard_.trust,
+                       .interval_um = interval_um,
+                       .half_width_um = half_width_um};
+  if (deployed_.member_residuals.empty()) return c;
+  for (double member_um : follower_->members_um())
+    c.members_um.push_back(probe_member_um(correction_um, guard_.trust, drift_um, member_um));
+  return c;
 }
 
 std::vector<std::string> DeployedFollower::doubted() const {

@@ -17,6 +17,8 @@ struct FollowedCorrection {
   /// predictor has no interval.
   std::optional<double> interval_um = {};
   std::optional<double> half_width_um = {};  ///< of that, without the distance from the prediction to the correction
+  /// Of a blend whose weights move with probings: what each member may send to the axis (control/probe_members.h).
+  std::vector<double> members_um = {};
 };
 
 /// A deployed predictor during one run. The predictor must outlive it.

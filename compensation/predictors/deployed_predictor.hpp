@@ -35,6 +35,9 @@ struct DeployedPredictor {
   /// What it leaves on parts of the training runs that were left out, for probings; none if no part could be left out.
   std::optional<ResidualProcess> residual = {};
   Probe probe = {};  ///< that the axis is probed with
+  /// Of a mean of formulas, what each leaves, in the order of Predictor::members(): with probings, weights among the mean
+  /// itself and its members move with their losses. Empty: the mean stays as it is.
+  std::vector<MemberResidual> member_residuals = {};
   /// Largest residual on the training runs, to which it is fitted, with one of its sensors failed [um]; none: not tried. Not
   /// stored in files.
   std::optional<double> failed_um = {};
@@ -45,6 +48,11 @@ struct DeployedPredictor {
 /// guarded is neither written to a file nor read from one.
 [[nodiscard]] std::optional<Input> unguarded_input(const DeployedPredictor& deployed);
 
+/// The settings of the filters of probings: of the predictor itself, then of its members if their weights move.
+/// @param probe  that the axis is probed with
+/// @throws std::logic_error  for a predictor without a process
+[[nodiscard]] std::vector<probe_process> probe_processes_of(const DeployedPredictor& deployed, const Probe& probe);
+
 /// @param own_um  the predictor's own standard deviation (Follower::deviation_um())
 /// @return the half width of the prediction interval in force [um]: interval_um / trust, at least kNormal95 of its own
 ///         deviations; none without trust, and if there is no interval
@@ -53,14 +61,16 @@ struct DeployedPredictor {
 
 /// The drift of a run as predicted from repaired readings, before clamp and slew limit.
 struct PredictedDrift {
-  Repaired readings;                                ///< with the trust that readings and predictor deserve
-  std::vector<double> drift_um;                     ///< per row; NaN without a prediction
-  std::vector<std::optional<double>> deviation_um;  ///< per row: Follower::deviation_um()
+  Repaired readings;                                 ///< with the trust that readings and predictor deserve
+  std::vector<double> drift_um;                      ///< per row; NaN without a prediction
+  std::vector<std::optional<double>> deviation_um;   ///< per row: Follower::deviation_um()
+  std::vector<std::vector<double>> members_um = {};  ///< per row: Follower::members_um()
 };
 [[nodiscard]] PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const MachineRun& run);
 
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
-/// prediction, or 0 without one. Its interval is that in force, plus the distance from the prediction to the correction.
+/// prediction, or 0 without one. Its members, if weights among them move, are those of Follower::members_um() as they may go
+/// to an axis (control/probe_members.h). Its interval is that in force, plus the distance from the prediction to the correction.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const MachineRun& run);
 
 }  // namespace driftwright::compensation

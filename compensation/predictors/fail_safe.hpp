@@ -90,7 +90,9 @@ struct GuardedCorrection {
   std::vector<double> trust;          ///< factor on the prediction, 0 to 1
   /// Of correct(): half width of the 95 % interval of the drift about the correction [um], per row; NaN without one.
   std::vector<double> interval_um = {};
-  std::vector<std::string> events;    ///< those of the repair
+  std::vector<std::string> events;  ///< those of the repair
+  /// Of correct(): what members of a blend may send to the axis [um], [member][row].
+  std::vector<std::vector<double>> members_um = {};
 };
 
 /// Limits a prediction before it is sent to an axis: multiplied by trust, clamped, and limited in slew. While the prediction

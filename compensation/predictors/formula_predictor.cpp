@@ -61,8 +61,10 @@ class FormulaFollower final : public Follower {
     ++row_;
     const double mean_um = formulas_.front().next(reading_.data(), dt_s);
     square_um2_ = 0.0;
+    members_um_.clear();
     for (std::size_t k = 1; k < formulas_.size(); ++k) {
-      const double apart_um = formulas_[k].next(reading_.data(), dt_s) - mean_um;
+      members_um_.push_back(formulas_[k].next(reading_.data(), dt_s));
+      const double apart_um = members_um_.back() - mean_um;
       square_um2_ += apart_um * apart_um / static_cast<double>(formulas_.size() - 1);
     }
     return mean_um;
@@ -71,6 +73,8 @@ class FormulaFollower final : public Follower {
   [[nodiscard]] std::optional<double> deviation_um() const override {
     return formulas_.size() > 1 && std::isfinite(square_um2_) ? std::optional(std::sqrt(square_um2_)) : std::nullopt;
   }
+
+  [[nodiscard]] std::vector<double> members_um() const override { return members_um_; }
 
   [[nodiscard]] std::vector<double> memory() const override {
     std::vector<double> m = {static_cast<double>(row_)};
@@ -104,7 +108,7 @@ class FormulaFollower final : public Follower {
   std::vector<Input> inputs_;
   std::vector<Evaluated> formulas_;  // the formula, then its members
   std::vector<std::size_t> channel_;
-  std::vector<double> reading_;
+  std::vector<double> reading_, members_um_;
   double square_um2_ = 0.0;  // mean square of the members' distances in the last row
   std::size_t row_ = 0;
   bool has_channels_ = false;

@@ -20,6 +20,7 @@ class FormulaPredictor final : public Predictor {
   /// Kind `formula`: kind of fit, intercept and terms; members.
   [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] const DriftModel* formula() const override { return &model_; }
+  [[nodiscard]] const std::vector<DriftModel>* members() const override { return members_.empty() ? nullptr : &members_; }
   /// Gives row by row the same as DriftModel::predict() for the whole record.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 

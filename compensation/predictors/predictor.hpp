@@ -42,6 +42,8 @@ class Follower {
   virtual void recall(std::span<const double> memory) = 0;
   /// Standard deviation of the last drift [um], if known.
   [[nodiscard]] virtual std::optional<double> deviation_um() const { return std::nullopt; }
+  /// Of a mean of formulas (Predictor::members()): the last drift of each [um]; empty for others.
+  [[nodiscard]] virtual std::vector<double> members_um() const { return {}; }
   /// Trust in the model that its inputs justify, 0 to 1: 1 while they agree, and for a predictor without such a check.
   [[nodiscard]] virtual double deserved_trust() const { return 1.0; }
   /// The inputs that it has stopped using, and from when: "t05 from 31 min".
@@ -79,6 +81,8 @@ class Predictor {
   /// The formula that gives the same drift, for text, C, LinuxCNC and means of several; null: it is no formula of its
   /// inputs.
   [[nodiscard]] virtual const DriftModel* formula() const { return nullptr; }
+  /// Of a mean of formulas: these formulas; null for others.
+  [[nodiscard]] virtual const std::vector<DriftModel>* members() const { return nullptr; }
   /// The state observer in it, for a watch over the machine and for functional mock-up units; null if it has no observer.
   [[nodiscard]] virtual const Observer* observer() const { return nullptr; }
 

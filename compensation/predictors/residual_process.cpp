@@ -76,37 +76,22 @@ probe_process probe_process_of(const ResidualProcess& process, const Probe& prob
 
 namespace {
 
-constexpr std::size_t kNumbersOfEstimate = 5, kNumbersOfPast = 3;
+constexpr std::size_t kNumbersOfEstimate = 5, kNumbersOfPast = 3, kNumbersOfMember = 5;
 constexpr std::size_t kNumbersOfProbings = 13 + 2 * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
 
-}  // namespace
-
-std::vector<double> ProbeFeedback::memory() const {
-  const probe_state& s = state_;
-  std::vector<double> m = {static_cast<double>(s.has_begun),
-                           static_cast<double>(s.has_jumped),
-                           static_cast<double>(s.n_pasts),
-                           static_cast<double>(s.newest),
-                           s.time_s,
-                           static_cast<double>(s.verdict),
-                           s.off_um,
-                           s.bound_um,
-                           static_cast<double>(s.n_taken),
-                           static_cast<double>(s.n_refused),
-                           static_cast<double>(s.n_jumps),
-                           static_cast<double>(s.n_in_row),
-                           s.sum_squares};
+void add_numbers_of(const probe_state& s, std::vector<double>& m) {
+  m.insert(m.end(), {static_cast<double>(s.has_begun), static_cast<double>(s.has_jumped), static_cast<double>(s.n_pasts),
+                     static_cast<double>(s.newest), s.time_s, static_cast<double>(s.verdict), s.off_um, s.bound_um,
+                     static_cast<double>(s.n_taken), static_cast<double>(s.n_refused), static_cast<double>(s.n_jumps),
+                     static_cast<double>(s.n_in_row), s.sum_squares});
   for (const probe_estimate& e : {s.now, s.jumped})
     m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2});
   for (const probe_past& p : s.past) m.insert(m.end(), {p.time_s, p.prediction_um, p.correction_um});
-  return m;
 }
 
-void ProbeFeedback::recall(std::span<const double> m) {
+probe_state probe_state_of(std::span<const double> m) {
   const auto is_index = [&](std::size_t k, int most) { return m[k] >= 0.0 && m[k] <= most; };
-  if (m.size() != kNumbersOfProbings || !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); }) ||
-      !is_index(2, PROBE_PASTS) || !is_index(3, PROBE_PASTS - 1))
-    throw std::logic_error("the memory of other probings");
+  if (!is_index(2, PROBE_PASTS) || !is_index(3, PROBE_PASTS - 1)) throw std::logic_error("the memory of other probings");
   probe_state s{};
   s.has_begun = m[0] != 0.0;
   s.has_jumped = m[1] != 0.0;
@@ -130,7 +115,49 @@ void ProbeFeedback::recall(std::span<const double> m) {
     p = {at[0], at[1], at[2]};
     at += kNumbersOfPast;
   }
-  state_ = s;
+  return s;
+}
+
+}  // namespace
+
+void ProbeFeedback::row(std::span<const double> predictions_um, double correction_um, double step_s) {
+  if (predictions_um.size() != members_.size())
+    throw std::logic_error("ProbeFeedback: a prediction for each predictor is required");
+  probe_members_row(processes_.data(), members_.data(), n(), predictions_um.data(), correction_um, step_s);
+}
+
+std::vector<double> ProbeFeedback::memory() const {
+  std::vector<double> m;
+  for (const probe_member& member : members_) {
+    add_numbers_of(member.probing, m);
+    if (members_.size() == 1) break;
+    m.insert(m.end(), {member.prediction_um, member.weight, member.loss, static_cast<double>(member.is_leading),
+                       static_cast<double>(member.n_refused)});
+  }
+  return m;
+}
+
+void ProbeFeedback::recall(std::span<const double> m) {
+  const std::size_t each = kNumbersOfProbings + (members_.size() > 1 ? kNumbersOfMember : 0);
+  if (m.size() != each * members_.size() || !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); }))
+    throw std::logic_error("the memory of other probings");
+  std::vector<probe_member> members;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const std::span<const double> of_member = m.subspan(each * k, each), own = of_member.subspan(kNumbersOfProbings);
+    probe_member member{};
+    member.probing = probe_state_of(of_member);
+    member.weight = 1.0;
+    member.n_refused = member.probing.n_refused;
+    if (members_.size() > 1) {
+      member.prediction_um = own[0];
+      member.weight = own[1];
+      member.loss = own[2];
+      member.is_leading = own[3] != 0.0;
+      member.n_refused = static_cast<int>(own[4]);
+    }
+    members.push_back(member);
+  }
+  members_ = std::move(members);
 }
 
 }  // namespace driftwright::compensation

@@ -144,13 +144,14 @@ FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& 
   return model;
 }
 
-FmuModel observer_fmu(const Scenario& scenario, const compensation::Observer& observer) {
+FmuModel observer_fmu(const Scenario& scenario, const compensation::Observer& observer,
+                      const std::optional<probe_process>& probing) {
   compensation::Observer::State state = observer.state();
   FmuModel model = model_of(scenario, state.system);
   model.start = state.start;
   model.start_ambient_K = state.start_ambient_K;
   model.start_follows_ambient = true;
-  FmuObserver o{.sensors = state.sensors, .settings = state.settings, .factors = state.factors};
+  FmuObserver o{.sensors = state.sensors, .settings = state.settings, .factors = state.factors, .probing = probing};
   const auto index_of = [&](const std::string& name) {
     const auto at =
         std::find_if(model.outputs.begin(), model.outputs.end(), [&](const auto& out) { return out.name == name; });

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/control/probe_feedback.h"
 #include "compensation/predictors/observer.hpp"
 #include "machine/model.hpp"
 #include "output/fmu/drive_law.hpp"
@@ -35,6 +36,7 @@ struct FmuObserver {
   int drift_output = 0;
   compensation::ObserverSettings settings = {};
   compensation::Observer::Belief factors = {};
+  std::optional<probe_process> probing = {};  ///< of what it leaves, for probings; none: it takes none
 };
 
 /// dz/dt = -K z + f, M = 1, as solver::ThermalSystem. For a machine, parts that the drive does not change are summed in
@@ -68,7 +70,9 @@ void require_exportable(const scenarios::Scenario& scenario);
 /// @throws InputError  naming the law: one that depends on temperatures, a thermostat, two variables of the drive that
 /// act together
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
+/// @param probing  what the observer leaves and the probe, of a unit that takes probings
 /// @throws InputError  as machine_fmu()
-[[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer);
+[[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer,
+                                    const std::optional<probe_process>& probing = {});
 
 }  // namespace driftwright::output

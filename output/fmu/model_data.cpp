@@ -112,17 +112,30 @@ std::vector<double> settings_of(const FmuObserver& observer) {
           s.factor,    s.factor_walk, s.longest_step_s, s.period_s, s.most_apart};
 }
 
+/// In the order of probe_process (compensation/control/probe_feedback.h), after whether there is one.
+std::vector<double> probing_of(const FmuObserver& observer) {
+  const probe_process p = observer.probing.value_or(probe_process{});
+  return {observer.probing ? 1.0 : 0.0,
+          p.deviation_um,
+          p.time_constant_s,
+          p.noise_um,
+          p.lag_s,
+          static_cast<double>(p.is_known_at_start)};
+}
+
 std::string observer_text(const FmuModel& model, const ModelLists& lists) {
   if (!model.observer) return "const observer_data observer = {0};\n";
   const FmuObserver& o = *model.observer;
   std::string settings;
   for (double value : settings_of(o)) settings += fmt::format("{}{:a}", settings.empty() ? "" : ", ", value);
+  const std::vector<double> p = probing_of(o);
   return array("factor_mean", lists.factor_mean) + array("factor_covariance", lists.factor_covariance) +
          fmt::format("static const int sensor_output[] = {{{}}};\n",
                      o.sensor_output.empty() ? "0" : fmt::format("{}", fmt::join(o.sensor_output, ", "))) +
          fmt::format(
-             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {{{}}},\n  factor_mean, factor_covariance}};\n",
-             o.sensors.size(), o.drift_output, settings);
+             "const observer_data observer = {{\n  {}, sensor_output, {},\n  {{{}}},\n  factor_mean, factor_covariance,\n"
+             "  {:g}, {{{:a}, {:a}, {:a}, {:a}, {:g}}}}};\n",
+             o.sensors.size(), o.drift_output, settings, p[0], p[1], p[2], p[3], p[4], p[5]);
 }
 
 /// A block of numbers of eight bytes each, as binary/model_numbers.c reads it.
@@ -211,6 +224,7 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
     block.add(settings_of(o));
     block.add(lists.factor_mean);
     block.add(lists.factor_covariance);
+    block.add(probing_of(o));
   }
   block.add_counts(block.bytes.size() / sizeof(double));
   return block.bytes + kNumbersMark;

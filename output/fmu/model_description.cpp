@@ -124,6 +124,17 @@ void add_observer(std::vector<FmuVariable>& list, const FmuModel& model) {
   for (const std::string& sensor : o.sensors) add("doubted." + sensor, "1 while the thermometer is not believed", "");
   add("doubted.ambient_temperature", "1 while the ambient thermometer is not believed", "");
   add("trust", "0 to 1: trust in the model that its thermometers justify; a correction is the drift times it", "");
+  if (!o.probing) return;
+  add("correction", "the drift times trust, and what probings have found beyond it", "um");
+  add("probe_residual", "what probings have found beyond the drift times trust; correction contains it", "um");
+  add("probe_deviation", "standard deviation of what is left after probings", "um");
+  add("probe_verdict",
+      "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too "
+      "early, 5 "
+      "no number",
+      "");
+  add("probe_off", "of the last probing: read minus expected", "um");
+  add("refused_probings", "how many were refused", "");
 }
 
 std::string interface_attributes(FmiVersion version, const FmuModel& model, bool is_co_simulation,
@@ -246,6 +257,24 @@ std::vector<FmuVariable> variables_of(const FmuModel& model) {
                       .variability = "discrete",
                       .unit = "degC",
                       .start = ambient_degC});
+    if (model.observer->probing) {
+      const std::string& drift = model.outputs[static_cast<std::size_t>(model.observer->drift_output)].name;
+      list.push_back({.name = "probe_" + drift,
+                      .reference = reference++,
+                      .description =
+                          "drift since the start by a probing: what the probe reads on the corrected axis, plus the "
+                          "correction in force; it counts at the first sample after probe_strobe has turned on",
+                      .causality = "input",
+                      .variability = "discrete",
+                      .unit = "um",
+                      .start = 0.0});
+      list.push_back({.name = "probe_strobe",
+                      .reference = reference++,
+                      .description = "turns from 0 to 1 when a probed value is there, and back to 0 before the next one",
+                      .causality = "input",
+                      .variability = "discrete",
+                      .start = 0.0});
+    }
     add_observer(list, model);
   } else {
     list.push_back(

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -179,20 +181,31 @@ TEST_F(ValidateRecords, PhysicsIsJudgedOnRecordsOfAMachine) {
 TEST_F(ValidateRecords, AFileCorrectsAsItWasJudged) {
   const auto out = fresh_folder("judged") / "out", corrected = fresh_folder("corrected") / "out";
   for (const std::string& scenario : {machine_, records_only_}) {
-    const CommandOutcome judged = run_program("validate " + scenario + " --train " + record("warm_up") + " --train " +
-                                              record("steps") + " --test " + record("to_and_fro") + " -o " + out.string());
+    const CommandOutcome judged =
+        run_program("validate " + scenario + " --train " + record("warm_up") + " --train " + record("steps") + " --test " +
+                    record("to_and_fro") + " --probe '30 min' --probe-noise '0.5 um' -o " + out.string());
     ASSERT_EQ(judged.exit_code, 0) << judged.output;
     const Json summary = Json::parse(read_text(out / "summary.json"));
-    int n = 0;
+    std::map<std::string, Json> probed;  // rows of the table
+    for (const Json& row : summary["validation"]["probing"]) probed[row["name"].get<std::string>()] = row;
+    int n = 0, n_probed = 0;
     for (const auto& file : std::filesystem::directory_iterator(out / "models")) {
       if (file.path().extension() != ".json") continue;
       ++n;
       const Json predictor = Json::parse(read_text(file.path()));
-      const CommandOutcome run =
-          run_program("compensate " + scenario + " --model " + file.path().string() + " --through none --measured " +
-                      record("to_and_fro") + " -o " + corrected.string());
+      const CommandOutcome run = run_program(
+          "compensate " + scenario + " --model " + file.path().string() + " --through none --measured " +
+          record("to_and_fro") + (predictor["probing"].is_null() ? "" : " --probe '30 min'") + " -o " + corrected.string());
       ASSERT_EQ(run.exit_code, 0) << run.output;
       const Json left = Json::parse(read_text(corrected / "summary.json"));
+      if (!predictor["probing"].is_null()) {  // with the noise of the file, as it was judged
+        ++n_probed;
+        const Json& row = probed.at(predictor["name"].get<std::string>());
+        EXPECT_NEAR(left["rms_probed_um"].get<double>(), row["probed_rms_um"].get<double>(), 1e-9) << predictor["name"];
+        EXPECT_EQ(left["peak_probed_um"], row["probed_worst_peak_um"]) << predictor["name"];
+        EXPECT_EQ(left["n_probings"], 6) << predictor["name"];  // of 200 min
+        EXPECT_THAT(read_text(corrected / "corrected.csv"), HasSubstr("left_um,left_probed_um\n"));
+      }
       const Json* s = strategy(summary, predictor["name"]);
       ASSERT_TRUE(s) << predictor["name"];
       EXPECT_EQ(left["peak_left_um"], (*s)["worst_peak_um"]) << predictor["name"];
@@ -203,6 +216,7 @@ TEST_F(ValidateRecords, AFileCorrectsAsItWasJudged) {
       EXPECT_EQ(left["judged"], (*s)["verdict"]) << predictor["name"];
     }
     EXPECT_EQ(n, static_cast<int>(summary["validation"]["strategies"].size()));
+    EXPECT_GT(n_probed, 5);
   }
 }
 

@@ -146,7 +146,7 @@ TEST_F(ValidationStudy, WritesFormulasAsTextJsonAndC) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward.c"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward_axis.comp"));
   for (const char* file : {"drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c", "probe_feedback.h",
-                           "probe_feedback.c"}) {
+                           "probe_feedback.c", "probe_members.h", "probe_members.c"}) {
     EXPECT_GT(read_text(folder_ / "models" / file).size(), 500u) << file;
     EXPECT_EQ(read_text(folder_ / "models" / file), read_text(std::filesystem::path("compensation/control") / file)) << file;
   }

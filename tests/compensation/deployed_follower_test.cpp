@@ -162,6 +162,29 @@ TEST(DeployedFollower, TheIntervalOfAMeanGrowsAsItsMembersDepart) {
   EXPECT_GT(n_narrow, 5);
 }
 
+// Of a blend whose weights move: what its members may send to the axis is the same row by row as of the whole run. They are as far on
+// both sides of the mean as trust leaves, also while a thermometer is repaired; a blend without `member_residuals` gives none.
+TEST(DeployedFollower, TheMembersOfABlendAreWhatTheyAreOfTheWholeRun) {
+  const MachineRun run = machine_with_faults();
+  DeployedPredictor d = fixtures::deployed_blend();
+  const GuardedCorrection whole = correct(d, run);
+  ASSERT_EQ(whole.members_um.size(), 2u);
+  DeployedFollower follower(d);
+  Stream stream(run);
+  double most_um = 0.0;
+  for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
+    const FollowedCorrection c = follower.next(stream.next());
+    ASSERT_EQ(c.members_um.size(), 2u);
+    for (std::size_t m = 0; m < 2; ++m) ASSERT_EQ(c.members_um[m], whole.members_um[m][i]) << i << " " << m;
+    ASSERT_NEAR(c.members_um[0] + c.members_um[1], 2.0 * c.correction_um, 1e-9) << i;
+    ASSERT_NEAR(c.members_um[0] - c.correction_um, 0.4 * c.trust * c.prediction_um, 1e-9) << i;
+    most_um = std::max(most_um, c.members_um[0] - c.members_um[1]);
+  }
+  EXPECT_GT(most_um, 1.0);
+  d.member_residuals.clear();
+  EXPECT_TRUE(correct(d, run).members_um.empty());
+}
+
 TEST(DeployedFollower, AnObserverIsWhatItIsOfTheWholeRun) {
   const MachineRun run = fixtures::run_of(fixtures::three_parts(), 60.0, 3.0, 0.05);
   const DeployedPredictor d = observer({"T1", "T3"});

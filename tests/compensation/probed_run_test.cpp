@@ -31,20 +31,17 @@ Machine drawn(const ResidualProcess& p, std::size_t n_rows, std::uint64_t seed) 
   return m;
 }
 
-DeployedPredictor with_process(const ResidualProcess& p, double noise_um) {
-  DeployedPredictor d;
-  d.from_start = true;
-  d.residual = p;
-  d.probe.noise_um = noise_um;
-  return d;
+/// The drift counts from the start.
+probe_process with_process(const ResidualProcess& p, double noise_um) {
+  return probe_process_of(p, {.noise_um = noise_um}, true);
 }
 
 // One member is the filter of `follow` between rows; before the first probing nothing changes.
 TEST(ProbedRun, OfOnePredictorIsItsFilter) {
   const ResidualProcess p{3.0, 7200.0};
   const Machine m = drawn(p, 600, 4);
-  const DeployedPredictor d = with_process(p, 1e-6);
-  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  const probe_process d = with_process(p, 1e-6);
+  const std::vector<ProbedMember> alone = {{d, m.left_um}};
   const ProbedRun run = probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0});
   EXPECT_EQ(run.n_probings, 9);
   EXPECT_EQ(run.n_refused, 0);
@@ -69,8 +66,8 @@ TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
     const double off_um = 30.0 * std::sin(0.05 * static_cast<double>(i));  // too fast for probings each half hour
     (is_first_half(i) ? bad : good).left_um[i] += off_um;
   }
-  const DeployedPredictor d = with_process(p, 0.5);
-  const std::vector<ProbedMember> both = {{&d, good.left_um}, {&d, bad.left_um}};
+  const probe_process d = with_process(p, 0.5);
+  const std::vector<ProbedMember> both = {{d, good.left_um}, {d, bad.left_um}};
   const RunProbing how{.every_s = 1800.0, .noise_um = 0.5, .seed = 3};
   std::vector<double> weights;
   const ProbedRun weighted = probed_run(both, good.time_s, how, &weights);
@@ -80,8 +77,8 @@ TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
   }
   EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-12);
   EXPECT_NEAR(weights[0], 0.5, 0.15);  // each leads in a half
-  const std::vector<ProbedMember> twins = {{&d, good.left_um}, {&d, good.left_um}};
-  const std::vector<ProbedMember> one = {{&d, good.left_um}};
+  const std::vector<ProbedMember> twins = {{d, good.left_um}, {d, good.left_um}};
+  const std::vector<ProbedMember> one = {{d, good.left_um}};
   EXPECT_NEAR(probed_run(twins, good.time_s, how).left.rmse, probed_run(one, good.time_s, how).left.rmse, 1e-9);
 }
 
@@ -90,8 +87,8 @@ TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
 TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
   const ResidualProcess p{1.0, 7200.0};
   const Machine m = drawn(p, 900, 5);
-  const DeployedPredictor d = with_process(p, 0.3);
-  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  const probe_process d = with_process(p, 0.3);
+  const std::vector<ProbedMember> alone = {{d, m.left_um}};
   RunProbing how{.every_s = 3600.0, .noise_um = 0.3, .seed = 2, .fault = ProbeFault::kBiased, .fails_at_s = 18000.0};
   how.error_um = 12.0;
   const ProbedRun large = probed_run(alone, m.time_s, how);
@@ -111,8 +108,8 @@ TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
 TEST(ProbedRun, AStuckProbeMovesTheAxisEachTime) {
   Machine m = drawn({16.0, 3.6e6}, 900, 5);
   for (double& um : m.left_um) um = 2.0;
-  const DeployedPredictor d = with_process({16.0, 3.6e6}, 0.01);
-  const std::vector<ProbedMember> alone = {{&d, m.left_um}};
+  const probe_process d = with_process({16.0, 3.6e6}, 0.01);
+  const std::vector<ProbedMember> alone = {{d, m.left_um}};
   const ProbedRun run =
       probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0, .fault = ProbeFault::kStuck, .fails_at_s = 7000.0});
   EXPECT_EQ(run.n_probings, 14);

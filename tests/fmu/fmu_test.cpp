@@ -13,6 +13,7 @@
 
 #include "base/quantity.hpp"
 #include "base/record_channel.hpp"
+#include "compensation/predictors/residual_process.hpp"
 #include "output/fmu/fmu_file.hpp"
 #include "studies/prediction.hpp"
 #include "tests/fmu/importer.h"
@@ -390,6 +391,66 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   expect_it(import_unit(unit, inputs, outputs, {.step_s = 20.0, .rewind_at_row = 130, .tells_behind_step = true}));
   const Told exchanged = import_unit(unit, inputs, outputs, {.co_simulation = false});
   EXPECT_LT(largest_gap(exchanged.of[0], seen.drift_um, n + 1), kSame_um);
+}
+
+// Probings on a unit: four of a machine that is 8 um off, one of a chip, one that missed, at rows of samples, and one between two
+// samples, which counts at the next. The numbers are those of the filter of the program on the drift times trust.
+TEST_P(Fmu, OfAnObserverTakesProbings) {
+  const Fp3& fp3 = Fp3::get();
+  const scenarios::ReducedMachine& reduced = *fp3.model.reduced();
+  const compensation::Observer observer(reduced.system, reduced.start, fp3.fmu.start_ambient_K, {"t05", "t06", "t07", "t10"},
+                                        "drift_y");
+  const MachineRun run = troubled_run(fp3);
+  const compensation::Observation seen = observer.observe(run);
+  const probe_process process{4.0, 5400.0, 0.5, 90.0, 1};
+  const Unit unit({.model = observer_fmu(fp3.scenario, observer, process), .version = GetParam()}, name("probed"));
+  Record inputs = Fp3::speed_of(run.readings);
+  Channel ambient{"ambient_temperature", "degC", {}};
+  for (double v : run.ambient.value) ambient.values.push_back(v + fp3.scenario.machine->reference_K - kZeroCelsius_K);
+  inputs.channels.push_back(ambient);
+  for (const std::string& s : observer.sensors()) inputs.channels.push_back(run.readings.at(s));
+  const std::size_t n = inputs.n_samples() - 1;  // the last row begins no step
+  Channel probed{"probe_drift_y", "um", std::vector<double>(n + 1, 0.0)},
+      strobe{"probe_strobe", "", std::vector<double>(n + 1, 0.0)};
+  const auto probe = [&](std::size_t row, double um) {
+    probed.values[row] = um;
+    strobe.values[row] = 1.0;
+  };
+  for (std::size_t row : {20, 80, 140, 200}) probe(row, seen.drift_um[row] + 8.0);
+  probe(110, seen.drift_um[110] + 300.0);
+  probe(160, NAN);
+  strobe.values[201] = 1.0;  // it stays on: no further probing
+  inputs.channels.push_back(probed);
+  inputs.channels.push_back(strobe);
+  compensation::ProbeFeedback feedback(std::vector<probe_process>{process});
+  std::vector<double> correction, residual, deviation, verdict, refused;
+  const auto follower = observer.follow();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double drift_um = follower->next(run), predicted_um = follower->deserved_trust() * drift_um;
+    feedback.row(predicted_um, 0.0, i > 0 ? inputs.time_s[i] - inputs.time_s[i - 1] : 0.0);
+    if (i > 0 && strobe.values[i] > strobe.values[i - 1]) (void)feedback.probe_drift_um(probed.values[i]);
+    residual.push_back(feedback.estimate_um());
+    correction.push_back(predicted_um + residual.back());
+    deviation.push_back(feedback.deviation_um());
+    verdict.push_back(feedback.state().verdict);
+    refused.push_back(feedback.n_refused());
+  }
+  const std::vector<std::string> outputs = {"correction", "probe_residual", "probe_deviation", "probe_verdict",
+                                            "refused_probings"};
+  const auto expect_it = [&](const Told& told) {
+    EXPECT_LT(largest_gap(told.of[0], correction, n), kSame_um);
+    EXPECT_LT(largest_gap(told.of[1], residual, n), kSame_um);
+    EXPECT_LT(largest_gap(told.of[2], deviation, n), kSame_um);
+    EXPECT_EQ(largest_gap(told.of[3], verdict, n), 0.0);
+    EXPECT_EQ(largest_gap(told.of[4], refused, n), 0.0);
+  };
+  expect_it(import_unit(unit, inputs, outputs, {.tells_behind_step = true}));
+  expect_it(import_unit(of_sources(unit), inputs, outputs, {.tells_behind_step = true}));
+  expect_it(import_unit(unit, inputs, outputs, {.step_s = 20.0, .rewind_at_row = 130, .tells_behind_step = true}));
+  EXPECT_GT(residual[90], 3.0);  // a part of what is off
+  EXPECT_EQ(verdict[110], PROBE_UNLIKELY);
+  EXPECT_EQ(verdict[160], PROBE_NO_NUMBER);
+  EXPECT_EQ(refused.back(), 2.0);
 }
 
 TEST(DriveLaw, IsMetToRoundingWhateverItsFormula) {

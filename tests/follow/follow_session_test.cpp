@@ -363,6 +363,54 @@ TEST(FollowProbing, ARestartChangesNothing) {
     EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(second, k, probed_um(k)))) << k;
 }
 
+/// A blend of two members, 10 um to either side of it.
+output::PredictorFile blend_of_two() {
+  output::PredictorFile file = two_um_per_K();
+  DeployedPredictor& d = file.predictor;
+  const DriftModel mean = *d.predictor->formula();
+  std::vector<DriftModel> members = {mean, mean};
+  members[0].intercept += 10.0;
+  members[1].intercept -= 10.0;
+  d.predictor = std::make_shared<FormulaPredictor>(mean, members);
+  d.name = "blend";
+  d.member_residuals = {{"high", {4.0, 3600.0, 0.1}}, {"low", {4.0, 3600.0, 0.1}}};
+  return file;
+}
+
+// At 25 degC the blend says 10 um, its members 20 and 0 um. A probing of 20 um: the correction is that of the filters of the program,
+// the line says the weights, and a restart changes nothing.
+TEST(FollowProbing, MovesTheWeightsOfABlend) {
+  const std::filesystem::path state = temporary_folder() / "blend.state";
+  Session session = probed_session({}, "probe_drift_y", blend_of_two());
+  ProbeFeedback feedback(
+      std::vector<probe_process>{{5.0, 7200.0, 0.5, 0.0, 0}, {4.0, 3600.0, 0.5, 0.0, 0}, {4.0, 3600.0, 0.5, 0.0, 0}});
+  FollowLine line;
+  const auto probed_um = [](int k) { return k == 30 || k == 90 ? 20.0 : NAN; };
+  for (int k = 0; k < 60; ++k) {
+    line = minute(session, k, probed_um(k));
+    feedback.row(std::vector<double>{10.0, 20.0, 0.0}, 0.0, 60.0);
+    if (std::isfinite(probed_um(k))) (void)feedback.probe_drift_um(probed_um(k));
+    ASSERT_NEAR(line.axes[0].predicted_um, 10.0, 1e-9);
+    ASSERT_NEAR(line.axes[0].probing->residual_um, feedback.estimate_um(), 1e-9) << k;
+    ASSERT_NEAR(line.axes[0].probing->deviation_um, feedback.deviation_um(), 1e-9) << k;
+    ASSERT_EQ(line.axes[0].probing->weights.size(), 3u);
+    for (std::size_t m = 0; m < 3; ++m)
+      ASSERT_NEAR(line.axes[0].probing->weights[m].second, feedback.members()[m].weight, 1e-9) << k << " " << m;
+    if (k == 29) {
+      EXPECT_NEAR(line.axes[0].correction_um, 10.0, 1e-9);
+    }
+  }
+  EXPECT_EQ(line.axes[0].probing->weights[1].first, "high");
+  EXPECT_GT(line.axes[0].probing->weights[1].second, 0.7);
+  EXPECT_LT(std::abs(line.axes[0].correction_um - 20.0), 2.0);
+  EXPECT_THAT(line_text(line), HasSubstr(R"("weights":{"blend":0.)"));
+  write_state(state, session);
+  Session second = probed_session({}, "probe_drift_y", blend_of_two());
+  EXPECT_TRUE(resume_from(state, second));
+  for (int k = 60; k < 120; ++k)
+    EXPECT_EQ(line_text(minute(session, k, probed_um(k))), line_text(minute(second, k, probed_um(k)))) << k;
+}
+
 TEST(FollowProbing, AProbingInARowThatIsPassedOverIsSaid) {
   Session session = probed_session();
   for (int k = 0; k < 10; ++k) (void)minute(session, k);

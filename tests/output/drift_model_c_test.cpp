@@ -218,7 +218,7 @@ TEST(ControlFiles, AreTheFilesThatAreCompiledInToTheByte) {
     EXPECT_EQ(file.text, source) << file.name;
   }
   EXPECT_THAT(names, ::testing::ElementsAre("drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c",
-                                            "probe_feedback.h", "probe_feedback.c"));
+                                            "probe_feedback.h", "probe_feedback.c", "probe_members.h", "probe_members.c"));
 }
 
 TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
@@ -308,6 +308,73 @@ TEST(CFunction, TakesProbingsAsTheProgramDoes) {
                                                PROBE_UNLIKELY, PROBE_JUMP));
   EXPECT_EQ(n_taken, 4);
   EXPECT_GT(n_slewed, 0);
+}
+
+// A blend whose weights move: the exported C gives what the deployed predictor and the filters of the program give, with probings that
+// the members expected differently, a chip, and a thermometer that fails.
+TEST(CFunction, MovesTheWeightsOfABlendAsTheProgramDoes) {
+  const compensation::DeployedPredictor blend = fixtures::deployed_blend();
+  const DeployedModel d = deployed_model(blend);
+  const std::filesystem::path folder = fresh_folder("blend");
+  std::ofstream(folder / "model.c") << c_function(d, "a test");
+  for (const compensation::ControlFile& file : compensation::control_files())
+    std::ofstream(folder / file.name, std::ios::binary) << file.text;
+  std::ofstream(folder / "main.c")
+      << "#include <stdio.h>\n#include \"model.c\"\nint main(void) {\n  static drift_y_state s;\n  double x[7], y[6];\n"
+         "  while (fread(x, sizeof x, 1, stdin) == 1) {\n    int k;\n"
+         "    y[0] = drift_y_probed_correction_um(&s, x[0], x[1], x[2], x[3], x[4], x[5], x[6]);\n"
+         "    y[1] = probe_leading(s.probing.members, 3)->verdict;\n"
+         "    y[2] = probe_members_deviation_um(drift_y_probing, s.probing.members, 3, 0.0);\n"
+         "    for (k = 0; k < 3; ++k) y[3 + k] = s.probing.members[k].weight;\n    fwrite(y, sizeof y, 1, stdout);\n  }\n"
+         "  return 0;\n}\n";
+  ASSERT_EQ(
+      std::system(fmt::format("gcc -std=c99 -O2 -ffp-contract=off -Wall -Wextra -Werror -pedantic -o {0}/run {0}/main.c "
+                              "{0}/drift_correction.c {0}/probe_feedback.c {0}/probe_members.c -lm",
+                              folder.string())
+                      .c_str()),
+      0);
+  MachineRun run;
+  run.readings = machine(5, 60.0);
+  for (std::size_t i = 170; i < 230; ++i) run.readings.channels[1].values[i] = NAN;
+  const compensation::GuardedCorrection c = compensation::correct(blend, run);
+  ASSERT_EQ(c.members_um.size(), 2u);
+  const std::size_t n = run.readings.n_samples();
+  std::vector<double> probed_um(n, NAN);
+  for (std::size_t row = 30; row < n; row += 30) probed_um[row] = c.members_um[row < 160 ? 0 : 1][row] + 0.5;
+  probed_um[130] = 900.0;
+  std::ofstream in(folder / "in", std::ios::binary);
+  const auto write = [&](double v) { in.write(reinterpret_cast<const char*>(&v), sizeof v); };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (const FailSafe::Guard& g : d.safe.guards) write(run.readings.at(g.input).values[i]);
+    write(probed_um[i]);
+    write(i > 0 ? 60.0 : kFirstStep_s);
+  }
+  in.close();
+  ASSERT_EQ(std::system(fmt::format("{0}/run <{0}/in >{0}/out", folder.string()).c_str()), 0);
+  std::ifstream out(folder / "out", std::ios::binary);
+  compensation::ProbeFeedback feedback(compensation::probe_processes_of(blend, blend.probe));
+  double in_force_um = c.correction_um[0], least_first = 1.0, most_first = 0.0;
+  int n_refused = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double y[6];
+    ASSERT_TRUE(out.read(reinterpret_cast<char*>(y), sizeof y)) << i;
+    feedback.row(std::vector<double>{c.correction_um[i], c.members_um[0][i], c.members_um[1][i]}, 0.0, 60.0);
+    if (!std::isnan(probed_um[i])) {
+      n_refused += !feedback.probe_drift_um(probed_um[i]);
+      ASSERT_EQ(y[1], feedback.state().verdict) << i;
+    }
+    const double wanted_um = std::clamp(c.correction_um[i] + feedback.estimate_um(), d.safe.lowest_um, d.safe.highest_um);
+    const double most_um = i > 0 ? 60.0 * d.safe.most_rate_um_s : 1e9;
+    in_force_um += std::clamp(wanted_um - in_force_um, -most_um, most_um);
+    ASSERT_NEAR(y[0], in_force_um, 1e-9) << i;
+    ASSERT_NEAR(y[2], feedback.deviation_um(), 1e-9) << i;
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(y[3 + k], feedback.members()[k].weight, 1e-9) << i << " " << k;
+    least_first = std::min(least_first, y[4]);
+    most_first = std::max(most_first, y[4]);
+  }
+  EXPECT_EQ(n_refused, 1);
+  EXPECT_GT(most_first, 0.36);  // it begins at a third: the weights have moved there and back
+  EXPECT_LT(least_first, 0.25);
 }
 
 TEST(CFunction, OfATermWithoutAGuardIsOurOwnMistake) {

@@ -337,6 +337,53 @@ TEST(LinuxcncComponent, TakesProbings) {
   EXPECT_EQ(out[4354].at("setting_is_wrong"), 0.0);
 }
 
+// The blend says 20 um, its members 30 and 10 um. The axis is at 30 um: the first member expected it, gains weight, and leads from
+// then on. The same numbers by the filters of the program, which are fed once a second as the component is.
+TEST(LinuxcncComponent, MovesTheWeightsOfABlend) {
+  DeployedModel d = two_um_per_K();
+  d.residual = compensation::ResidualProcess{5.0, 1800.0};
+  d.probe = {0.1, 0.0};
+  d.members = {d.model, d.model};
+  d.members[0].intercept = -30.0;
+  d.members[1].intercept = -50.0;
+  d.member_residuals = {{"high", {4.0, 3600.0}}, {"low", {4.0, 3600.0}}};
+  Component c(exported("blend", d));
+  int heartbeat = 0;
+  c.set("T_degC", 30.0);
+  c.set("enable", 1);
+  c.set("machine_is_on", 1);
+  beating(c, 100, heartbeat);
+  c.set("probe_um", 10.0);  // with 20 um in force
+  c.set("probe_strobe", 1);
+  beating(c, 1, heartbeat);
+  c.set("probe_strobe", 0);
+  beating(c, 599, heartbeat);
+  c.set("probe_um", 0.5);  // with about 30 um in force
+  c.set("probe_strobe", 1);
+  beating(c, 1, heartbeat);
+  c.set("probe_strobe", 0);
+  const auto out = c.outputs();
+  compensation::ProbeFeedback feedback(
+      std::vector<probe_process>{{5.0, 1800.0, 0.1, 0.0, 0}, {4.0, 3600.0, 0.1, 0.0, 0}, {4.0, 3600.0, 0.1, 0.0, 0}});
+  const std::vector<double> predictions_um = {20.0, 30.0, 10.0};
+  feedback.row(predictions_um, 0.0, 0.0);
+  EXPECT_NEAR(out[499].at("correction_um"), 20.0, 1e-9);  // the mean of the three
+  EXPECT_NEAR(out[499].at("probe_sigma_um"), std::sqrt((25.0 + 16.0 + 16.0 + 200.0) / 3.0), 1e-9);
+  EXPECT_TRUE(feedback.probe_drift_um(30.0));
+  EXPECT_EQ(out[504].at("probe_verdict"), 1.0);
+  EXPECT_NEAR(out[504].at("probe_off_um"), 10.0, 1e-9);                            // by the blend, which led
+  EXPECT_NEAR(out[504].at("correction_um"), 20.0 + feedback.estimate_um(), 0.01);  // 1 s later
+  EXPECT_NEAR(out[504].at("probe_residual_um"), feedback.estimate_um(), 0.01);
+  for (int k = 0; k < 600; ++k) feedback.row(predictions_um, 0.0, 1.0);
+  EXPECT_NEAR(out[3499].at("correction_um"), 20.0 + feedback.estimate_um(), 0.02);
+  EXPECT_GT(feedback.members()[1].weight, 0.7);
+  EXPECT_LT(std::abs(out[3499].at("correction_um") - 30.0), 2.0);
+  EXPECT_EQ(out[3504].at("probe_verdict"), 1.0);
+  EXPECT_LT(std::abs(out[3504].at("probe_off_um")), 1.0);  // by the member that leads now
+  EXPECT_EQ(out[3504].at("refused_probings"), 0.0);
+  EXPECT_EQ(out[3504].at("setting_is_wrong"), 0.0);
+}
+
 // HAL takes 47 characters, of which "thermal." are eight.
 TEST(LinuxcncComponent, HasPinsThatHalCanName) {
   DeployedModel d = two_um_per_K();
@@ -424,8 +471,7 @@ TEST(FollowedAxis, IsTakenByHalcompile) {
 TEST(LinuxcncComponent, IsTakenByHalcompile) {
   if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
-  DeployedModel d = fixtures::deployed(true, 60.0);
-  d.residual = compensation::ResidualProcess{4.0, 3600.0};
+  const DeployedModel d = deployed_model(fixtures::deployed_blend());
   const std::filesystem::path folder = exported("halcompile", d);
   const std::string model = read_text(folder / "model.c");
   for (const char* what : {"--preprocess", "--compile", "--document"}) {

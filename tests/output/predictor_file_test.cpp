@@ -113,6 +113,35 @@ TEST(PredictorFile, WhatProbingsNeedComesBack) {
   EXPECT_FALSE(read_predictor(driftwright::write_file("earlier.json", with_hash(earlier).dump())).predictor.residual);
 }
 
+TEST(PredictorFile, WhatTheMembersOfABlendLeaveComesBack) {
+  PredictorFile file;
+  file.predictor = fixtures::deployed_blend();
+  const PredictorFile read = back(file);
+  expect_same(file, read);
+  ASSERT_EQ(read.predictor.member_residuals.size(), 2u);
+  EXPECT_EQ(read.predictor.member_residuals[0].name, "large");
+  EXPECT_EQ(read.predictor.member_residuals[1].process.time_constant_s, 7200.0);
+  const Json good = predictor_json(file, {"1", "a test"});
+  const auto refused = [&](const std::function<void(Json&)>& change, const char* word) {
+    Json j = good;
+    change(j);
+    const std::string path = driftwright::write_file("members.json", j.dump());
+    EXPECT_THAT([&] { (void)read_predictor(path); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr("members.json"), HasSubstr(word))))
+        << word;
+  };
+  refused([](Json& j) { j["probing"]["members"].erase(1); }, "key `members` has 1 entries, but the formula has 2 `members`");
+  refused([](Json& j) { j["probing"]["members"][0]["deviation_um"] = 0.0; }, "key `deviation_um` is 0; it must be above 0");
+  refused([](Json& j) { j["probing"]["members"][1].erase("name"); }, "key `name` is missing");
+  refused([](Json& j) { j["probing"]["members"] = 3; }, "key `members` is 3; it must be a list");
+  refused([](Json& j) { j["formula"].erase("members"); }, "the formula has 0 `members`");
+  Json earlier = good;  // of a version whose weights did not move
+  earlier["probing"].erase("members");
+  earlier.erase("hash");
+  EXPECT_TRUE(
+      read_predictor(driftwright::write_file("earlier.json", with_hash(earlier).dump())).predictor.member_residuals.empty());
+}
+
 TEST(PredictorFile, WrongNumbersForProbingsAreRefusedWithTheirKey) {
   PredictorFile file = formula(true);
   file.predictor.residual = {3.0, 7200.0, 0.1};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/predictors/formula_predictor.hpp"
 #include "output/drift_model_files.hpp"
 #include "tests/shared/sensor_records.hpp"
 
@@ -54,6 +55,29 @@ inline DeployedModel deployed(bool from_start, double period_s) {
   for (const Record& r : training) predicted.push_back(d.model.predict(r));
   d.safe = compensation::learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, from_start);
   d.interval_um = 2.0 / 7.0;
+  return d;
+}
+
+/// The mean of two formulas of that machine, of which one is 40 % larger and the other as much smaller, as a blend whose weights
+/// move with probings.
+inline compensation::DeployedPredictor deployed_blend() {
+  DeployedModel mean = deployed(true, 60.0);
+  std::vector<DriftModel> members(2, mean.model);
+  for (std::size_t k = 0; k < 2; ++k) {
+    members[k].intercept *= k == 0 ? 1.4 : 0.6;
+    for (DriftModel::Term& t : members[k].terms) t.coefficient *= k == 0 ? 1.4 : 0.6;
+  }
+  compensation::DeployedPredictor d;
+  d.name = "blend";
+  d.target = "drift_y";
+  d.from_start = true;
+  d.sensors = {"X1", "X2", "X3", "X4"};
+  d.interval_um = mean.interval_um;
+  d.fail_safe = mean.safe;
+  d.predictor = std::make_shared<compensation::FormulaPredictor>(std::move(mean.model), std::move(members));
+  d.residual = compensation::ResidualProcess{4.0, 5400.0, 0.1};
+  d.member_residuals = {{"large", {5.0, 3600.0, 0.1}}, {"small", {3.0, 7200.0, 0.1}}};
+  d.probe = {0.6, 0.0};
   return d;
 }
 

@@ -129,6 +129,12 @@ static int take(reader* r, const char** guid) {
     observer.settings.most_apart = number(r);
     observer.factor_mean = list(r, f);
     observer.factor_covariance = list(r, f * f);
+    observer.takes_probings = count(r);
+    observer.probing.deviation_um = number(r);
+    observer.probing.time_constant_s = number(r);
+    observer.probing.noise_um = number(r);
+    observer.probing.lag_s = number(r);
+    observer.probing.is_known_at_start = count(r);
   }
   return r->left == 0;
 }

@@ -11,7 +11,7 @@ enum {
   kAmbientSetAt = 1,     /* when the ambient's input was set last */
   kAmbientFromInput = 2, /* 1: the ambient is the input; 0: the scenario's */
   kStartWarmer = 3,      /* K, everywhere, than the scenario's start */
-  kInputs = 4            /* the drive, the ambient [degC], its rate [K/s], then readings [degC] */
+  kInputs = 4            /* the drive, the ambient [degC], its rate [K/s], then readings [degC], then a probing [um] and its strobe */
 };
 
 extern const int model_kind_is_observer;

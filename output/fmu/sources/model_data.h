@@ -5,6 +5,7 @@
 #define DRIFTWRIGHT_MODEL_DATA_H
 
 #include "observer_filter.h"
+#include "probe_feedback.h"
 
 /* A law of one variable x >= 0 of the drive: 0 at x = 0, and behind it a polynomial of log x in Chebyshev's form in each piece.
  * Below the first piece it is what it is at the piece's beginning. */
@@ -61,6 +62,8 @@ typedef struct {
   observer_settings settings;      /* period_s: from sample to sample */
   const double* factor_mean;       /* of the sources, the exchanges and the drift, minus 1 */
   const double* factor_covariance; /* by rows */
+  int takes_probings;              /* 1: `probing` is known */
+  probe_process probing;           /* of what the observer leaves */
 } observer_data;
 
 #ifdef DRIFTWRIGHT_NUMBERS_ARE_READ

@@ -5,12 +5,22 @@
 #include <string.h>
 
 #include "model.h"
+#include "probe_feedback.h"
 #include "state_observer.h"
 #include "thermal.h"
 
 const int model_kind_is_observer = 1;
 
 enum { kRowsKept = kObserverRowsBack + 2, kMostPieces = 32, kSteps = 12, kModes = 12 };
+
+/* The inputs of a probing stand last: what it has measured, and the strobe that turns on when it is there. */
+static int probe_inputs(void) {
+  return observer.takes_probings ? 2 : 0;
+}
+static int probe_input(void) {
+  return thermal.n_drive + 1 + observer.n_sensors;
+}
+enum { kProbeOutputs = 6, kProbeDoubles = (sizeof(probe_state) + sizeof(double) - 1) / sizeof(double) };
 
 /* Of a row: when, the ambient as told, how many pieces; then readings, then pieces: length and drive. */
 enum { kRowTime, kRowTold, kRowPieces, kRowHead };
@@ -40,7 +50,9 @@ typedef struct {
   double* piece_s;  /* since when the drive is as it is */
   double* n_pieces; /* since the last sample */
   double *pieces, *rows;
-  double* remembered; /* of state_observer.c */
+  double* is_probed;    /* 1: the strobe has turned on since the last sample */
+  probe_state* probing; /* in doubles, as all that is saved */
+  double* remembered;   /* of state_observer.c */
 } view;
 
 static view view_of(double* saved) {
@@ -52,6 +64,8 @@ static view view_of(double* saved) {
   v.n_pieces = take(&room, 1);
   v.pieces = take(&room, (size_t)(kMostPieces * piece_size()));
   v.rows = take(&room, kRowsKept * row_size());
+  v.is_probed = take(&room, 1);
+  v.probing = (probe_state*)(void*)take(&room, kProbeDoubles);
   v.remembered = room;
   return v;
 }
@@ -89,7 +103,7 @@ static void describe(state_observer* o, const double* rest_W) {
 size_t model_n_saved(void) {
   state_observer o;
   describe(&o, 0);
-  return (size_t)kInputs + (size_t)model_n_inputs() + 4 + (size_t)(kMostPieces * piece_size()) + kRowsKept * row_size() +
+  return (size_t)kInputs + (size_t)model_n_inputs() + 5 + kProbeDoubles + (size_t)(kMostPieces * piece_size()) + kRowsKept * row_size() +
          observer_n_remembered(&o);
 }
 size_t model_scratch_size(void) {
@@ -98,10 +112,10 @@ size_t model_scratch_size(void) {
   return sizeof(workshop) + ((size_t)thermal.n_sources + observer_n_room(&o, kSteps, kModes)) * sizeof(double);
 }
 int model_n_inputs(void) {
-  return thermal.n_drive + 1 + observer.n_sensors;
+  return probe_input() + probe_inputs();
 }
 int model_n_outputs(void) {
-  return 2 + thermal.n_outputs + observer.n_sensors + 2;
+  return 2 + thermal.n_outputs + observer.n_sensors + 2 + (observer.takes_probings ? kProbeOutputs : 0);
 }
 int model_n_states(void) {
   return 0;
@@ -152,7 +166,7 @@ static int close_piece(double* saved, double until_s) {
 }
 
 const char* model_before_input(double* saved, int input, double value) {
-  const int is_reading = input > thermal.n_drive;
+  const int is_strobe = input == probe_input() + 1, is_reading = input > thermal.n_drive && !is_strobe;
   if (!is_reading && !(fabs(value) < 1e300)) return "an input is no finite number";
   if (input < thermal.n_drive) {
     if (!(value >= 0.0 && value <= thermal.most_drive[input] * (1.0 + 1e-12)))
@@ -160,6 +174,7 @@ const char* model_before_input(double* saved, int input, double value) {
     if (*view_of(saved).n_rows > 0.0 && saved[kInputs + input] != value && !close_piece(saved, saved[kTime]))
       return "the drive changes more than 32 times between two samples";
   }
+  if (is_strobe && value > 0.5 && !(saved[kInputs + input] > 0.5)) *view_of(saved).is_probed = 1.0;
   return 0;
 }
 
@@ -208,6 +223,11 @@ static int laws(void* of, long row, int number, double from_s, double outside_K,
   return 0;
 }
 
+/* What the observer would have the axis corrected by, without probings. */
+static double trusted_um(const observer_run* run) {
+  return observer_trust(run) * observer_drift_um(run);
+}
+
 /* The sample at a time. Returns 0, or what is wrong. */
 static const char* sample(double* saved, void* scratch, double t_s) {
   view v = view_of(saved);
@@ -232,6 +252,10 @@ static const char* sample(double* saved, void* scratch, double t_s) {
   *v.piece_s = t_s;
   if (observer_next(&run, &rows) != 0) return "the decomposition of the conduction matrix did not converge";
   *v.n_rows = i + 1;
+  if (!observer.takes_probings) return 0;
+  probe_row(&observer.probing, v.probing, trusted_um(&run), 0.0, i > 0 ? t_s - row_at(&v, i - 1)[kRowTime] : 0.0);
+  if (*v.is_probed > 0.0) (void)probe_drift(&observer.probing, v.probing, saved[kInputs + probe_input()]);
+  *v.is_probed = 0.0;
   return 0;
 }
 
@@ -276,6 +300,14 @@ void model_outputs(const double* saved, void* scratch, double* outputs) {
   for (i = 0; i < observer.n_sensors; ++i) outputs[i] = run.sensors[i].is_live == 0.0 ? 1.0 : 0.0;
   outputs[observer.n_sensors] = observer_doubts_ambient(&run) ? 1.0 : 0.0;
   outputs[observer.n_sensors + 1] = observer_trust(&run);
+  if (!observer.takes_probings) return;
+  outputs += observer.n_sensors + 2;
+  outputs[1] = probe_expected_um(&observer.probing, v.probing, 0.0);
+  outputs[0] = (*v.n_rows > 0.0 ? trusted_um(&run) : 0.0) + outputs[1];
+  outputs[2] = probe_deviation_um(&observer.probing, v.probing, 0.0);
+  outputs[3] = v.probing->verdict;
+  outputs[4] = v.probing->off_um;
+  outputs[5] = v.probing->n_refused;
 }
 
 void model_derivatives(const double* saved, void* scratch, double* derivatives) {
