@@ -19,12 +19,11 @@ MeasuredRun with_speed(MeasuredRun run, double factor) {
   return run;
 }
 
-/// The drive comes later by `shift_s`, or earlier; at rest before it begins.
+/// The drive comes later by `shift_s`, or earlier; what it was before the record is not known, so its first value holds.
 MeasuredRun with_drive_later(MeasuredRun run, double shift_s) {
   std::vector<Cyclogram::Section>& sections = run.cyclogram.sections;
   if (shift_s > 0.0) {
-    sections.insert(sections.begin(), {.duration_s = shift_s, .drive = {}});
-    sections.front().drive.signals = sections[1].drive.signals;
+    if (!sections.empty()) sections.front().duration_s += shift_s;
   } else {
     double left_s = -shift_s;
     while (sections.size() > 1 && sections.front().duration_s <= left_s) {

@@ -14,6 +14,8 @@ struct OtherDrive {
   double time_factor = 1.0;       ///< of all times
   std::string ambient_from = {};  ///< the channel that is exchanged with the ambient
   bool is_still_air = false;      ///< its ambient is constant, since the thermometer may be on the machine; without words
+
+  [[nodiscard]] bool is_of_ambient() const { return is_still_air || !ambient_from.empty(); }
 };
 
 /// All that are plausible: the speed in 1/s, rad/s or thousands of rpm, or 60 times too much; times a sixtieth, 60 or 3600

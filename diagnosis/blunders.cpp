@@ -264,10 +264,13 @@ Together together(const std::vector<ReadBeside>& channels, const std::vector<dou
 }
 
 /// How much likelier the readings are with another drive; none if it does not meet most of the channels that the two
-/// predictions differ in, or if the drive as recorded meets most of them.
-std::optional<double> gain_of(const Beside& b, const MeasuredRun& other, const Eigen::MatrixXd& prediction) {
+/// predictions differ in, or if the drive as recorded meets most of them. Another ambient changes them less, so it is
+/// sufficient that one channel is not met as recorded.
+std::optional<double> gain_of(const Beside& b, const OtherDrive& o, const Eigen::MatrixXd& prediction) {
+  const MeasuredRun& other = o.run;
   std::vector<ReadBeside> before, after;
   std::vector<double> independent;
+  double as_ambient = 0.0;  // of a course that was read as a temperature of the machine, and now as the ambient
   for (std::size_t c = 0; c < b.run.channels.size(); ++c) {
     const MeasuredChannel& channel = b.run.channels[c];
     if (!says_something(channel) || !says_something(other.channels[c])) continue;
@@ -277,14 +280,16 @@ std::optional<double> gain_of(const Beside& b, const MeasuredRun& other, const E
     const double apart = std::sqrt((differ - differ.mean()).square().mean());
     if (apart < 2.0 * reading_noise(was.read)) continue;
     independent.push_back(std::min(independent_readings(was), independent_readings(is)));
+    if (channel.name == o.ambient_from)
+      as_ambient = nats_of_unrelated(was.read, independent.back()) - nats_of_unrelated(is.read, independent.back());
     before.push_back(std::move(was));
     after.push_back(std::move(is));
   }
   if (before.empty()) return std::nullopt;
   const Together as_recorded = together(before, independent, true), mended = together(after, independent, false);
   const auto n = static_cast<int>(before.size());
-  if (2 * mended.n_met <= n || 2 * as_recorded.n_met > n) return std::nullopt;
-  return mended.nats - as_recorded.nats;
+  if (2 * mended.n_met <= n || (o.is_of_ambient() ? as_recorded.n_met == n : 2 * as_recorded.n_met > n)) return std::nullopt;
+  return mended.nats - as_recorded.nats + as_ambient;
 }
 
 std::optional<Eigen::MatrixXd> predicted(const Twin& twin, const MeasuredRun& run, Twin::Workspace& workspace) {
@@ -293,21 +298,24 @@ std::optional<Eigen::MatrixXd> predicted(const Twin& twin, const MeasuredRun& ru
   return prediction.allFinite() ? std::optional(std::move(prediction)) : std::nullopt;
 }
 
-/// The body whose simulated temperature the recorded ambient follows; "" if there is none.
-std::string body_at_ambient(const Twin& twin, const MeasuredRun& run, const Eigen::MatrixXd& prediction) {
+/// The body whose simulated temperature the recorded ambient follows, and how much likelier the recorded ambient is then.
+struct BodyAtAmbient {
+  std::string name;
+  double nats = -std::numeric_limits<double>::infinity();
+};
+std::optional<BodyAtAmbient> body_at_ambient(const Twin& twin, const MeasuredRun& run, const Eigen::MatrixXd& prediction) {
   const Eigen::VectorXd ambient = ambient_rows(run);
-  if (!((ambient.array() - ambient[0]).abs().maxCoeff() > 0.0)) return "";
-  std::string body;
-  double most = -std::numeric_limits<double>::infinity();
+  if (!((ambient.array() - ambient[0]).abs().maxCoeff() > 0.0)) return std::nullopt;
+  BodyAtAmbient body;
   for (std::size_t o = 0; o < twin.outputs().name.size(); ++o) {
     if (twin.outputs().unit[o] != "K" || twin.outputs().ambient[static_cast<Eigen::Index>(o)] != 0.0) continue;
     const ReadBeside r = read_beside(ambient, prediction.row(static_cast<Eigen::Index>(o)).transpose(), true);
-    const Match m = match(r, {}, static_cast<double>(r.read.size()));
-    if (!m.is_met() || m.nats < most) continue;
-    most = m.nats;
-    body = twin.outputs().name[o];
+    const double n = independent_readings(r);
+    const Match m = match(r, {}, n);
+    const double nats = m.nats - nats_of_unrelated(r.read, n);
+    if (m.is_met() && nats > body.nats) body = {twin.outputs().name[o], nats};
   }
-  return body;
+  return body.name.empty() ? std::nullopt : std::optional(body);
 }
 
 /// How much likelier the readings are on a machine that is merely slower or faster, at most.
@@ -340,9 +348,11 @@ struct OfDrive {
 
 /// The likeliest blunder of drive, clock or ambient.
 std::optional<OfDrive> of_drive(const Beside& b, const Twin& twin, std::size_t& n_tried) {
-  if (!few_met(b)) return std::nullopt;
   const double longest_s = twin.machine().system.is_linear() ? kLongest_s : kLongestInSteps_s;
   std::vector<OtherDrive> others = other_drives(b.run, b.is_met, longest_s);
+  const bool may_be_other_drive = few_met(b);
+  std::erase_if(others, [&](const OtherDrive& o) { return !o.is_of_ambient() && !may_be_other_drive; });
+  if (std::all_of(b.is_met.begin(), b.is_met.end(), [](char met) { return met != 0; })) others.clear();
   n_tried += others.size();
   std::vector<std::optional<Eigen::MatrixXd>> predictions(others.size());
   for_each_index(
@@ -353,22 +363,27 @@ std::optional<OfDrive> of_drive(const Beside& b, const Twin& twin, std::size_t& 
   for (std::size_t i = 0; i < others.size(); ++i) {
     if (!predictions[i]) continue;
     OtherDrive& o = others[i];
-    std::optional<double> nats = gain_of(b, o.run, *predictions[i]);
-    if (!nats || *nats < most) continue;
+    std::optional<double> nats = gain_of(b, o, *predictions[i]);
+    if (!nats) continue;
+    std::optional<BodyAtAmbient> body;
+    if (o.is_still_air) {
+      body = body_at_ambient(twin, b.run, *predictions[i]);
+      if (!body || *nats <= 0.0) continue;
+      *nats += body->nats;
+    }
+    if (*nats < most) continue;
     if (o.time_factor != 1.0) nats = *nats - std::max(0.0, gain_of_other_pace(b, o.time_factor, twin));
     if (*nats < most) continue;
-    if (o.is_still_air) {
-      const std::string body = body_at_ambient(twin, b.run, *predictions[i]);
-      if (body.empty()) continue;
+    if (body) {
       const double reference_C = twin.reference_K() - kZeroCelsius_K;
       o.what = fmt::format(
           "ambient_degC looks like a thermometer on the machine: it follows what the scenario simulates for {}, and the "
           "simulation agrees if the air stays at {:.1f} degC",
-          body, o.run.ambient.at(0.0) + reference_C);
+          body->name, o.run.ambient.at(0.0) + reference_C);
       o.instead = fmt::format(
           "Call the column by the name of a sensor at {} and write the temperature of the air into the scenario (`ambient`), "
           "or record it with a thermometer in the air",
-          body);
+          body->name);
     }
     most = *nats;
     best = i;
