@@ -56,9 +56,10 @@ void add_compensate(CLI::App& cli, CompensateOptions& options) {
 }
 
 CLI::Option* add_as_recorded(CLI::App& verb, bool& as_recorded) {
-  return verb.add_flag("--as-recorded", as_recorded,
-                "goes on with records whose columns look wrong (a speed in 1/s, mm under um, a sign, exchanged channels, a "
-                "clock in minutes, an ambient thermometer on the machine); without it they are refused");
+  return verb.add_flag(
+      "--as-recorded", as_recorded,
+      "goes on with records whose columns look wrong (a speed in 1/s, mm under um, a sign, exchanged channels, a "
+      "clock in minutes, an ambient thermometer on the machine); without it they are refused");
 }
 
 void add_calibrate(CLI::App& cli, CalibrateOptions& options) {

@@ -81,10 +81,11 @@ std::vector<OtherDrive> other_speeds(const MeasuredRun& run) {
                                            {1e3, "thousands of rpm", "1000"},
                                            {30.0 / M_PI, "rad/s", "9.5493"}}) {
     if (!(factor * top_rpm <= kFastest_rpm && factor * top_rpm >= kSlowest_rpm)) continue;
-    list.push_back({.run = with_speed(run, factor),
-                    .what = fmt::format("speed_rpm looks like {}: it reaches {:.4g}, and the simulation agrees if it is {:.4g} rpm",
-                                        looks, top_rpm, factor * top_rpm),
-                    .instead = fmt::format("Write `factor: {}` for speed in the map of the file", map)});
+    list.push_back(
+        {.run = with_speed(run, factor),
+         .what = fmt::format("speed_rpm looks like {}: it reaches {:.4g}, and the simulation agrees if it is {:.4g} rpm",
+                             looks, top_rpm, factor * top_rpm),
+         .instead = fmt::format("Write `factor: {}` for speed in the map of the file", map)});
   }
   return list;
 }
@@ -96,25 +97,28 @@ std::vector<OtherDrive> other_clocks(const MeasuredRun& run, double longest_s) {
     double factor;
     const char *times, *looks;
   };
-  for (const auto& [factor, times, looks] : {Unit{60.0, "60 times too short", "minutes under time_s, or hours under time_min"},
-                                             {1.0 / 60.0, "60 times too long", "seconds under time_min, or minutes under time_h"},
-                                             {3600.0, "3600 times too short", "hours under time_s"},
-                                             {1.0 / 3600.0, "3600 times too long", "seconds under time_h"}}) {
+  for (const auto& [factor, times, looks] :
+       {Unit{60.0, "60 times too short", "minutes under time_s, or hours under time_min"},
+        {1.0 / 60.0, "60 times too long", "seconds under time_min, or minutes under time_h"},
+        {3600.0, "3600 times too short", "hours under time_s"},
+        {1.0 / 3600.0, "3600 times too long", "seconds under time_h"}}) {
     if (factor > 1.0 && (factor * row_s >= kRarestRow_s || factor * length_s > longest_s)) continue;
     list.push_back({.run = with_clock(run, factor),
                     .what = fmt::format("the times look {}: {}", times, looks),
-                    .instead = "Give the column of the time the header of its unit (time_s, time_min, time_h), or write this "
-                               "`unit` for `time` in the map of the file",
+                    .instead =
+                        "Give the column of the time the header of its unit (time_s, time_min, time_h), or write this "
+                        "`unit` for `time` in the map of the file",
                     .time_factor = factor});
   }
   for (const double hours : {-2.0, -1.0, 1.0, 2.0}) {
     const double shift_s = 3600.0 * hours;
     if (length_s < 2.0 * std::abs(shift_s)) continue;
-    list.push_back({.run = with_drive_later(run, shift_s),
-                    .what = fmt::format("speed and drives seem to be recorded {:g} h {} than the readings, as by a clock of "
-                                        "another time zone",
-                                        std::abs(hours), hours > 0.0 ? "earlier" : "later"),
-                    .instead = "Bring both to one clock before you join them in one record (`zone` in the map of each file)"});
+    list.push_back(
+        {.run = with_drive_later(run, shift_s),
+         .what = fmt::format("speed and drives seem to be recorded {:g} h {} than the readings, as by a clock of "
+                             "another time zone",
+                             std::abs(hours), hours > 0.0 ? "earlier" : "later"),
+         .instead = "Bring both to one clock before you join them in one record (`zone` in the map of each file)"});
   }
   return list;
 }
@@ -135,8 +139,10 @@ std::vector<OtherDrive> other_ambients(const MeasuredRun& run, const std::vector
     for (Eigen::Index i = 0; i < there.size(); ++i) {
       if (std::isnan(there[i])) exchanged.run.channels[c].value[i] = there[i];
     }
-    exchanged.what = fmt::format("ambient and {} look exchanged: the simulation agrees if each is read for the other", channel.name);
-    exchanged.instead = fmt::format("Exchange the two names in the header of the file or in its map (ambient and {})", channel.name);
+    exchanged.what =
+        fmt::format("ambient and {} look exchanged: the simulation agrees if each is read for the other", channel.name);
+    exchanged.instead =
+        fmt::format("Exchange the two names in the header of the file or in its map (ambient and {})", channel.name);
     list.push_back(std::move(exchanged));
   }
   return list;

@@ -32,11 +32,11 @@ struct Showing {
 };
 
 struct Match {
-  double nats = 0.0;          ///< up to a constant of the readings
-  double gain_nats = 0.0;     ///< the price of its gain, which `nats` contains
-  double gain = 1.0;          ///< g
-  double offset = 0.0;        ///< o, in the unit of the readings; 0 for displacements
-  double rest = 0.0;          ///< root mean square of e
+  double nats = 0.0;       ///< up to a constant of the readings
+  double gain_nats = 0.0;  ///< the price of its gain, which `nats` contains
+  double gain = 1.0;       ///< g
+  double offset = 0.0;     ///< o, in the unit of the readings; 0 for displacements
+  double rest = 0.0;       ///< root mean square of e
   /// The largest of gain, offset and rest, each over what the scenario's own scatter explains.
   double beyond_scatter = 0.0;
   [[nodiscard]] bool is_met() const { return beyond_scatter <= 1.0; }

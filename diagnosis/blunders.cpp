@@ -157,8 +157,9 @@ Blunder header_blunder(const Beside& b, std::size_t at, const ForeignHeader& h, 
   const double scale = c.unit == "K" ? 1.0 : c.recorded_unit == "mm" ? 1e3 : 1e6;
   const double zero = c.unit == "K" && c.recorded_unit == "degC" ? reference_C : 0.0;
   const double low = scale * r.read.minCoeff() + zero, high = scale * r.read.maxCoeff() + zero;
-  const std::string range = fmt::format("it reads {:.3g} to {:.3g} where the scenario has {:.3g} to {:.3g} {}", low, high,
-                                        scale * r.model.minCoeff() + zero, scale * r.model.maxCoeff() + zero, c.recorded_unit);
+  const std::string range =
+      fmt::format("it reads {:.3g} to {:.3g} where the scenario has {:.3g} to {:.3g} {}", low, high,
+                  scale * r.model.minCoeff() + zero, scale * r.model.maxCoeff() + zero, c.recorded_unit);
   std::string what = h.meant.empty() ? fmt::format("{} seems to have the wrong sign: {}", header, range)
                                      : fmt::format("{} looks like {}: {}", header, h.meant, range);
   std::string instead = fmt::format("Write `{}` for {} in the map of the file", h.instead, c.name);
@@ -207,13 +208,14 @@ void try_exchange(const Beside& b, std::size_t i, std::size_t j, std::vector<OfR
   const CrossMatch one = cross_match(b, i, j), other = cross_match(b, j, i);
   if (std::hypot(one.beyond_scatter, other.beyond_scatter) > 1.0) return;
   const MeasuredChannel &a = b.run.channels[i], &c = b.run.channels[j];
-  tried.push_back({{.path = b.run.path,
-                    .what = fmt::format("{} and {} look exchanged: each reads what the scenario simulates for the other",
-                                        a.name, c.name),
-                    .instead = fmt::format("Exchange the two names in the header of the file or in its map ({}_{} and {}_{})",
-                                           a.name, a.recorded_unit, c.name, c.recorded_unit),
-                    .nats = one.gain_nats + other.gain_nats},
-                   {i, j}});
+  tried.push_back(
+      {{.path = b.run.path,
+        .what =
+            fmt::format("{} and {} look exchanged: each reads what the scenario simulates for the other", a.name, c.name),
+        .instead = fmt::format("Exchange the two names in the header of the file or in its map ({}_{} and {}_{})", a.name,
+                               a.recorded_unit, c.name, c.recorded_unit),
+        .nats = one.gain_nats + other.gain_nats},
+       {i, j}});
 }
 
 /// The blunders of readings, the likeliest first, each channel in one of them.
@@ -381,7 +383,8 @@ std::optional<OfDrive> of_drive(const Beside& b, const Twin& twin, std::size_t& 
           "simulation agrees if the air stays at {:.1f} degC",
           body->name, o.run.ambient.at(0.0) + reference_C);
       o.instead = fmt::format(
-          "Call the column by the name of a sensor at {} and write the temperature of the air into the scenario (`ambient`), "
+          "Call the column by the name of a sensor at {} and write the temperature of the air into the scenario "
+          "(`ambient`), "
           "or record it with a thermometer in the air",
           body->name);
     }

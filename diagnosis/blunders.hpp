@@ -16,10 +16,10 @@
 namespace driftwright::diagnosis {
 
 struct Blunder {
-  std::string path;      ///< of the record
-  std::string what;      ///< what it looks like, a sentence without its full stop
-  std::string instead;   ///< what to write instead, a sentence
-  double nats = 0.0;     ///< how much likelier the readings are with it, before its price
+  std::string path;     ///< of the record
+  std::string what;     ///< what it looks like, a sentence without its full stop
+  std::string instead;  ///< what to write instead, a sentence
+  double nats = 0.0;    ///< how much likelier the readings are with it, before its price
 };
 
 /// A column of a record whose name the scenario does not have, and the sensor or displacement that it looks like.

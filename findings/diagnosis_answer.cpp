@@ -209,8 +209,7 @@ std::string test_text(const studies::MeasuredTwin& m, const diagnosis::Experimen
 
 std::string said_first_text(const studies::MeasuredTwin& m, const Compared& compared) {
   std::vector<std::string> sentences;
-  for (const diagnosis::Blunder& b : m.blunders)
-    sentences.push_back(fmt::format("{}: {}. {}.", b.path, b.what, b.instead));
+  for (const diagnosis::Blunder& b : m.blunders) sentences.push_back(fmt::format("{}: {}. {}.", b.path, b.what, b.instead));
   for (const diagnosis::Renaming& n : m.renamings) sentences.push_back(renaming_text(n));
   for (const auto& [name, why] : compared.doubted) {
     const auto is_it = [&name = name](const auto& sensor) { return sensor.name == name; };

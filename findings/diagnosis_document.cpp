@@ -201,8 +201,8 @@ output::Document begin(const std::string& what, const DiagnosisFindings& found, 
   for (const auto& run : found.measured.runs) names.push_back(run.path);
   return {.made_by = made_by,
           .title = found.measured.scenario.name + ": " + what,
-          .subtitle = fmt::format("measured: {}; {}", fmt::join(names, ", "),
-                                  compared_clause(compared_of(found.measured.runs)))};
+          .subtitle =
+              fmt::format("measured: {}; {}", fmt::join(names, ", "), compared_clause(compared_of(found.measured.runs)))};
 }
 
 /// What was compared and the numbers that both documents have. @param verdict  whether to show the word of the verdict

@@ -36,8 +36,8 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 /// Adds the blunders and the probable names of a record.
 void check(const Record& record, diagnosis::MeasuredRun& run, const solver::Outputs& names, const diagnosis::Twin& twin,
            MeasuredTwin& m) {
-  diagnosis::RecordCheck found = diagnosis::check_record(
-      run, diagnosis::channels_without_output(record, run, *m.scenario.machine, names), twin);
+  diagnosis::RecordCheck found =
+      diagnosis::check_record(run, diagnosis::channels_without_output(record, run, *m.scenario.machine, names), twin);
   for (diagnosis::Blunder& b : found.blunders) {
     run.findings.push_back({"", fmt::format("{}. {}", b.what, b.instead), false});
     m.blunders.push_back(std::move(b));
@@ -109,10 +109,11 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   listener.begin("looking for blunders in the records");
   for (std::size_t r = 0; r < m.runs.size(); ++r) check(measured[r].record, m.runs[r], names, whole, m);
   if (!m.blunders.empty() && !as_recorded) {
-    throw InputError(fmt::format(
-        "{}\nNothing was fitted. Mend this first; `driftwright import FILE` writes the map of a file (`columns`). To go on with "
-        "the records as they are: --as-recorded (in the library as_recorded)",
-        diagnosis::words(m.blunders)));
+    throw InputError(
+        fmt::format("{}\nNothing was fitted. Mend this first; `driftwright import FILE` writes the map of a file "
+                    "(`columns`). To go on with "
+                    "the records as they are: --as-recorded (in the library as_recorded)",
+                    diagnosis::words(m.blunders)));
   }
   diagnosis::find_warm_starts(m.runs, whole);
   listener.begin("computing the states that the measured runs reach");

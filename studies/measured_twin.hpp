@@ -24,8 +24,8 @@ struct MeasuredTwin {
   std::unique_ptr<TwinParts> fine, other;
   std::unique_ptr<diagnosis::Focus> focus;  ///< the machine that the twin runs on
   std::optional<diagnosis::Twin> twin, on_other_mesh;
-  std::string why_one_mesh;         ///< reason if there is no other mesh
-  diagnosis::DiagnosisOptions how;  ///< includes the errors of the mesh and of the reduced model
+  std::string why_one_mesh;                    ///< reason if there is no other mesh
+  diagnosis::DiagnosisOptions how;             ///< includes the errors of the mesh and of the reduced model
   std::vector<diagnosis::Blunder> blunders;    ///< of the records, if they are used as recorded; else there are none
   std::vector<diagnosis::Renaming> renamings;  ///< names that columns without one probably have
 };

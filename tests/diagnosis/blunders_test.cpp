@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 #include <random>
 
 #include "diagnosis/blunder_drives.hpp"
@@ -134,13 +136,14 @@ TEST_P(Blunders, IsNamedAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(
     OfARecord, Blunders,
     ::testing::Values(
-        Case{"speed_in_turns_a_second", [](MeasuredRun& r) { scale_speed(r, 1.0 / 60.0); },
+        Case{"speed_in_turns_a_second",
+             [](MeasuredRun& r) { scale_speed(r, 1.0 / 60.0); },
              {"speed_rpm looks like revolutions a second (1/s, Hz): it reaches 100, and the simulation agrees if it is 6000 "
               "rpm. Write `factor: 60`"}},
         Case{"speed_in_thousands", [](MeasuredRun& r) { scale_speed(r, 1e-3); }, {"speed_rpm looks like thousands of rpm"}},
-        Case{"mm_under_um", [](MeasuredRun& r) { r.channels[2].value *= 1e-3; },
-             {"nose_um looks like mm"}},
-        Case{"mm_under_um_of_a_scenario_that_is_off", [](MeasuredRun& r) { r.channels[2].value *= 1.7e-3; },
+        Case{"mm_under_um", [](MeasuredRun& r) { r.channels[2].value *= 1e-3; }, {"nose_um looks like mm"}},
+        Case{"mm_under_um_of_a_scenario_that_is_off",
+             [](MeasuredRun& r) { r.channels[2].value *= 1.7e-3; },
              {"nose_um looks like mm"}},
         Case{"um_under_mm",
              [](MeasuredRun& r) {
@@ -158,17 +161,23 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"fahrenheit",
              [](MeasuredRun& r) { r.channels[0].value = 1.8 * (r.channels[0].value.array() + 20.0) + 32.0 - 20.0; },
              {"t_shaft_degC looks like degF: it reads 6"}},
-        Case{"kelvin", [](MeasuredRun& r) { r.channels[1].value.array() += 273.15; },
+        Case{"kelvin",
+             [](MeasuredRun& r) { r.channels[1].value.array() += 273.15; },
              {"t_housing_degC looks like kelvin: it reads 293"}},
-        Case{"thermometers_exchanged", [](MeasuredRun& r) { std::swap(r.channels[0].value, r.channels[1].value); },
+        Case{"thermometers_exchanged",
+             [](MeasuredRun& r) { std::swap(r.channels[0].value, r.channels[1].value); },
              {"t_shaft and t_housing look exchanged"}},
-        Case{"displacements_exchanged", [](MeasuredRun& r) { std::swap(r.channels[2].value, r.channels[3].value); },
+        Case{"displacements_exchanged",
+             [](MeasuredRun& r) { std::swap(r.channels[2].value, r.channels[3].value); },
              {"nose and tail look exchanged"}},
-        Case{"minutes_under_seconds", [](MeasuredRun& r) { r = with_clock(r, 1.0 / 60.0); },
+        Case{"minutes_under_seconds",
+             [](MeasuredRun& r) { r = with_clock(r, 1.0 / 60.0); },
              {"the times look 60 times too short: minutes under time_s"}},
-        Case{"seconds_under_minutes", [](MeasuredRun& r) { r = with_clock(r, 60.0); },
+        Case{"seconds_under_minutes",
+             [](MeasuredRun& r) { r = with_clock(r, 60.0); },
              {"the times look 60 times too long: seconds under time_min"}},
-        Case{"ambient_on_the_machine", [](MeasuredRun& r) { r.ambient = course_of(r, 1); },
+        Case{"ambient_on_the_machine",
+             [](MeasuredRun& r) { r.ambient = course_of(r, 1); },
              {"ambient_degC looks like a thermometer on the machine: it follows what the scenario simulates for"}},
         Case{"ambient_exchanged",
              [](MeasuredRun& r) {
@@ -188,7 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SoundRecords, SayNothing) {
   EXPECT_EQ(said_of(read_by(Machine(kSpindle))), "");
-  const Machine doubled(spindle_with("power: 150 W", "power: 300 W")), halved(spindle_with("conductance: 9 W/K", "conductance: 4.5 W/K")),
+  const Machine doubled(spindle_with("power: 150 W", "power: 300 W")),
+      halved(spindle_with("conductance: 9 W/K", "conductance: 4.5 W/K")),
       heavy(spindle_with("capacity: 5 kJ/K", "capacity: 20 kJ/K"));
   EXPECT_EQ(said_of(read_by(doubled)), "");
   EXPECT_EQ(said_of(read_by(halved)), "");
