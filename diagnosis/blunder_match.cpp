@@ -66,11 +66,19 @@ Match match(const ReadBeside& r, const Showing& shown, double n_independent, boo
               .rest = std::sqrt(left2)};
     }
   }
-  const double beyond_noise2 = std::max(0.0, best.rest * best.rest - floor2);
-  best.beyond_scatter =
-      std::max({std::abs(std::log(best.gain)) / (2.0 * kOwnScatter), std::abs(best.offset) / (2.0 * kOffset_K),
-                course2 > 0.0 ? std::sqrt(beyond_noise2 / course2) / kOwnScatter : 0.0});
+  best.beyond_scatter = beyond_scatter(best, r.read);
   return best;
+}
+
+double course_of(const Eigen::ArrayXd& read) {
+  return std::sqrt(variance_of(read));
+}
+
+double beyond_scatter(const Match& m, const Eigen::ArrayXd& read, double least_course) {
+  const double noise = reading_noise(read), course = std::max(least_course, course_of(read));
+  const double beyond_noise = std::sqrt(std::max(0.0, m.rest * m.rest - noise * noise));
+  return std::max({std::abs(std::log(m.gain)) / (2.0 * kOwnScatter), std::abs(m.offset) / (2.0 * kOffset_K),
+                   course > 0.0 ? beyond_noise / (kOwnScatter * course) : 0.0});
 }
 
 double nats_of_unrelated(const Eigen::ArrayXd& read, double n_independent) {

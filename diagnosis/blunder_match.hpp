@@ -52,6 +52,13 @@ struct Match {
 /// @param priced_gain  false: any gain costs nothing
 [[nodiscard]] Match match(const ReadBeside& r, const Showing& shown, double n_independent, bool priced_gain = true);
 
+/// Match::beyond_scatter, with the rest judged by a course of at least this size: of a channel that hardly moves, beside one
+/// that does. @param read  the readings that were matched
+[[nodiscard]] double beyond_scatter(const Match& m, const Eigen::ArrayXd& read, double least_course = 0.0);
+
+/// Standard deviation of readings about their mean.
+[[nodiscard]] double course_of(const Eigen::ArrayXd& read);
+
 /// Evidence that readings follow nothing that the scenario simulates, as of an instrument that is not connected.
 [[nodiscard]] double nats_of_unrelated(const Eigen::ArrayXd& read, double n_independent);
 

@@ -28,7 +28,7 @@ double log_odds(double probability) {
 }
 
 /// The price of a blunder, of so many that were tried.
-double price_of(std::size_t n_tried) {
+double price_of_blunder(std::size_t n_tried) {
   return std::log(static_cast<double>(std::max<std::size_t>(1, n_tried))) + log_odds(kSaidIsRight) - log_odds(kRecordHasOne);
 }
 
@@ -90,14 +90,13 @@ Beside beside_of(const MeasuredRun& run, Eigen::MatrixXd prediction) {
   return b;
 }
 
-/// Whether at most half of the channels that move, or should, are met: else no other drive can be said (gain_of()).
+/// Whether at most half of the channels that move, or should, are met: else no other drive can be said (gain_with()).
 bool few_met(const Beside& b) {
   int n_moving = 0, n_met = 0;
   for (std::size_t c = 0; c < b.run.channels.size(); ++c) {
     if (!says_something(b.run.channels[c])) continue;
     const ReadBeside r = read_beside(b.run.channels[c], b.prediction, b.run.channels[c].output);
-    const auto course = [](const Eigen::ArrayXd& x) { return std::sqrt((x - x.mean()).square().mean()); };
-    if (std::max(course(r.read), course(r.model)) < 2.0 * reading_noise(r.read)) continue;
+    if (std::max(course_of(r.read), course_of(r.model)) < 2.0 * reading_noise(r.read)) continue;
     ++n_moving;
     n_met += b.is_met[c] != 0 ? 1 : 0;
   }
@@ -192,22 +191,25 @@ void try_headers(const Beside& b, std::size_t at, double reference_C, bool may_b
 struct CrossMatch {
   double gain_nats = 0.0, beyond_scatter = 0.0;
 };
-CrossMatch cross_match(const Beside& b, std::size_t at, std::size_t other) {
+CrossMatch cross_match(const Beside& b, std::size_t at, std::size_t other, double course) {
   const MeasuredChannel& c = b.run.channels[at];
   const ReadBeside own = read_beside(c, b.prediction, c.output),
                    there = read_beside(c, b.prediction, b.run.channels[other].output);
   const double n = std::min(b.independent[at], independent_readings(there));
   const Match m = match(there, {}, n);
-  return {m.nats - nats_without(own, n), m.beyond_scatter};
+  return {m.nats - nats_without(own, n), beyond_scatter(m, there.read, course)};
 }
 
 void try_exchange(const Beside& b, std::size_t i, std::size_t j, std::vector<OfReadings>& tried, std::size_t& n_tried) {
   ++n_tried;
-  // Both gains are off at once, in opposite directions, so the two count together.
-  if (std::hypot(b.matched[i].beyond_scatter, b.matched[j].beyond_scatter) <= 1.0) return;
-  const CrossMatch one = cross_match(b, i, j), other = cross_match(b, j, i);
-  if (std::hypot(one.beyond_scatter, other.beyond_scatter) > 1.0) return;
   const MeasuredChannel &a = b.run.channels[i], &c = b.run.channels[j];
+  const Eigen::ArrayXd read_a = read_beside(a, b.prediction, a.output).read,
+                       read_c = read_beside(c, b.prediction, c.output).read;
+  const double course = std::max(course_of(read_a), course_of(read_c));  // one of the two may hardly move
+  // Both gains are off at once, in opposite directions, so the two count together.
+  if (std::hypot(beyond_scatter(b.matched[i], read_a, course), beyond_scatter(b.matched[j], read_c, course)) <= 1.0) return;
+  const CrossMatch one = cross_match(b, i, j, course), other = cross_match(b, j, i, course);
+  if (std::hypot(one.beyond_scatter, other.beyond_scatter) > 1.0) return;
   tried.push_back(
       {{.path = b.run.path,
         .what =
@@ -219,7 +221,7 @@ void try_exchange(const Beside& b, std::size_t i, std::size_t j, std::vector<OfR
 }
 
 /// The blunders of readings, the likeliest first, each channel in one of them.
-std::vector<Blunder> of_readings(const Beside& b, double reference_C, std::size_t n_tried) {
+std::vector<Blunder> reading_blunders(const Beside& b, double reference_C, std::size_t n_tried) {
   std::vector<OfReadings> tried;
   const bool may_be_turned = thermometers_follow(b);
   for (std::size_t i = 0; i < b.run.channels.size(); ++i) {
@@ -236,7 +238,7 @@ std::vector<Blunder> of_readings(const Beside& b, double reference_C, std::size_
   std::vector<char> is_taken(b.run.channels.size(), 0);
   for (OfReadings& t : tried) {
     const auto taken = [&](std::size_t c) { return is_taken[c] != 0; };
-    if (t.blunder.nats < price_of(n_tried) || std::any_of(t.channels.begin(), t.channels.end(), taken)) continue;
+    if (t.blunder.nats < price_of_blunder(n_tried) || std::any_of(t.channels.begin(), t.channels.end(), taken)) continue;
     for (std::size_t c : t.channels) is_taken[c] = 1;
     said.push_back(std::move(t.blunder));
   }
@@ -247,12 +249,13 @@ std::vector<Blunder> of_readings(const Beside& b, double reference_C, std::size_
 
 /// The evidence of several channels. One fault of the machine may change all gains, so the largest price of a gain counts
 /// once if that is cheaper than one for each.
-struct Together {
+struct AllChannels {
   double nats = 0.0;
   int n_met = 0;
 };
-Together together(const std::vector<ReadBeside>& channels, const std::vector<double>& independent, bool without_blunder) {
-  Together t;
+AllChannels all_channels(const std::vector<ReadBeside>& channels, const std::vector<double>& independent,
+                         bool without_blunder) {
+  AllChannels t;
   double each = 0.0, in_common = 0.0, dearest = 0.0;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Match priced = match(channels[c], {}, independent[c]), free = match(channels[c], {}, independent[c], false);
@@ -268,7 +271,7 @@ Together together(const std::vector<ReadBeside>& channels, const std::vector<dou
 /// How much likelier the readings are with another drive; none if it does not meet most of the channels that the two
 /// predictions differ in, or if the drive as recorded meets most of them. Another ambient changes them less, so it is
 /// sufficient that one channel is not met as recorded.
-std::optional<double> gain_of(const Beside& b, const OtherDrive& o, const Eigen::MatrixXd& prediction) {
+std::optional<double> gain_with(const Beside& b, const OtherDrive& o, const Eigen::MatrixXd& prediction) {
   const MeasuredRun& other = o.run;
   std::vector<ReadBeside> before, after;
   std::vector<double> independent;
@@ -288,13 +291,13 @@ std::optional<double> gain_of(const Beside& b, const OtherDrive& o, const Eigen:
     after.push_back(std::move(is));
   }
   if (before.empty()) return std::nullopt;
-  const Together as_recorded = together(before, independent, true), mended = together(after, independent, false);
+  const AllChannels as_recorded = all_channels(before, independent, true), mended = all_channels(after, independent, false);
   const auto n = static_cast<int>(before.size());
   if (2 * mended.n_met <= n || (o.is_of_ambient() ? as_recorded.n_met == n : 2 * as_recorded.n_met > n)) return std::nullopt;
   return mended.nats - as_recorded.nats + as_ambient;
 }
 
-std::optional<Eigen::MatrixXd> predicted(const Twin& twin, const MeasuredRun& run, Twin::Workspace& workspace) {
+std::optional<Eigen::MatrixXd> readings_as_written(const Twin& twin, const MeasuredRun& run, Twin::Workspace& workspace) {
   Eigen::MatrixXd prediction;
   if (!has_solution([&] { prediction = twin.readings(twin.as_written(), run, workspace); })) return std::nullopt;
   return prediction.allFinite() ? std::optional(std::move(prediction)) : std::nullopt;
@@ -326,7 +329,7 @@ double gain_of_other_pace(const Beside& b, double factor, const Twin& twin) {
   Twin::Workspace workspace(twin);
   for (const double share : {0.25, 0.5, 0.75}) {
     const MeasuredRun slower = with_clock(b.run, std::pow(factor, share));
-    const auto prediction = predicted(twin, slower, workspace);
+    const auto prediction = readings_as_written(twin, slower, workspace);
     if (!prediction) continue;
     const double price = 0.5 * std::pow(share * std::log(factor) / effects::kFactorSd, 2);
     std::vector<ReadBeside> was, is;
@@ -337,7 +340,7 @@ double gain_of_other_pace(const Beside& b, double factor, const Twin& twin) {
       is.push_back(read_beside(c, *prediction, c.output));
       independent.push_back(std::min(independent_readings(was.back()), independent_readings(is.back())));
     }
-    most = std::max(most, together(is, independent, true).nats - together(was, independent, true).nats - price);
+    most = std::max(most, all_channels(is, independent, true).nats - all_channels(was, independent, true).nats - price);
   }
   return most;
 }
@@ -349,7 +352,7 @@ struct OfDrive {
 };
 
 /// The likeliest blunder of drive, clock or ambient.
-std::optional<OfDrive> of_drive(const Beside& b, const Twin& twin, std::size_t& n_tried) {
+std::optional<OfDrive> drive_blunder(const Beside& b, const Twin& twin, std::size_t& n_tried) {
   const double longest_s = twin.machine().system.is_linear() ? kLongest_s : kLongestInSteps_s;
   std::vector<OtherDrive> others = other_drives(b.run, b.is_met, longest_s);
   const bool may_be_other_drive = few_met(b);
@@ -359,13 +362,15 @@ std::optional<OfDrive> of_drive(const Beside& b, const Twin& twin, std::size_t& 
   std::vector<std::optional<Eigen::MatrixXd>> predictions(others.size());
   for_each_index(
       others.size(), [&] { return Twin::Workspace(twin); },
-      [&](std::size_t i, Twin::Workspace& workspace) { predictions[i] = predicted(twin, others[i].run, workspace); });
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        predictions[i] = readings_as_written(twin, others[i].run, workspace);
+      });
   std::optional<std::size_t> best;
-  double most = price_of(n_tried);
+  double most = price_of_blunder(n_tried);
   for (std::size_t i = 0; i < others.size(); ++i) {
     if (!predictions[i]) continue;
     OtherDrive& o = others[i];
-    std::optional<double> nats = gain_of(b, o, *predictions[i]);
+    std::optional<double> nats = gain_with(b, o, *predictions[i]);
     if (!nats) continue;
     std::optional<BodyAtAmbient> body;
     if (o.is_still_air) {
@@ -420,7 +425,7 @@ std::optional<Renaming> renaming_of(const MeasuredRun& run, const MeasuredChanne
     most = nats;
     best = own.name[o];
   }
-  if (best.empty() || most < price_of(n_tried) || (n_tried > 1 && most - second < log_odds(kSaidIsRight)))
+  if (best.empty() || most < price_of_blunder(n_tried) || (n_tried > 1 && most - second < log_odds(kSaidIsRight)))
     return std::nullopt;
   return Renaming{.path = run.path, .column = c.name + "_" + c.recorded_unit, .header = best + "_" + c.recorded_unit};
 }
@@ -430,17 +435,17 @@ std::optional<Renaming> renaming_of(const MeasuredRun& run, const MeasuredChanne
 RecordCheck check_record(const MeasuredRun& run, const std::vector<MeasuredChannel>& unnamed, const Twin& twin) {
   RecordCheck check;
   Twin::Workspace workspace(twin);
-  auto prediction = predicted(twin, run, workspace);
+  auto prediction = readings_as_written(twin, run, workspace);
   if (!prediction) return check;
   const double reference_C = twin.reference_K() - kZeroCelsius_K;
   const Beside b = beside_of(run, *std::move(prediction));
   std::size_t n_tried = 0;
-  auto drive = of_drive(b, twin, n_tried);
-  check.blunders = of_readings(b, reference_C, n_tried);
+  auto drive = drive_blunder(b, twin, n_tried);
+  check.blunders = reading_blunders(b, reference_C, n_tried);
   double of_all = 0.0;
   for (const Blunder& r : check.blunders) of_all += r.nats;
   if (drive && drive->blunder.nats > of_all) {
-    check.blunders = of_readings(beside_of(drive->run, std::move(drive->prediction)), reference_C, n_tried);
+    check.blunders = reading_blunders(beside_of(drive->run, std::move(drive->prediction)), reference_C, n_tried);
     check.blunders.insert(check.blunders.begin(), std::move(drive->blunder));
   }
   if (!check.blunders.empty()) return check;

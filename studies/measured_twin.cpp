@@ -34,8 +34,8 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 }
 
 /// Adds the blunders and the probable names of a record.
-void check(const Record& record, diagnosis::MeasuredRun& run, const solver::Outputs& names, const diagnosis::Twin& twin,
-           MeasuredTwin& m) {
+void check_beside(const Record& record, diagnosis::MeasuredRun& run, const solver::Outputs& names,
+                  const diagnosis::Twin& twin, MeasuredTwin& m) {
   diagnosis::RecordCheck found =
       diagnosis::check_record(run, diagnosis::channels_without_output(record, run, *m.scenario.machine, names), twin);
   for (diagnosis::Blunder& b : found.blunders) {
@@ -107,7 +107,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
   listener.begin("looking for blunders in the records");
-  for (std::size_t r = 0; r < m.runs.size(); ++r) check(measured[r].record, m.runs[r], names, whole, m);
+  for (std::size_t r = 0; r < m.runs.size(); ++r) check_beside(measured[r].record, m.runs[r], names, whole, m);
   if (!m.blunders.empty() && !as_recorded) {
     throw InputError(
         fmt::format("{}\nNothing was fitted. Mend this first; `driftwright import FILE` writes the map of a file "

@@ -107,7 +107,7 @@ void scale_speed(MeasuredRun& run, double factor) {
   for (auto& s : run.cyclogram.sections) s.drive.speed_rpm *= factor;
 }
 
-TimeSeries course_of(const MeasuredRun& run, std::size_t channel) {
+TimeSeries recorded_course(const MeasuredRun& run, std::size_t channel) {
   TimeSeries series{run.time_s, {}};
   for (const double v : run.channels[channel].value) series.value.push_back(v);
   return series;
@@ -177,11 +177,11 @@ INSTANTIATE_TEST_SUITE_P(
              [](MeasuredRun& r) { r = with_clock(r, 60.0); },
              {"the times look 60 times too long: seconds under time_min"}},
         Case{"ambient_on_the_machine",
-             [](MeasuredRun& r) { r.ambient = course_of(r, 1); },
+             [](MeasuredRun& r) { r.ambient = recorded_course(r, 1); },
              {"ambient_degC looks like a thermometer on the machine: it follows what the scenario simulates for"}},
         Case{"ambient_exchanged",
              [](MeasuredRun& r) {
-               r.ambient = course_of(r, 0);
+               r.ambient = recorded_course(r, 0);
                std::mt19937 random(9);
                std::normal_distribution<double> normal;
                for (double& v : r.channels[0].value) v = 0.1 * normal(random);
