@@ -15,7 +15,8 @@ void diagnose(const DiagnoseOptions& options) {
   (void)scenarios::require_machine(scenario, "diagnose");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
-  const studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", options.measured, progress.listener());
+  const studies::MeasuredTwin m =
+      studies::open_measured_twin(scenario, "diagnose", options.measured, progress.listener(), options.as_recorded);
   Listener listener = progress.listener();
   listener.wants_end_now = EndRequest::is_made;
   const EndRequest end_request;  // until all results are written: Ctrl-C cuts no file short

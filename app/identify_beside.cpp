@@ -19,7 +19,7 @@ void identify_beside(const IdentifyOptions& asked) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::MeasuredTwin m =
-      studies::open_measured_twin(scenario, "identify --prior", options.records, progress.listener());
+      studies::open_measured_twin(scenario, "identify --prior", options.records, progress.listener(), options.as_recorded);
   const double reference_K = m.twin->reference_K();
   const studies::BesideRecords beside = studies::beside(m.runs, studies::read_of(m, m.twin->as_written()), reference_K);
   identification::Identified learned =

@@ -61,6 +61,13 @@ void add_compensate(CLI::App& cli, CompensateOptions& options) {
   verb->callback([&] { app::compensate(options); });
 }
 
+CLI::Option* add_as_recorded(CLI::App& verb, bool& as_recorded) {
+  return verb.add_flag(
+      "--as-recorded", as_recorded,
+      "goes on with records whose columns look wrong (a speed in 1/s, mm under um, a sign, exchanged channels, a "
+      "clock in minutes, an ambient thermometer on the machine); without it they are refused");
+}
+
 void add_calibrate(CLI::App& cli, CalibrateOptions& options) {
   CLI::App* verb = add_verb(
       cli, "calibrate", "fits the uncertain numbers of the scenario to measured records and gives their 95 % intervals",
@@ -68,6 +75,7 @@ void add_calibrate(CLI::App& cli, CalibrateOptions& options) {
   verb->add_option("--measured", options.measured, "measured record CSV (docs/reference/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
+  add_as_recorded(*verb, options.as_recorded);
   verb->callback([&] { app::calibrate(options); });
 }
 
@@ -87,6 +95,7 @@ void add_diagnose(CLI::App& cli, DiagnoseOptions& options) {
   verb->add_option("--without", options.without,
                    "key of an effect to leave out of the search, such as hidden_body; may be repeated")
       ->allow_extra_args(false);
+  add_as_recorded(*verb, options.as_recorded);
   verb->callback([&] { app::diagnose(options); });
 }
 
@@ -148,6 +157,7 @@ void add_identify(CLI::App& cli, IdentifyOptions& options) {
                    "confirm it, written to extended.yaml. Ambient and drives are then those of the scenario")
       ->excludes("--ambient")
       ->excludes("--drive");
+  add_as_recorded(*verb, options.as_recorded)->needs("--prior");
   add_results(verb, options, "<name of the first record>",
               "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "
               "results/identified\n  driftwright simulate "

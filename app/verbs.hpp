@@ -178,6 +178,7 @@ struct DiagnoseOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
   std::vector<std::string> without;   ///< catalogue keys that are not searched for
   bool causes_only = false;           ///< leave the scenario's own numbers in extended.yaml as they are
+  bool as_recorded = false;           ///< go on with records that have a blunder
 };
 void diagnose(const DiagnoseOptions& options);
 
@@ -199,6 +200,7 @@ void schema(const SchemaOptions& options);
 
 struct CalibrateOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
+  bool as_recorded = false;           ///< go on with records that have a blunder
 };
 void calibrate(const CalibrateOptions& options);
 
@@ -214,6 +216,7 @@ struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::string ambient;              ///< channel; empty: guessed
   std::vector<std::string> drives;  ///< channels that drive the machine, in addition to those recognised by their unit
   std::string prior;                ///< scenario to extend; empty: none
+  bool as_recorded = false;         ///< with `prior`: go on with records that have a blunder
 };
 /// Identifies a network from records alone, or fits what a scenario does not explain, beside it.
 void identify(const IdentifyOptions& options);

@@ -47,7 +47,7 @@ diagnose_into() {
   [ -n "$without" ] && arguments+=(--without "$without")
   # Into a folder of its own first: only what is complete is called by the name.
   rm -rf "$case_dir/$name.part"
-  if timeout "$cap" "$program" diagnose "$case_dir/scenario.yaml" "${arguments[@]}" -o "$case_dir/$name.part" \
+  if timeout "$cap" "$program" diagnose "$case_dir/scenario.yaml" "${arguments[@]}" --as-recorded -o "$case_dir/$name.part" \
     >"$case_dir/$name.log" 2>&1; then
     rm -rf "${case_dir:?}/$name"
     mv "$case_dir/$name.part" "$case_dir/$name"

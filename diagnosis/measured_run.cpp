@@ -437,4 +437,22 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   return run;
 }
 
+std::vector<MeasuredChannel> channels_without_output(const Record& record, const MeasuredRun& run,
+                                                     const scenarios::MachineModel& model, const solver::Outputs& outputs) {
+  const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
+  std::vector<MeasuredChannel> channels;
+  for (const Channel& c : record.channels) {
+    const auto is_it = [&](const std::string& name) { return name == c.name || name == c.header(); };
+    const bool is_input = c.name == "speed" || c.name == "ambient" || effects::is_drive_channel(c.name) ||
+                          std::any_of(wanted.begin(), wanted.end(), is_it);
+    if (is_input || std::any_of(outputs.name.begin(), outputs.name.end(), is_it)) continue;
+    for (const char* unit : {"K", "m", "rad"}) {
+      if (!same_kind(c.unit, unit)) continue;
+      channels.push_back(in_si(run, c, c.values, -1, unit, model.reference_K - kZeroCelsius_K));
+      break;
+    }
+  }
+  return channels;
+}
+
 }  // namespace driftwright::diagnosis

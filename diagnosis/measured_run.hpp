@@ -72,4 +72,10 @@ void set_grid(MeasuredRun& run);
                                         const solver::Outputs& outputs,
                                         const std::optional<ColumnMap>& columns = std::nullopt);
 
+/// The temperatures, displacements and tilts of a record that the scenario has no output for and no effect asks for, as
+/// channels without an output. Neither spikes nor stuck readings are removed. @param run  as measured_run() gives it
+[[nodiscard]] std::vector<MeasuredChannel> channels_without_output(const Record& record, const MeasuredRun& run,
+                                                                   const scenarios::MachineModel& model,
+                                                                   const solver::Outputs& outputs);
+
 }  // namespace driftwright::diagnosis

@@ -155,6 +155,11 @@ std::string text_of(const Diagnosis& d) {
   return d.causes.empty() ? d.reason : cause_text(d);
 }
 
+std::string renaming_text(const diagnosis::Renaming& n) {
+  return fmt::format("{} reads what the scenario simulates for {}: call the column so, or rename it by `columns`.", n.column,
+                     n.header);
+}
+
 /// "driftwright diagnose scenario.yaml --measured a.csv"
 std::string command_of(const std::string& verb, const std::string& scenario, const studies::MeasuredTwin& m,
                        const std::string& also = "") {
@@ -202,15 +207,17 @@ std::string test_text(const studies::MeasuredTwin& m, const diagnosis::Experimen
 
 }  // namespace
 
-std::string displacements_left_out_text(const studies::MeasuredTwin& m, const Compared& compared) {
-  std::string text;
+std::string said_first_text(const studies::MeasuredTwin& m, const Compared& compared) {
+  std::vector<std::string> sentences;
+  for (const diagnosis::Blunder& b : m.blunders) sentences.push_back(fmt::format("{}: {}. {}.", b.path, b.what, b.instead));
+  for (const diagnosis::Renaming& n : m.renamings) sentences.push_back(renaming_text(n));
   for (const auto& [name, why] : compared.doubted) {
     const auto is_it = [&name = name](const auto& sensor) { return sensor.name == name; };
     const auto& sensors = m.scenario.machine->sensors;
     if (std::none_of(sensors.begin(), sensors.end(), is_it))
-      text += fmt::format("{}{} was not compared: {}.", text.empty() ? "" : " ", name, why);
+      sentences.push_back(fmt::format("{} was not compared: {}.", name, why));
   }
-  return text;
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 output::Verdict answer_of(const Diagnosis& d, const Compared& compared, const std::string& left_out) {

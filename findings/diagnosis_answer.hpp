@@ -7,12 +7,12 @@
 
 namespace driftwright::findings {
 
-/// Displacements and tilts of the scenario that were recorded but not compared because their data is wrong, sentences; ""
-/// if there are none.
-[[nodiscard]] std::string displacements_left_out_text(const studies::MeasuredTwin& m, const Compared& compared);
+/// What a reader must know before the answer, sentences; "" if there is nothing: blunders of the records, columns whose name
+/// is probably another one, displacements and tilts of the scenario that were not compared because their data is wrong.
+[[nodiscard]] std::string said_first_text(const studies::MeasuredTwin& m, const Compared& compared);
 
-/// The answer of `diagnose`. If half of the channels or fewer were compared, or a displacement was not, it says so first and
-/// is not shown as good. @param left_out  as displacements_left_out_text() says it
+/// The answer of `diagnose`. If half of the channels or fewer were compared, or something has to be said first, it says
+/// so and is not shown as good. @param left_out  as said_first_text() says it
 [[nodiscard]] output::Verdict answer_of(const diagnosis::Diagnosis& d, const Compared& compared,
                                         const std::string& left_out = "");
 /// What to look at on the machine and which test or command comes next, up to three sentences.

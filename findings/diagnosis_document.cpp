@@ -201,7 +201,8 @@ output::Document begin(const std::string& what, const DiagnosisFindings& found, 
   for (const auto& run : found.measured.runs) names.push_back(run.path);
   return {.made_by = made_by,
           .title = found.measured.scenario.name + ": " + what,
-          .subtitle = fmt::format("measured: {}", fmt::join(names, ", "))};
+          .subtitle =
+              fmt::format("measured: {}; {}", fmt::join(names, ", "), compared_clause(compared_of(found.measured.runs)))};
 }
 
 /// What was compared and the numbers that both documents have. @param verdict  whether to show the word of the verdict
@@ -263,7 +264,7 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   const Compared compared = compared_of(m.runs);
   output::Document document = begin("diagnosis", found, made_by);
   Section& body = document.body;
-  add(body, answer_of(d, compared, displacements_left_out_text(m, compared)));
+  add(body, answer_of(d, compared, said_first_text(m, compared)));
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
 
@@ -311,7 +312,7 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   output::Document document = begin("calibration", found, made_by);
   Section& body = document.body;
   const std::string warning = diagnosis::calibration_warning(d);
-  add(body, calibration_answer(d, warning, displacements_left_out_text(m, compared_of(m.runs))));
+  add(body, calibration_answer(d, warning, said_first_text(m, compared_of(m.runs))));
   add(body, Value{.key = "warning", .datum = warning});
   add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});

@@ -21,6 +21,9 @@ struct Compared {
 /// "1 of 6 channels of the records is in the scenario; ..." if some are left out, else "".
 [[nodiscard]] std::string compared_text(const Compared& compared);
 
+/// "all of 3 channels are compared", or "1 of 6 channels is compared; left out: ...", for the first line of a report.
+[[nodiscard]] std::string compared_clause(const Compared& compared);
+
 /// The unit that shows a statement's size, and the factor to that unit.
 [[nodiscard]] std::pair<std::string, double> shown_unit(const diagnosis::Stated& stated);
 /// The size of a statement with its 95 % interval: "40 W (35 to 46)".

@@ -8,6 +8,18 @@
 #include "findings/diagnosis_words.hpp"
 
 namespace driftwright::findings {
+namespace {
+
+std::vector<std::string> names_left_out(const Compared& compared) {
+  std::vector<std::string> names;
+  for (const auto* list : {&compared.doubted, &compared.left_out}) {
+    for (const auto& [name, why] : *list) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
 Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs) {
   std::map<std::string, std::string> left_out, doubted;
   std::set<std::string> names;
@@ -29,14 +41,17 @@ Compared compared_of(const std::vector<diagnosis::MeasuredRun>& runs) {
   return compared;
 }
 
+std::string compared_clause(const Compared& compared) {
+  if (compared.n == compared.of)
+    return compared.n == 1 ? "its one channel is compared" : fmt::format("all of {} channels are compared", compared.n);
+  return fmt::format("{} of {} channels {} compared; left out: {}", compared.n, compared.of, compared.n == 1 ? "is" : "are",
+                     fmt::join(names_left_out(compared), ", "));
+}
+
 std::string compared_text(const Compared& compared) {
   if (compared.n == compared.of) return "";
-  std::vector<std::string> names;
-  for (const auto* list : {&compared.doubted, &compared.left_out}) {
-    for (const auto& [name, why] : *list) names.push_back(name);
-  }
   std::string text = fmt::format("{} of {} channels of the records {} compared; left out: {}.", compared.n, compared.of,
-                                 compared.n == 1 ? "is" : "are", fmt::join(names, ", "));
+                                 compared.n == 1 ? "is" : "are", fmt::join(names_left_out(compared), ", "));
   if (!compared.doubted.empty())
     text += fmt::format(" \"The data themselves\" says what is wrong with {}.",
                         compared.doubted.size() == 1 ? compared.doubted.front().first : "those that the scenario has");

@@ -26,10 +26,10 @@ Cause plain(const diagnosis::Cause& cause) {
 }
 
 studies::MeasuredTwin twin_of(const scenarios::Scenario& scenario, const std::string& verb,
-                              const std::vector<Record>& measured, const Listener& listener) {
+                              const std::vector<Record>& measured, const Listener& listener, bool as_recorded) {
   std::vector<ReadRecord> records;
   for (const Record& record : measured) records.push_back({.record = record, .notes = {}});
-  return studies::open_measured_twin(scenario, verb, records, listener);
+  return studies::open_measured_twin(scenario, verb, records, listener, as_recorded);
 }
 
 Diagnosis plain(const studies::MeasuredDiagnosis& what) {
@@ -52,12 +52,12 @@ Diagnosis plain(const studies::MeasuredDiagnosis& what) {
 }  // namespace
 
 Diagnosis Machine::diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options) const {
-  const studies::MeasuredTwin m = twin_of(parts_->scenario, "diagnose", measured, parts_->listener);
+  const studies::MeasuredTwin m = twin_of(parts_->scenario, "diagnose", measured, parts_->listener, options.as_recorded);
   return plain(studies::diagnose(m, {.without = options.without, .causes_only = options.causes_only}, parts_->listener));
 }
 
-Diagnosis Machine::calibrate(const std::vector<Record>& measured) const {
-  const studies::MeasuredTwin m = twin_of(parts_->scenario, "calibrate", measured, parts_->listener);
+Diagnosis Machine::calibrate(const std::vector<Record>& measured, bool as_recorded) const {
+  const studies::MeasuredTwin m = twin_of(parts_->scenario, "calibrate", measured, parts_->listener, as_recorded);
   return plain(studies::calibrate(m, "calibrated.yaml", parts_->listener));
 }
 

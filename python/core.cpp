@@ -199,9 +199,10 @@ PYBIND11_MODULE(core, m) {
           Unlocked())
       .def(
           "diagnose",
-          [](const Machine& machine, const std::vector<Record>& measured, std::vector<std::string> without,
-             bool causes_only) {
-            return machine.diagnose(measured, {.without = std::move(without), .causes_only = causes_only});
+          [](const Machine& machine, const std::vector<Record>& measured, std::vector<std::string> without, bool causes_only,
+             bool as_recorded) {
+            return machine.diagnose(measured,
+                                    {.without = std::move(without), .causes_only = causes_only, .as_recorded = as_recorded});
           },
           Unlocked())
       .def("calibrate", &Machine::calibrate, Unlocked());

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
 #include "diagnosis/scatter.hpp"
-#include "diagnosis/time_check.hpp"
-#include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/simulated_run.hpp"
 #include "solver/exponential_run.hpp"
@@ -34,6 +33,21 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
   return true;
 }
 
+/// Adds the blunders and the probable names of a record.
+void check_beside(const Record& record, diagnosis::MeasuredRun& run, const solver::Outputs& names,
+                  const diagnosis::Twin& twin, MeasuredTwin& m) {
+  diagnosis::RecordCheck found =
+      diagnosis::check_record(run, diagnosis::channels_without_output(record, run, *m.scenario.machine, names), twin);
+  for (diagnosis::Blunder& b : found.blunders) {
+    run.findings.push_back({"", fmt::format("{}. {}", b.what, b.instead), false});
+    m.blunders.push_back(std::move(b));
+  }
+  for (diagnosis::Renaming& n : found.renamings) {
+    const auto is_known = [&](const diagnosis::Renaming& k) { return k.column == n.column && k.header == n.header; };
+    if (std::none_of(m.renamings.begin(), m.renamings.end(), is_known)) m.renamings.push_back(std::move(n));
+  }
+}
+
 }  // namespace
 
 diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
@@ -52,14 +66,14 @@ diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
 }
 
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
-                                const std::vector<std::string>& measured, const Listener& listener) {
+                                const std::vector<std::string>& measured, const Listener& listener, bool as_recorded) {
   std::vector<ReadRecord> records;
   for (const std::string& path : measured) records.push_back(read_record(path, scenario.columns));
-  return open_measured_twin(scenario, verb, records, listener);
+  return open_measured_twin(scenario, verb, records, listener, as_recorded);
 }
 
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
-                                const std::vector<ReadRecord>& measured, const Listener& listener) {
+                                const std::vector<ReadRecord>& measured, const Listener& listener, bool as_recorded) {
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, verb);
   MeasuredTwin m;
   m.scenario = scenario;
@@ -92,8 +106,15 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
-  diagnosis::leave_out_foreign_units(m.runs, whole);
-  diagnosis::require_plausible_times(m.runs, whole);
+  listener.begin("looking for blunders in the records");
+  for (std::size_t r = 0; r < m.runs.size(); ++r) check_beside(measured[r].record, m.runs[r], names, whole, m);
+  if (!m.blunders.empty() && !as_recorded) {
+    throw InputError(
+        fmt::format("{}\nNothing was fitted. Mend this first; `driftwright import FILE` writes the map of a file "
+                    "(`columns`). To go on with "
+                    "the records as they are: --as-recorded (in the library as_recorded)",
+                    diagnosis::words(m.blunders)));
+  }
   diagnosis::find_warm_starts(m.runs, whole);
   listener.begin("computing the states that the measured runs reach");
   m.focus = std::make_unique<diagnosis::Focus>(

@@ -159,7 +159,7 @@ def tried(a_set, folder, out, diagnosis, program, limit_s):
         return dict(not_tried=str(why))
     for name, text in files.items():
         (out / name).write_text(text)
-    command = [program, "diagnose", "scenario.yaml"] + [x for name in sorted(files) if name.endswith(".csv") for x in ("--measured", name)] + ["-o", "diagnosis"]
+    command = [program, "diagnose", "scenario.yaml"] + [x for name in sorted(files) if name.endswith(".csv") for x in ("--measured", name)] + ["--as-recorded", "-o", "diagnosis"]
     begin = time.time()
     with open(out / "diagnosis.log", "w") as log:
         # Seconds of the processor: those of the clock say on a shared machine what else ran.

@@ -22,7 +22,7 @@ one_case() {
   for record in measured_*.csv; do measured+=(--measured "$record"); done
   rm -rf "./$name"
   begin=$(date +%s)
-  timeout -k 5 "${LIMIT_S:-120}" "$program" diagnose scenario.yaml "${measured[@]}" -o "$name" > "$name.log" 2>&1 9>&-
+  timeout -k 5 "${LIMIT_S:-120}" "$program" diagnose scenario.yaml "${measured[@]}" --as-recorded -o "$name" > "$name.log" 2>&1 9>&-
   code=$?
   /usr/bin/python3 "$here/held_out.py" "$PWD" "$name" "$program" 9>&-
   echo "$code" > "$name.exit"

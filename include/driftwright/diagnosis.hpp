@@ -10,6 +10,8 @@ namespace driftwright {
 struct DiagnoseOptions {
   std::vector<std::string> without = {};  ///< keys of effects that are not searched for; each must be one of a candidate
   bool causes_only = false;               ///< leave the scenario's own numbers in the extended scenario as they are
+  /// Go on with records that have a blunder (a speed in 1/s, a sign, exchanged channels ...); else they are refused.
+  bool as_recorded = false;
 };
 
 /// A number with its 95 % interval.

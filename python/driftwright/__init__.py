@@ -149,13 +149,15 @@ class Machine:
         tables = [m if isinstance(m, pd.DataFrame) else read_record(m) for m in measured]
         return [_record(t, t.attrs.get("source") or f"record_{i + 1}") for i, t in enumerate(tables)]
 
-    def diagnose(self, measured, without=(), causes_only=False):
-        """What records say about the machine, as `driftwright diagnose`: verdict, causes, gain, the extended scenario."""
-        return self._machine.diagnose(self._records(measured), list(without), causes_only)
+    def diagnose(self, measured, without=(), causes_only=False, as_recorded=False):
+        """What records say about the machine, as `driftwright diagnose`: verdict, causes, gain, the extended scenario.
 
-    def calibrate(self, measured):
-        """The scenario's uncertain numbers, fitted to records."""
-        return self._machine.calibrate(self._records(measured))
+        Records with a blunder (a speed in 1/s, a sign, exchanged channels ...) are refused unless `as_recorded`."""
+        return self._machine.diagnose(self._records(measured), list(without), causes_only, as_recorded)
+
+    def calibrate(self, measured, as_recorded=False):
+        """The scenario's uncertain numbers, fitted to records; `as_recorded` as in diagnose()."""
+        return self._machine.calibrate(self._records(measured), as_recorded)
 
 
 def judge(scenario, train, test):

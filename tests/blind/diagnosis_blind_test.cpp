@@ -31,7 +31,7 @@ Told told(const std::filesystem::path& folder) {
   for (const char* name : {"measured_1.csv", "measured_2.csv"}) {
     if (std::filesystem::exists(folder / name)) measured.push_back((folder / name).string());
   }
-  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", measured, {});
+  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", measured, {}, true);
   if (t.truth["without"].is_string()) m.how.without.insert(t.truth["without"].get<std::string>());
   t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how);
   std::filesystem::remove_all(folder.parent_path());

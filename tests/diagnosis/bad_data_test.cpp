@@ -7,8 +7,6 @@
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/happening.hpp"
 #include "diagnosis/missing_data.hpp"
-#include "diagnosis/time_check.hpp"
-#include "diagnosis/unit_check.hpp"
 #include "diagnosis/unseen_drive.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
@@ -89,113 +87,11 @@ struct Bench {
   }
 };
 
-TEST(ForeignUnits, FahrenheitAndKelvinUnderDegreesCelsiusAreNamedAndLeftOut) {
-  Bench b;
-  b.channel(0).value = 1.8 * (b.channel(0).value.array() + 20.0) + 32.0 - 20.0;
-  b.channel(1).value = b.channel(1).value.array() + 273.15;
-  leave_out_foreign_units(b.runs, *b.twin);
-  EXPECT_THAT(b.told(),
-              AllOf(HasSubstr("t_shaft_degC looks like degF: it reads 68.0 to"), HasSubstr("in degF that is 20.0 to"),
-                    HasSubstr("t_housing_degC looks like kelvin: it reads 293.1")));
-  ASSERT_EQ(b.runs[0].channels.size(), 1U);
-  EXPECT_EQ(b.channel(0).name, "nose");
-}
-
-TEST(ForeignUnits, AThousandTimesTooMuchOrTooLittleIsNamed) {
-  for (const auto& [factor, unit, looks] :
-       {std::tuple{1e-3, "um", "nose_um looks like mm"}, {1e3, "mm", "nose_mm looks like um"}}) {
-    Bench b;
-    b.channel(2).recorded_unit = unit;
-    b.channel(2).value *= factor * 1.7;  // and the scenario is off, too
-    leave_out_foreign_units(b.runs, *b.twin);
-    EXPECT_THAT(b.told(), HasSubstr(looks));
-    EXPECT_EQ(b.runs[0].find("nose"), nullptr);
-  }
-}
-
-TEST(ForeignUnits, AModelThatIsFarOffIsNoOtherUnit) {
-  for (const double factor : {0.05, 0.4, 1.0, 3.0, 30.0}) {
-    for (const double offset_K : {-20.0, 0.0, 8.0, 15.0}) {
-      Bench b;
-      b.channel(0).value = factor * b.channel(0).value.array() + offset_K;
-      b.channel(2).value *= factor;
-      leave_out_foreign_units(b.runs, *b.twin);
-      EXPECT_EQ(b.told(), "") << factor << " " << offset_K;
-    }
-  }
-}
-
-TEST(ForeignUnits, AnIndicatorThatTouchesNothingIsNoOtherUnit) {  // a thousandth of what is expected, and none of it
-  Bench b;
-  Eigen::VectorXd& v = b.channel(2).value;
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 2e-8 * std::sin(12.9898 * static_cast<double>(i * i % 977));
-  leave_out_foreign_units(b.runs, *b.twin);
-  EXPECT_EQ(b.told(), "");
-}
-
-TEST(ForeignUnits, ADisplacementTurnedInSignIsNamed) {
-  Bench b;
-  b.channel(2).value *= -1.1;  // and the scenario is off, too
-  leave_out_foreign_units(b.runs, *b.twin);
-  EXPECT_THAT(b.told(), HasSubstr("nose_um seems to have the wrong sign"));
-  EXPECT_EQ(b.runs[0].find("nose"), nullptr);
-  Bench half;  // half as much the other way is no sign: something is wrong with the model
-  half.channel(2).value *= -0.5;
-  leave_out_foreign_units(half.runs, *half.twin);
-  EXPECT_EQ(half.told(), "");
-}
-
 TEST(ForeignUnits, ATemperatureThatMayWellBeIsLeft) {
   EXPECT_EQ(foreign_temperature({13.0, 14.0, 15.0}, -10.0, -10.0),
             std::nullopt);  // 14 degF are -10 degC, and 24 K is no proof
   EXPECT_EQ(foreign_temperature({31.0, 32.0, 33.0}, 0.0, 0.0), "degF");
   EXPECT_EQ(foreign_temperature({}, 0.0, 0.0), std::nullopt);
-}
-
-TEST(ForeignUnits, NothingLeftToCompareIsRefusedWithTheReason) {
-  Bench b;
-  b.runs[0].channels.resize(1);
-  b.channel(0).value = b.channel(0).value.array() + 273.15;
-  try {
-    leave_out_foreign_units(b.runs, *b.twin);
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), AllOf(HasSubstr("no channel to compare"), HasSubstr("t_shaft_degC looks like kelvin")));
-  }
-}
-
-TEST(ForeignTimes, SecondsUnderMinutesAndMinutesUnderSecondsAreTold) {
-  for (const auto& [factor, words] : {std::pair{60.0, "60 times too long"}, {1.0 / 60.0, "60 times too short"}}) {
-    Bench b;
-    for (MeasuredChannel& c : b.runs[0].channels) c.value *= 1.3;  // and the scenario is off, too
-    require_plausible_times(b.runs, *b.twin);
-    for (double& t : b.runs[0].time_s) t *= factor;
-    for (auto& s : b.runs[0].cyclogram.sections) s.duration_s *= factor;
-    set_grid(b.runs[0]);
-    EXPECT_THAT([&] { require_plausible_times(b.runs, *b.twin); },
-                ::testing::ThrowsMessage<InputError>(AllOf(HasSubstr("the times look"), HasSubstr(words))));
-  }
-}
-
-TEST(ForeignTimes, AModelThatIsFarOffHasItsTimes) {
-  for (const double factor : {-1.0, 0.0, 0.1, 0.4, 3.0, 10.0}) {
-    for (const double slower :
-         {0.05, 0.08, 0.16, 0.25, 1.0, 4.0, 6.0, 12.0, 20.0}) {  // every capacity of the scenario is wrong by that
-      Bench b;
-      MeasuredRun& run = b.runs[0];
-      const std::vector<double> times_s = run.time_s;
-      const Cyclogram recorded = run.cyclogram;
-      for (double& t : run.time_s) t /= slower;
-      for (auto& s : run.cyclogram.sections) s.duration_s /= slower;
-      set_grid(run);
-      b.measure({0.0, 0.0});
-      run.time_s = times_s;
-      run.cyclogram = recorded;
-      set_grid(run);
-      for (MeasuredChannel& c : run.channels) c.value *= factor;
-      EXPECT_NO_THROW(require_plausible_times(b.runs, *b.twin)) << factor << " " << slower;
-    }
-  }
 }
 
 /// Reproducible noise: a sine of no period that a machine has.

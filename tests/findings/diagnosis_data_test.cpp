@@ -244,6 +244,25 @@ TEST(Reports, SayFirstThatFewChannelsWereCompared) {
   EXPECT_THAT(answer.text, StartsWith("1 of 6 channels of the records is compared"));
 }
 
+TEST(Reports, SayFirstWhatWasComparedAndWhatLooksWrong) {
+  StepOfAnIndicator found;
+  found.measured.blunders = {
+      {.path = "monday.csv", .what = "nose_um looks like mm", .instead = "Call the column nose_mm", .nats = 50.0}};
+  found.measured.renamings = {{.path = "monday.csv", .column = "T3_degC", .header = "t_housing_degC"}};
+  const Compared compared = compared_of(found.measured.runs);
+  const std::string first = said_first_text(found.measured, compared);
+  EXPECT_THAT(first, StartsWith("monday.csv: nose_um looks like mm. Call the column nose_mm. T3_degC reads what the scenario "
+                                "simulates for t_housing_degC: call"));
+  found.d.verdict = diagnosis::Verdict::kConsistent;
+  const output::Verdict answer = answer_of(found.d, compared, first);
+  EXPECT_EQ(answer.kind, output::Verdict::Kind::kNeutral);
+  EXPECT_THAT(answer.text, StartsWith(first));
+  EXPECT_EQ(diagnosis_document(found.findings("extended.yaml"), {}).subtitle,
+            "measured: monday.csv; its one channel is compared");
+  EXPECT_EQ(compared_clause({.n = 1, .of = 3, .left_out = {{"t1", "no sensor"}, {"t2", "no sensor"}}}),
+            "1 of 3 channels is compared; left out: t1, t2");
+}
+
 TEST(CauseWords, SayTimesAndSharesInTheSentence) {
   diagnosis::Diagnosis d;
   d.search.findings.resize(2);
