@@ -154,146 +154,31 @@ static fmi3Status unsupported(fmi3Instance instance_, const char* call) {
   ALLOW(kAnyMode, call);
   return (fmi3Status)instance_tell(instance_, kError, "this part of the standard is not supported (modelDescription.xml)");
 }
-FMI3_Export fmi3Status fmi3GetFloat32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                      size_t nValueReferences, fmi3Float32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetFloat32");
-}
-FMI3_Export fmi3Status fmi3SetFloat32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                      size_t nValueReferences, const fmi3Float32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetFloat32");
-}
-FMI3_Export fmi3Status fmi3GetInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, fmi3Int8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt8");
-}
-FMI3_Export fmi3Status fmi3SetInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, const fmi3Int8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt8");
-}
-FMI3_Export fmi3Status fmi3GetUInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3UInt8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt8");
-}
-FMI3_Export fmi3Status fmi3SetUInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3UInt8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt8");
-}
-FMI3_Export fmi3Status fmi3GetInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt16");
-}
-FMI3_Export fmi3Status fmi3SetInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt16");
-}
-FMI3_Export fmi3Status fmi3GetUInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt16");
-}
-FMI3_Export fmi3Status fmi3SetUInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt16");
-}
-FMI3_Export fmi3Status fmi3GetInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt32");
-}
-FMI3_Export fmi3Status fmi3SetInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt32");
-}
-FMI3_Export fmi3Status fmi3GetUInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt32");
-}
-FMI3_Export fmi3Status fmi3SetUInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt32");
-}
-FMI3_Export fmi3Status fmi3GetInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt64");
-}
-FMI3_Export fmi3Status fmi3SetInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt64");
-}
-FMI3_Export fmi3Status fmi3GetUInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt64");
-}
-FMI3_Export fmi3Status fmi3SetUInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt64");
-}
-FMI3_Export fmi3Status fmi3GetString(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3String values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetString");
-}
-FMI3_Export fmi3Status fmi3SetString(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3String values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetString");
-}
+#define NO_VARIABLES_OF(Type)                                                                                \
+  FMI3_Export fmi3Status fmi3Get##Type(fmi3Instance instance_, const fmi3ValueReference valueReferences[],   \
+                                       size_t nValueReferences, fmi3##Type values[], size_t nValues) {       \
+    (void)valueReferences;                                                                                   \
+    (void)values;                                                                                            \
+    (void)nValues;                                                                                           \
+    return none_of_these(instance_, nValueReferences, "fmi3Get" #Type);                                      \
+  }                                                                                                          \
+  FMI3_Export fmi3Status fmi3Set##Type(fmi3Instance instance_, const fmi3ValueReference valueReferences[],   \
+                                       size_t nValueReferences, const fmi3##Type values[], size_t nValues) { \
+    (void)valueReferences;                                                                                   \
+    (void)values;                                                                                            \
+    (void)nValues;                                                                                           \
+    return none_of_these(instance_, nValueReferences, "fmi3Set" #Type);                                      \
+  }
+NO_VARIABLES_OF(Float32)
+NO_VARIABLES_OF(Int8)
+NO_VARIABLES_OF(UInt8)
+NO_VARIABLES_OF(Int16)
+NO_VARIABLES_OF(UInt16)
+NO_VARIABLES_OF(Int32)
+NO_VARIABLES_OF(UInt32)
+NO_VARIABLES_OF(Int64)
+NO_VARIABLES_OF(UInt64)
+NO_VARIABLES_OF(String)
 FMI3_Export fmi3Status fmi3GetBinary(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                      size_t nValueReferences, size_t valueSizes[], fmi3Binary values[], size_t nValues) {
   (void)valueReferences;
