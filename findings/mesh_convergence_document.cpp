@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "findings/named_value.hpp"
+
 namespace driftwright::findings {
 namespace {
 
@@ -180,10 +182,7 @@ output::Document document_of(const MeshConvergence& found, const scenarios::Scen
   }
   add(body, output::Value{.key = "cyclogram", .datum = found.cyclogram});
   add(body, output::Value{.key = "model", .datum = found.model});
-  add(body, output::Value{.key = "theoretical_order",
-                          .words = "order in theory",
-                          .datum = found.highest_order,
-                          .digits = output::decimals(0)});
+  add(body, named_value("theoretical_order", "order in theory", found.highest_order, output::decimals(0)));
   add_plots(body, found, false);
   if (worst) body.sections.push_back(output::next_section(next_steps(found, *worst)));
   output::Section numbers;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "findings/machine_section.hpp"
+#include "findings/named_value.hpp"
 #include "studies/placement_tests.hpp"
 
 namespace driftwright::findings {
@@ -325,32 +326,17 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
 
   output::Section numbers{.title = "The numbers"};
   add(numbers, places_table(p, entries));
-  add(numbers, Value{.key = "drift_um",
-                     .words = "drift without correction, RMS",
-                     .datum = p.drift_um,
-                     .unit = "um",
-                     .digits = output::decimals(2)});
-  add(numbers, Value{.key = "model_alone_um",
-                     .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted",
-                     .datum = p.without.observer_um,
-                     .unit = "um",
-                     .digits = output::decimals(2)});
-  add(numbers, Value{.key = "enough",
-                     .words = "number after which further thermometers reduce the error by less than a tenth each",
-                     .datum = enough(p)});
+  add(numbers, named_value("drift_um", "drift without correction, RMS", p.drift_um, "um", output::decimals(2)));
+  add(numbers, named_value("model_alone_um", p.mounted.empty() ? "left by the model alone" : "left with those mounted",
+                           p.without.observer_um, "um", output::decimals(2)));
+  add(numbers, named_value("enough", "number after which further thermometers reduce the error by less than a tenth each",
+                           enough(p)));
   if (p.own) {
-    add(numbers,
-        Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
-    add(numbers, Value{.key = "own.observer_um",
-                       .words = "error that these leave, with the observer",
-                       .datum = p.own->left.front().observer_um,
-                       .unit = "um",
-                       .digits = output::decimals(2)});
-    add(numbers, Value{.key = "own.regression_um",
-                       .words = "error that these leave, with a regression",
-                       .datum = p.own->left.front().regression_um,
-                       .unit = "um",
-                       .digits = output::decimals(2)});
+    add(numbers, named_value("own.thermometers", "thermometers of the scenario", p.own->sets.front().size()));
+    add(numbers, named_value("own.observer_um", "error that these leave, with the observer", p.own->left.front().observer_um,
+                             "um", output::decimals(2)));
+    add(numbers, named_value("own.regression_um", "error that these leave, with a regression",
+                             p.own->left.front().regression_um, "um", output::decimals(2)));
   }
   add(numbers, short_curve(curve_table(p)));
   if (const int least = studies::least_test(p.tests, &Residual::regression_um); least >= 0) {
@@ -380,18 +366,13 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   if (!p.left_out.empty())
     add(how, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
   if (!p.options.mounted.empty()) add(how, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
-  add(how,
-      Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
+  add(how, named_value("candidates", "places looked at, sensors of the scenario among them", p.spots.size()));
   add(how, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
   add(how, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
   if (!p.made.empty()) add(how, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
   add(how, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
   add(how, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
-  add(how, Value{.key = "noise_K",
-                 .words = "noise of a reading",
-                 .datum = p.options.noise_K,
-                 .unit = "K",
-                 .digits = output::significant(2)});
+  add(how, named_value("noise_K", "noise of a reading", p.options.noise_K, "K", output::significant(2)));
   output::Section compared{.title = "Other numbers and ways to choose, the loss of one, tests", .detail = true};
   add(compared, curve_table(p));
   add(compared, ways_table(p, &Residual::observer_um, "observer"));

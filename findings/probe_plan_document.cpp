@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "findings/columns.hpp"
+#include "findings/named_value.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -237,39 +238,14 @@ output::Document document_of(const ProbePlan& plan, const scenarios::Scenario& s
   output::Section numbers;
   add(numbers, Value{.key = "predictor", .words = "predictor", .datum = plan.predictor});
   add(numbers, Value{.key = "target", .words = "axis", .datum = plan.target});
-  add(numbers, Value{.key = "tolerance_um",
-                     .words = "tolerance",
-                     .datum = plan.tolerance_um,
-                     .unit = "um",
-                     .digits = output::significant(4)});
-  add(numbers, Value{.key = "kept_free",
-                     .words = "of it kept free for all that is not thermal",
-                     .datum = plan.kept_free,
-                     .digits = output::percent(0)});
-  add(numbers, Value{.key = "work_min",
-                     .words = "end of the work",
-                     .datum = plan.job.work.back().until_s / 60.0,
-                     .unit = "min",
-                     .digits = output::decimals(1)});
+  add(numbers, named_value("tolerance_um", "tolerance", plan.tolerance_um, "um", output::significant(4)));
+  add(numbers, named_value("kept_free", "of it kept free for all that is not thermal", plan.kept_free, output::percent(0)));
+  add(numbers, named_value("work_min", "end of the work", plan.job.work.back().until_s / 60.0, "min", output::decimals(1)));
   add(numbers, Value{.key = "n_places", .words = "places for a probing", .datum = plan.job.places.size()});
-  add(numbers, Value{.key = "probe_noise_um",
-                     .words = "noise of a probing",
-                     .datum = plan.axis.probe.noise_um,
-                     .unit = "um",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "probe_lag_s",
-                     .words = "lag of the probe",
-                     .datum = plan.axis.probe.lag_s,
-                     .unit = "s",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "probing_min",
-                     .words = "time of a probing",
-                     .datum = plan.axis.probing_s / 60.0,
-                     .unit = "min",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "known_at_start",
-                     .words = "the drift counts from the start of the job",
-                     .datum = plan.axis.is_known_at_start});
+  add(numbers, named_value("probe_noise_um", "noise of a probing", plan.axis.probe.noise_um, "um", output::significant(3)));
+  add(numbers, named_value("probe_lag_s", "lag of the probe", plan.axis.probe.lag_s, "s", output::significant(3)));
+  add(numbers, named_value("probing_min", "time of a probing", plan.axis.probing_s / 60.0, "min", output::significant(3)));
+  add(numbers, named_value("known_at_start", "the drift counts from the start of the job", plan.axis.is_known_at_start));
   add(numbers, probings_table(plan));
   add(numbers, probe_curve_table(plan));
   if (plan.points) add(numbers, points_table(*plan.points));

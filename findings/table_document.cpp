@@ -7,6 +7,7 @@
 
 #include "base/quantity.hpp"
 #include "findings/columns.hpp"
+#include "findings/named_value.hpp"
 #include "studies/table_strategy.hpp"
 
 namespace driftwright::findings {
@@ -157,10 +158,7 @@ Section readings_section(const studies::TableStudy& study) {
   for (const auto& m : study.ambient_models)
     table.rows.push_back({m.name, m.n_parameters, m.rms, m.rms_left_out, m.r_squared, m.parameters});
   add(section, std::move(table));
-  add(section, Value{.key = "computed_rms_um",
-                     .words = "misfit of this machine, not fitted",
-                     .datum = study.computed_rms_um,
-                     .unit = "um"});
+  add(section, named_value("computed_rms_um", "misfit of this machine, not fitted", study.computed_rms_um, "um"));
   add(section, Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
                     "almost anything: "
                     "they do not carry a model of ambient temperature. On the second morning the error rises while the "

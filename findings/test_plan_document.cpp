@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/median.hpp"
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 #include "output/heat_map.hpp"
 
@@ -337,26 +338,10 @@ output::Document document_of(const TestPlan& plan, const scenarios::Scenario& sc
   add(body, channels_table(plan));
   add(body, pairs_table(plan));
   add(body, numbers_table(plan));
-  add(body, Value{.key = "hours",
-                  .words = "length",
-                  .datum = plan.duration_s / 3600.0,
-                  .unit = "h",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "interval_s",
-                  .words = "rows every",
-                  .datum = plan.interval_s,
-                  .unit = "s",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "noise_K",
-                  .words = "noise of a thermometer",
-                  .datum = plan.noise.temperature_K,
-                  .unit = "K",
-                  .digits = output::significant(3)});
-  add(body, Value{.key = "noise_um",
-                  .words = "noise of a displacement",
-                  .datum = plan.noise.displacement_um,
-                  .unit = "um",
-                  .digits = output::significant(3)});
+  add(body, named_value("hours", "length", plan.duration_s / 3600.0, "h", output::significant(4)));
+  add(body, named_value("interval_s", "rows every", plan.interval_s, "s", output::significant(4)));
+  add(body, named_value("noise_K", "noise of a thermometer", plan.noise.temperature_K, "K", output::significant(3)));
+  add(body, named_value("noise_um", "noise of a displacement", plan.noise.displacement_um, "um", output::significant(3)));
   add(body, Value{.key = "programmes_tried", .words = "programmes tried", .datum = plan.n_tried});
   add(body, Value{.key = "share_named_by_search",
                   .words = "faults named, as the search's linear machine has it",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -241,45 +242,21 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
   output::Section& body = document.body;
   add(body, verdict_of(plan, job));
   add(body, Value{.key = "job", .datum = asked});
-  add(body, Value{.key = "tolerance_um",
-                  .words = "tolerance",
-                  .datum = plan.tolerance_um,
-                  .unit = "um",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "kept_free",
-                  .words = "of it kept free for what the model does not know",
-                  .datum = plan.kept_free,
-                  .digits = output::percent(0)});
-  add(body, Value{.key = "speed_limit_rpm",
-                  .words = "speed limit",
-                  .datum = plan.most_speed_rpm,
-                  .unit = "rpm",
-                  .digits = output::decimals(0)});
+  add(body, named_value("tolerance_um", "tolerance", plan.tolerance_um, "um", output::significant(4)));
+  add(body,
+      named_value("kept_free", "of it kept free for what the model does not know", plan.kept_free, output::percent(0)));
+  add(body, named_value("speed_limit_rpm", "speed limit", plan.most_speed_rpm, "rpm", output::decimals(0)));
   if (plan.most_power_W > 0.0)
-    add(body, Value{.key = "power_limit_W",
-                    .words = "limit of a speed's heat",
-                    .datum = plan.most_power_W,
-                    .unit = "W",
-                    .digits = output::decimals(0)});
-  add(body, Value{.key = "power_at_limit_W",
-                  .words = "heat of the fastest speed that is allowed",
-                  .datum = plan.power_at_most_W,
-                  .unit = "W",
-                  .digits = output::decimals(0)});
-  add(body, Value{.key = "time_limit_min",
-                  .words = "time limit",
-                  .datum = plan.most_s / 60.0,
-                  .unit = "min",
-                  .digits = output::decimals(0)});
+    add(body, named_value("power_limit_W", "limit of a speed's heat", plan.most_power_W, "W", output::decimals(0)));
+  add(body, named_value("power_at_limit_W", "heat of the fastest speed that is allowed", plan.power_at_most_W, "W",
+                        output::decimals(0)));
+  add(body, named_value("time_limit_min", "time limit", plan.most_s / 60.0, "min", output::decimals(0)));
   if (plan.held) {
-    add(body,
-        Value{
-            .key = "model_error", .words = "machines are off by", .datum = plan.model_error, .digits = output::percent(0)});
+    add(body, named_value("model_error", "machines are off by", plan.model_error, output::percent(0)));
     add(body, Value{.key = "machines", .words = "machines that the free share was chosen by", .datum = plan.held->n});
     add(body, Value{.key = "machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_kept});
     add(body, Value{.key = "fresh_machines", .words = "other machines", .datum = plan.held->n_fresh});
-    add(body,
-        Value{.key = "fresh_machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_fresh_kept});
+    add(body, named_value("fresh_machines_kept", "of them within the tolerance", plan.held->n_fresh_kept));
   }
   add(body, Value{.key = "predicted_by", .datum = plan.predicted_by});
   add(body,
