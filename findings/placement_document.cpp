@@ -131,7 +131,6 @@ Table places_table(const Placement& p, const std::vector<std::string>& entries) 
                           {.key = "y_mm", .title = "y", .unit = "mm", .digits = output::decimals(1)},
                           {.key = "z_mm", .title = "z", .unit = "mm", .digits = output::decimals(1)},
                           {.key = "entry"}},
-              .rows = {},
               .file = "place.csv"};
   const std::vector<int> set = bought(p);
   for (std::size_t i = 0; i < set.size(); ++i) {
@@ -151,17 +150,16 @@ Table curve_table(const Placement& p) {
           "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of "
           "the same places; with the loss of the worst one "
           "where that is counted.",
-      .columns =
-          {{.key = "n", .title = "n"},
-           {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
-           {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
-           {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
-           {.key = "places", .title = "places"}},
-      .rows = {}};
+      .columns = {
+          {.key = "n", .title = "n"},
+          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
+          {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
+          {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
+          {.key = "places", .title = "places"}}};
   table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(),
                         output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
   for (std::size_t n = 0; n < p.chosen.sets.size(); ++n) {
@@ -188,8 +186,7 @@ Table ways_table(const Placement& p, double Residual::*value, const std::string&
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
               .caption = "Random: median and best of six sets; which is best is known only afterwards.",
-              .columns = {{.key = "way", .title = "way"}},
-              .rows = {}};
+              .columns = {{.key = "way", .title = "way"}}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
     table.columns.push_back(
         {.key = fmt::format("n{}_um", n), .title = fmt::format("n = {}", n), .unit = "um", .digits = output::decimals(2)});
@@ -214,15 +211,14 @@ Table losses_table(const Placement& p) {
       .key = "loss_of_one",
       .title = fmt::format("Any one of {} fails", p.options.n),
       .caption = "The observer goes on with the others, the regression is fitted anew without it: the worst of all cases.",
-      .columns =
-          {{.key = "way", .title = "way"},
-           {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_worst", .title = "of"},
-           {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_worst", .title = "of"}},
-      .rows = {}};
+      .columns = {
+          {.key = "way", .title = "way"},
+          {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_worst", .title = "of"},
+          {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_worst", .title = "of"}}};
   for (const studies::LossOfOne& loss : p.losses) {
     const auto lost = [&](int spot) { return spot < 0 ? output::Datum() : output::Datum(spot_name(p, spot)); };
     table.rows.push_back({loss.way, loss.all.observer_um, loss.worst.observer_um, lost(loss.worst_for_observer),
@@ -240,8 +236,7 @@ Table tests_table(const Placement& p) {
               .columns = {{.key = "duration_h", .title = "hours", .unit = "h", .digits = output::decimals(0)},
                           {.key = "programme", .title = "programme"},
                           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)}},
-              .rows = {}};
+                          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)}}};
   for (const studies::TriedTest& test : p.tests)
     table.rows.push_back({test.duration_s / 3600.0, test.programme, test.left.regression_um, test.left.observer_um});
   return table;
@@ -251,9 +246,6 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
   Plot plot{.title = fmt::format("When to stop buying: {}", predictor),
             .x_label = "thermometers",
             .y_label = "drift left, RMS [µm]",
-            .series = {},
-            .bands = {},
-            .marks = {},
             .half_width = true};
   const auto add_curve = [&](const std::string& label, const std::vector<Residual>& left, bool with_none,
                              Series::Style style, int color) {

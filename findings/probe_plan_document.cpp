@@ -95,7 +95,6 @@ Table probings_table(const ProbePlan& plan) {
                           um_column("before_um", "before"),
                           um_column("after_um", "after"),
                           {.key = "lost_min", .title = "lost", .unit = "min", .digits = output::decimals(1)}},
-              .rows = {},
               .detail = false,
               .file = "probe_plan.csv"};
   if (!plan.best) return table;
@@ -141,9 +140,7 @@ Plot widths_plot(const ProbePlan& plan) {
   Plot plot{.title = "What is not known of " + plan.target,
             .x_label = "time in the job [min]",
             .y_label = "half width of the 95 % interval [µm]",
-            .series = {},
-            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}}};
   const ProbeSequence& shown = plan.shown();
   plot.series.push_back(width_series(plan, shown, fmt::format("planned, {}", probings_words(shown.probings.size()))));
   if (const ProbeSequence* equal = plan.equal(); equal && !equal->probings.empty())
@@ -163,8 +160,7 @@ Plot probe_curve_plot(const ProbePlan& plan) {
             .y_label = "largest half width of the 95 % interval [µm]",
             .series = {{.label = "planned", .style = Series::Style::kPoints},
                        {.label = "equal intervals", .style = Series::Style::kPoints}},
-            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}}};
   for (const studies::ProbeCurveRow& row : plan.curve) {
     plot.series[0].x.push_back(row.best.lost_s / 60.0);
     plot.series[0].y.push_back(row.best.worst_um);

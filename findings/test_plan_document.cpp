@@ -181,12 +181,7 @@ void add_maps(output::Section& body, const TestPlan& plan) {
 }
 
 Plot programme_plot(const TestPlan& plan) {
-  Plot plot{.title = "Programme",
-            .x_label = "time [h]",
-            .y_label = "share of the most [%]",
-            .series = {},
-            .bands = {},
-            .marks = {}};
+  Plot plot{.title = "Programme", .x_label = "time [h]", .y_label = "share of the most [%]"};
   const auto add_series = [&](const std::string& label, const auto& of) {
     Series series{.label = label, .style = Series::Style::kSteps};
     double most = 0.0, time_s = 0.0;
@@ -210,7 +205,7 @@ Plot programme_plot(const TestPlan& plan) {
 }
 
 Plot readings_plot(const Record& record, const std::string& unit, const std::string& title, const std::string& label) {
-  Plot plot{.title = title, .x_label = "time [h]", .y_label = label, .series = {}, .bands = {}, .marks = {}};
+  Plot plot{.title = title, .x_label = "time [h]", .y_label = label};
   std::vector<double> hours;
   for (double t_s : record.time_s) hours.push_back(t_s / 3600.0);
   for (const Channel& c : record.channels) {
@@ -251,7 +246,6 @@ Table pairs_table(const TestPlan& plan) {
                           {.key = "d_planned", .title = "d', planned", .digits = output::decimals(1)},
                           {.key = "taken_usual", .title = "taken, usual", .digits = output::percent(0)},
                           {.key = "taken_planned", .title = "taken, planned", .digits = output::percent(0)}},
-              .rows = {},
               .detail = true};
   struct Pair {
     Eigen::Index a, b;
@@ -282,7 +276,6 @@ Table numbers_table(const TestPlan& plan) {
                           {.key = "known_to", .title = "known to", .digits = output::significant(2)},
                           {.key = "left_usual", .title = "left, usual", .digits = output::percent(0)},
                           {.key = "left_planned", .title = "left, planned", .digits = output::percent(0)}},
-              .rows = {},
               .detail = true};
   for (std::size_t i = 0; i < plan.numbers.size(); ++i) {
     const diagnosis::Knob& k = plan.numbers[i];

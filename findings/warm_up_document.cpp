@@ -112,7 +112,6 @@ Plot levels_plot(const WarmUpPlan& plan) {
             .y_label = "least peak of the job's drift [µm]",
             .series = {{.label = "one speed"}, {.label = "two speeds"}},
             .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
-            .marks = {},
             .half_width = true};
   for (const studies::WarmUpLevel& level : plan.levels) {
     for (Series& series : plot.series) series.x.push_back(level.duration_s / 60.0);
@@ -123,13 +122,8 @@ Plot levels_plot(const WarmUpPlan& plan) {
 }
 
 Plot programme_plot(const WarmUpPlan& plan) {
-  Plot plot{.title = "Shortest warm-up",
-            .x_label = "time before the job [min]",
-            .y_label = "speed [rpm]",
-            .series = {},
-            .bands = {},
-            .marks = {},
-            .half_width = true};
+  Plot plot{
+      .title = "Shortest warm-up", .x_label = "time before the job [min]", .y_label = "speed [rpm]", .half_width = true};
   std::vector<const WarmUp*> ways = {&plan.constant, &plan.staged};
   if (plan.finest) ways.push_back(&*plan.finest);
   for (const WarmUp* way : ways) {
@@ -154,7 +148,6 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
   Plot plot{.title = "Drift of the job",
             .x_label = "time in the job [min]",
             .y_label = "drift from its first row [µm]",
-            .series = {},
             .bands = {{.label = "allowed", .low = -kept_um(plan), .high = kept_um(plan)}},
             .marks = section_marks(job)};
   for (const std::string& name : plan.channels) {
@@ -188,9 +181,7 @@ Plot corrected_plot(const studies::CorrectedWarmUps& corrected, const WarmUpPlan
   Plot plot{.title = "Warm-up beside correction",
             .x_label = fmt::format("warm-up at {:.0f} rpm [min]", corrected.speed_rpm),
             .y_label = fmt::format("peak of what is left of {} [µm]", corrected.target),
-            .series = {},
-            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}}};
   for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
     if (std::find(kDrawn.begin(), kDrawn.end(), strategy.strategy) == kDrawn.end()) continue;
     Series series{.label = strategy.strategy, .y = strategy.left_um};
@@ -222,7 +213,6 @@ Table corrected_times_table(const studies::CorrectedWarmUps& corrected) {
               .columns = {{.key = "strategy", .title = "strategy"},
                           {.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
                           {.key = "left_um", .title = "left", .unit = "um", .digits = output::decimals(2)}},
-              .rows = {},
               .detail = true};
   for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
     for (std::size_t i = 0; i < corrected.times_s.size(); ++i)
@@ -276,7 +266,6 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
                .columns = {{.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
                            {.key = "one_speed_um", .title = "one speed", .unit = "um", .digits = output::decimals(2)},
                            {.key = "two_speeds_um", .title = "two speeds", .unit = "um", .digits = output::decimals(2)}},
-               .rows = {},
                .detail = true};
   for (const studies::WarmUpLevel& level : plan.levels)
     levels.rows.push_back({level.duration_s / 60.0, level.constant_um, level.staged_um});
