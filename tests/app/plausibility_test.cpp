@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::plausibility_test {
 namespace {
@@ -35,11 +36,7 @@ sensors: [{name: t_housing, node: housing}]
 displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
 cyclograms: {shift: [[120 min, 6000 rpm]]}
 )";
-  if (!usual.empty()) {
-    const std::size_t at = text.find(usual);
-    EXPECT_NE(at, std::string::npos) << usual;
-    text.replace(at, usual.size(), other);
-  }
+  if (!usual.empty()) text = fixtures::replaced(text, usual, other);
   const fs::path folder = fresh_folder("plausibility_" + name);
   std::ofstream(folder / "m.yaml") << text;
   return (folder / "m.yaml").string();

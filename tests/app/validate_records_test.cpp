@@ -13,6 +13,7 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::validate_records_test {
 namespace {
@@ -79,8 +80,7 @@ class ValidateRecords : public ::testing::Test {
     return write_file(name + ".yaml", text);
   }
   static void replace(std::string& text, const std::string& what, const std::string& by) {
-    ASSERT_NE(text.find(what), std::string::npos) << what;
-    text.replace(text.find(what), what.size(), by);
+    text = fixtures::replaced(text, what, by);
   }
   static void simulate(const std::string& scenario, const std::string& cyclogram, const std::string& into) {
     const CommandOutcome run =
