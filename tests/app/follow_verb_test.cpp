@@ -1,4 +1,5 @@
-// `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses.
+// `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses. One file:
+// all cases follow one machine.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is
-// installed.
+// installed. One file: all its cases correct programs for one machine.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // `driftwright sweep` as a user runs it: members are what `simulate` gives, failures stay alone, kill and shards change
-// no byte.
+// no byte. One file: all its cases read tables of small sweeps in one way.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

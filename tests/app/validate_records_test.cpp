@@ -1,4 +1,5 @@
-// `validate` on records as a user has them: with and without a machine in the scenario, with an ambient, without one.
+// `validate` on records as a user has them: with and without a machine in the scenario, with an ambient, without one. One
+// file: its cases share records that take most of its time to simulate.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 // Functional mock-up units as an importer of the standard runs them: the numbers of `predict` and of the observer, in
-// both versions, in co-simulation at any step and in model exchange with the importer's own integrator.
+// both versions, in co-simulation at any step and in model exchange with the importer's own integrator. One file: one
+// importer runs all units.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
+// Reduced machines on disk: what is found is what was kept, and nothing else is ever found. One file: each case changes one
+// thing of the same machine.
 
 #include "machine/machine_store.hpp"
 

@@ -1,5 +1,5 @@
 // Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes
-// by their line.
+// by their line. Most of it is the table of these programs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

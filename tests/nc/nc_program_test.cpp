@@ -1,4 +1,4 @@
-// NC programs against times and travels computed by hand.
+// NC programs against times and travels computed by hand. A quarter of it is tables of programs and mistakes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

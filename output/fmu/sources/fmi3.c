@@ -1,4 +1,4 @@
-/* FMI 3.0, model exchange and co-simulation. */
+/* FMI 3.0, model exchange and co-simulation: one function of the standard after the other, each as short as it can be. */
 #include <stdlib.h>
 
 #include "fmi3_interface.h"
