@@ -15,9 +15,7 @@
 namespace driftwright::diagnosis::added_kinds_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using ::testing::HasSubstr, ::testing::IsEmpty, ::testing::SizeIs;
 
 /// The two nodes of other tests, with one link and one record less.
 std::string machine() {

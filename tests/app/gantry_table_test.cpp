@@ -13,8 +13,7 @@
 namespace driftwright::gantry_table_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 struct Outcome {
   CommandOutcome command;

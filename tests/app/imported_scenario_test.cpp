@@ -13,10 +13,7 @@ namespace {
 
 using fixtures::column_and_head;
 using fixtures::inp_text;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 const char* const kScenario = R"(name: imported
 reference_temperature: 20 degC

@@ -15,10 +15,7 @@ namespace driftwright::plausibility_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 /// A spindle in its housing; one number of it may be another.
 std::string scenario(const std::string& name, const std::string& usual = "", const std::string& other = "") {

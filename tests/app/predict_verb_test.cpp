@@ -15,10 +15,7 @@ namespace driftwright::predict_verb_test {
 namespace {
 
 using fixtures::replaced;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 /// One body of 60 kJ/K on 20 W/K: 15 K and 60 um at 2000 rpm with a time constant of 50 min. Linear.

@@ -17,8 +17,7 @@
 namespace driftwright::app::probe_refusals_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr const char* kShop = R"(name: shop
 reference_temperature: 20 degC

@@ -24,9 +24,7 @@ using fixtures::Table;
 namespace fs = std::filesystem;
 using fixtures::ColumnAndHead;
 using fixtures::write_column_and_head;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
 

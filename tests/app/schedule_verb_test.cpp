@@ -21,9 +21,7 @@ namespace driftwright::schedule_verb_test {
 namespace {
 
 using fixtures::lines_of;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr;
 
 /// One lumped body that grows 60 um along z over hours, as a milling head does, and half as much along x.
 constexpr const char* kHead = R"(name: head

@@ -25,9 +25,7 @@ using fixtures::read_table;
 using fixtures::replaced;
 using fixtures::Table;
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 std::string lumped() {
   return fs::absolute("scenarios/lumped_spindle.yaml").string();

@@ -25,8 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using fixtures::ColumnAndHead;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
 constexpr const char* kOil =

@@ -17,11 +17,7 @@ namespace {
 
 using fixtures::revolutions;
 using fixtures::travel_mm;
-using ::testing::AllOf;
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // relative: sums of a few dozen terms of one sign in double precision

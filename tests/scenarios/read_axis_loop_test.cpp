@@ -10,9 +10,7 @@ namespace {
 
 using compensation::Counting;
 using compensation::Feedback;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 const AxisLoopContext kContext{.displacements = {"nose_y", "nose_z"},
                                .sensors = {"t1", "t2"},
