@@ -8,14 +8,8 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::AxisLoop;
-using compensation::AxisLoopResult;
-using compensation::ErrorStage;
-using output::Bars;
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
+using compensation::AxisLoop, compensation::AxisLoopResult, compensation::ErrorStage;
+using output::Bars, output::Plot, output::Series, output::Table, output::Value;
 
 /// Plots show every n-th sample, and of the samples between these the worst.
 constexpr std::size_t kMostPoints = 1500;

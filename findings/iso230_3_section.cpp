@@ -7,11 +7,8 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::Iso230Channel;
-using compensation::Iso230Figures;
-using output::Column;
-using output::Datum;
-using output::Table;
+using compensation::Iso230Channel, compensation::Iso230Figures;
+using output::Column, output::Datum, output::Table;
 
 constexpr const char* kTest = "ISO 230-3, thermal distortion by rotating spindle";
 constexpr const char* kRanges =

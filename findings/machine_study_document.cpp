@@ -14,13 +14,7 @@ namespace driftwright::findings {
 namespace {
 
 using compensation::CorrectedDrift;
-using output::Column;
-using output::Datum;
-using output::Plot;
-using output::Section;
-using output::Table;
-using output::Text;
-using output::Value;
+using output::Column, output::Datum, output::Plot, output::Section, output::Table, output::Text, output::Value;
 using output::Verdict;
 
 Verdict verdict(const scenarios::Study& settings, const studies::MachineStudy& study) {

@@ -11,9 +11,7 @@
 namespace driftwright::findings {
 namespace {
 
-using studies::ConvergedValue;
-using studies::Convergence;
-using studies::MeshConvergence;
+using studies::ConvergedValue, studies::Convergence, studies::MeshConvergence;
 
 std::string convergence_words(Convergence kind) {
   switch (kind) {

@@ -12,16 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Column;
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::ChosenBy;
-using studies::PlacedFor;
-using studies::Placement;
-using studies::Residual;
+using output::Column, output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::ChosenBy, studies::PlacedFor, studies::Placement, studies::Residual;
 
 constexpr double kWorthBuying = 0.9;  // ratio of the remaining error: one more thermometer must reduce it below this
 

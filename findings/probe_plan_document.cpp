@@ -11,15 +11,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::PlannedProbing;
-using studies::ProbePlace;
-using studies::ProbePlan;
-using studies::ProbeSequence;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::PlannedProbing, studies::ProbePlace, studies::ProbePlan, studies::ProbeSequence;
 
 std::string probings_words(std::size_t n) {
   return n == 1 ? "1 probing" : fmt::format("{} probings", n);

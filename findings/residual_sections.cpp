@@ -12,14 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using diagnosis::MeasuredChannel;
-using diagnosis::MeasuredRun;
-using diagnosis::ResidualStructure;
-using output::Datum;
-using output::Plot;
-using output::Section;
-using output::Series;
-using output::Table;
+using diagnosis::MeasuredChannel, diagnosis::MeasuredRun, diagnosis::ResidualStructure;
+using output::Datum, output::Plot, output::Section, output::Series, output::Table;
 
 constexpr double kTells = 0.3;  // correlations of at least this are shown
 

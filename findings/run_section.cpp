@@ -11,9 +11,7 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Datum;
-using output::Plot;
-using output::Table;
+using output::Datum, output::Plot, output::Table;
 using solver::FlowKind;
 
 std::string words(FlowKind kind) {

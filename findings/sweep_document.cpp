@@ -12,10 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Table;
-using scenarios::SweepPlan;
-using scenarios::Variation;
+using output::Plot, output::Table;
+using scenarios::SweepPlan, scenarios::Variation;
 using studies::SweepColumns;
 
 constexpr std::size_t kMostSweepPlots = 24, kMostSweepPoints = 2000, kMostFailures = 50, kMostTornados = 6;

@@ -13,15 +13,8 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::ProbeErrors;
-using compensation::ProbeRow;
-using output::Column;
-using output::Plot;
-using output::Section;
-using output::Series;
-using output::Table;
-using output::Text;
-using output::Value;
+using compensation::ProbeErrors, compensation::ProbeRow;
+using output::Column, output::Plot, output::Section, output::Series, output::Table, output::Text, output::Value;
 
 std::string um(double m, int decimals = 1) {
   return fmt::format("{:.{}f}", 1e6 * m, decimals);

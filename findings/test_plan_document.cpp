@@ -15,13 +15,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::JudgedTest;
-using studies::TestPlan;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::JudgedTest, studies::TestPlan;
 
 constexpr double kOften = 0.25;         // share of the faults of a kind from which a map is orange
 constexpr double kWorthShowing = 0.02;  // share from which a confusion is shown

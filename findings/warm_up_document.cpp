@@ -12,13 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::WarmUp;
-using studies::WarmUpPlan;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::WarmUp, studies::WarmUpPlan;
 
 std::string speeds_words(const std::vector<Cyclogram::Section>& sections) {
   if (sections.size() > 6) return fmt::format("{} sections", sections.size());

@@ -15,8 +15,7 @@
 namespace driftwright::studies {
 namespace {
 
-using diagnosis::Knob;
-using diagnosis::Twin;
+using diagnosis::Knob, diagnosis::Twin;
 
 constexpr std::size_t kMostBandRows = 500;  // of a longer record the band is linear between this many of its rows
 constexpr std::uint64_t kBandSeed = 1;

@@ -11,8 +11,7 @@
 namespace driftwright::imported_scenario_test {
 namespace {
 
-using fixtures::column_and_head;
-using fixtures::inp_text;
+using fixtures::column_and_head, fixtures::inp_text;
 using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 const char* const kScenario = R"(name: imported

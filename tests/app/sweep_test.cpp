@@ -21,9 +21,7 @@
 namespace driftwright::sweep_test {
 namespace {
 
-using fixtures::read_table;
-using fixtures::replaced;
-using fixtures::Table;
+using fixtures::read_table, fixtures::replaced, fixtures::Table;
 namespace fs = std::filesystem;
 using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 

@@ -16,9 +16,7 @@
 namespace driftwright::nc_languages_test {
 namespace {
 
-using fixtures::on_line;
-using fixtures::revolutions;
-using fixtures::travel_mm;
+using fixtures::on_line, fixtures::revolutions, fixtures::travel_mm;
 using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr double kPi = std::numbers::pi;

@@ -15,8 +15,7 @@
 namespace driftwright::nc_program_test {
 namespace {
 
-using fixtures::revolutions;
-using fixtures::travel_mm;
+using fixtures::revolutions, fixtures::travel_mm;
 using ::testing::AllOf, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr double kPi = std::numbers::pi;
