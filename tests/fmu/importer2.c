@@ -37,9 +37,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
                    fmi2String message, ...) {
   unit* const u = environment;
   va_list arguments;
-  (void)name;
-  (void)status;
-  (void)category;
+  (void)name, (void)status, (void)category;
   va_start(arguments, message);
   vsnprintf(u->message, sizeof u->message, message, arguments);
   va_end(arguments);

@@ -43,8 +43,7 @@ typedef struct {
 
 static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
   unit* const u = environment;
-  (void)status;
-  (void)category;
+  (void)status, (void)category;
   snprintf(u->message, sizeof u->message, "%s", message);
 }
 
