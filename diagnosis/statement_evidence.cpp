@@ -117,8 +117,8 @@ double StatementEvidence::mixed(double squares, double along, double& best_width
   return best + std::log(sum / static_cast<double>(options_.widths.size()));
 }
 
-/// The sum over widths is that of exp(q - q of the widest) / sqrt(1 + w² squares), q = along² / (2 (squares + 1 / w²)), which
-/// takes one logarithm in all.
+/// The sum over widths is that of exp(q - q of the widest) / sqrt(1 + w² squares), q = along² / (2 (squares + 1 / w²)),
+/// which takes one logarithm in all.
 Eigen::ArrayXd StatementEvidence::mixed(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& along) const {
   const double widest = *std::max_element(options_.widths.begin(), options_.widths.end());
   const Eigen::ArrayXd half = 0.5 * along.square(), most = half / (squares + 1.0 / (widest * widest));

@@ -1,5 +1,5 @@
-// What `probe-plan` and `validate --probe` refuse, in this process: starting the program for each line would take longer than
-// all of them.
+// What `probe-plan` and `validate --probe` refuse, in this process: starting the program for each line would take longer
+// than all of them.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
