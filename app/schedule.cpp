@@ -22,8 +22,7 @@
 namespace driftwright::app {
 namespace {
 
-using studies::CorrectedProgram;
-using studies::CorrectedSeries;
+using studies::CorrectedProgram, studies::CorrectedSeries;
 
 const scenarios::ScheduleSettings& require_schedule(const scenarios::Scenario& scenario) {
   if (scenario.schedule) return *scenario.schedule;

@@ -1,3 +1,4 @@
+// One class in one file: each sort of value with the messages about it; they share how a key is found and named.
 #include "base/config_map.hpp"
 
 #include <fmt/format.h>

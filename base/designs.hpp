@@ -24,8 +24,8 @@ namespace driftwright {
 /// @param n_samples  1 to 1e6
 [[nodiscard]] Eigen::MatrixXd latin_hypercube(int n_samples, int n_variables, std::uint64_t seed);
 
-/// The design of Sobol' indices: two independent samples A and B of each variable, and for each variable A with the column of
-/// that variable from B. A and B are one Latin hypercube of twice as many variables.
+/// The design of Sobol' indices: two independent samples A and B of each variable, and for each variable A with the column
+/// of that variable from B. A and B are one Latin hypercube of twice as many variables.
 /// @returns (n_variables + 2) n_samples x n_variables numbers in (0, 1): A, then B, then A with each column in turn
 /// Source: Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270.
 [[nodiscard]] Eigen::MatrixXd saltelli_design(int n_samples, int n_variables, std::uint64_t seed);

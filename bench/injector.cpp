@@ -7,19 +7,16 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
+#include "bench/timing.hpp"
 #include "compensation/injector/encoder.hpp"
 #include "compensation/injector/pulse_injector.hpp"
 
 namespace {
 
 using namespace driftwright::compensation;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+using driftwright::now_s;
 
 long memory_kB() {
   rusage usage{};

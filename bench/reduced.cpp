@@ -7,9 +7,9 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
+#include "bench/timing.hpp"
 #include "machine/reduced_machine.hpp"
 #include "machine/run_record.hpp"
 #include "solver/propagator.hpp"
@@ -18,21 +18,6 @@
 namespace {
 
 using namespace driftwright;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-template <class Work>
-double least_s(int times, const Work& work) {
-  double least = 1e9;
-  for (int i = 0; i < times; ++i) {
-    const double begin_s = now_s();
-    work();
-    least = std::min(least, now_s() - begin_s);
-  }
-  return least;
-}
 
 /// Seven sections of 20 to 60 min at up to 2500 rpm, 300 min in all.
 Cyclogram random_cyclogram(std::mt19937_64& engine) {

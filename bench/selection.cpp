@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/random.hpp"
+#include "bench/timing.hpp"
 #include "compensation/sensors/ranking_stability.hpp"
 #include "compensation/predictors/regression_quality.hpp"
 #include "compensation/sensors/sensor_selection.hpp"
@@ -14,21 +14,6 @@
 namespace {
 
 using namespace driftwright;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-template <class Work>
-double least_s(int times, const Work& work) {
-  double least = 1e9;
-  for (int i = 0; i < times; ++i) {
-    const double begin_s = now_s();
-    work();
-    least = std::min(least, now_s() - begin_s);
-  }
-  return least;
-}
 
 /// Sensors that follow a random load with lags and resemble each other like those of a machine.
 Record record_of(std::uint64_t seed, int n_rows, int n_sensors) {

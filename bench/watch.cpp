@@ -23,8 +23,7 @@
 namespace {
 
 using namespace driftwright;
-using follow::TrialFault;
-using follow::TrialMachine;
+using follow::TrialFault, follow::TrialMachine;
 using Kind = TrialFault::Kind;
 
 constexpr double kDay_s = 86400.0, kMonth_days = 30.0;

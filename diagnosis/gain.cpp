@@ -66,24 +66,9 @@ double price_of(const SearchResult& result, std::size_t claim) {
   return std::log(static_cast<double>(result.n_catalogue)) + law_price(candidate);
 }
 
-}  // namespace
-
-HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
-                      const SearchAgain& search_again, const Listener& listener) {
-  if (listener.wants_end()) return not_held_out(fitter, result, noise);
-  HeldOut held;
-  const std::size_t n_claims = result.hypothesis.size();
-  Folds folds;
-  {
-    Twin::Workspace workspace(fitter.twin());
-    folds = folds_of(fitter, result, workspace);
-  }
-  held.how = folds.how;
-  Judge judge(fitter, result, noise, std::move(folds.list));
-  const Subset all = (1U << n_claims) - 1U;
-
-  // Claims without which kept-out rows are predicted better are removed, the worst first.
-  Subset kept = all;
+/// All claims but those without which kept-out rows are predicted better; these are removed, the worst first.
+Subset kept_claims(Judge& judge, std::size_t n_claims) {
+  Subset kept = (1U << n_claims) - 1U;
   while (kept != 0) {
     Subset best = kept;
     double most = kAlike;  // nats gained by its removal
@@ -106,13 +91,13 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
       kept = with;
   }
-  if (all != 0 &&
-      (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier || judge.is_much_worse(all, 0))) {
-    held.fails = true;
-    held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
-  }
+  return kept;
+}
+
+/// What kept-out rows say about each claim beside those that were kept. @return those that are named without a doubt
+Subset weigh_claims(HeldOut& held, Judge& judge, const SearchResult& result, Subset kept) {
   Subset named = 0;
-  for (std::size_t c = 0; c < n_claims; ++c) {
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) {
     const Subset one = 1U << c, with = kept | one;
     const double nats = judge.judged(with).log_predictive - judge.judged(with & ~one).log_predictive;
     held.claim_nats.push_back(nats);
@@ -130,10 +115,15 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
             : held.doubt.back());
     if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
   }
-  kept = 0;
-  for (std::size_t c = 0; c < n_claims; ++c) kept |= held.why_not_written[c].empty() ? 1U << c : 0U;
+  return named;
+}
+
+/// The claims that may be written.
+Subset written_claims(HeldOut& held, Judge& judge, const SearchResult& result) {
+  Subset kept = 0;
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) kept |= held.why_not_written[c].empty() ? 1U << c : 0U;
   // Repeated events at unpredictable times are true for these records, but useless for future ones.
-  for (std::size_t c = 0; c < n_claims; ++c) {
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) {
     const Subset without = kept & ~(1U << c);
     const Claim& claim = result.hypothesis[c];
     if (without == kept || !claim.happens) continue;
@@ -144,29 +134,62 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
         "nobody knows ahead when it happens, and records whose times are not known are predicted worse by what was fitted "
         "beside it";
   }
+  return kept;
+}
+
+/// The search made again without kept-out rows, which its finds predict. @param kept  ends empty if they are harmed by them
+void search_without(HeldOut& held, Judge& judge, Subset& kept, Models& models, const SearchAgain& search_again,
+                    const Listener& listener) {
+  Judge::Refound again = judge.refound(search_again, kept, listener);
+  models.calibrated = std::move(again.calibrated);
+  models.found = std::move(again.extended);
+  // If a search finds causes that harm unseen rows, it would harm future records as well.
+  if (kept != 0 && judge.squares_over_noise(models.found) > kWorseForeseen * judge.squares_over_noise(models.calibrated)) {
+    for (std::size_t c = 0; c < held.why_not_written.size(); ++c) {
+      if (((kept >> c) & 1U) != 0)
+        held.why_not_written[c] =
+            "when the search was repeated without some rows, what it found predicted these rows worse than the scenario "
+            "with only "
+            "its own numbers fitted";
+    }
+    kept = 0;
+  }
+  models.extended = kept != 0 ? models.found : models.calibrated;
+  held.how += "; the search for what is wrong was made again without them";
+  held.n_searched = again.n_searched;
+  held.n_again = std::move(again.n_again);
+}
+
+}  // namespace
+
+HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
+                      const SearchAgain& search_again, const Listener& listener) {
+  if (listener.wants_end()) return not_held_out(fitter, result, noise);
+  HeldOut held;
+  const std::size_t n_claims = result.hypothesis.size();
+  Folds folds;
+  {
+    Twin::Workspace workspace(fitter.twin());
+    folds = folds_of(fitter, result, workspace);
+  }
+  held.how = folds.how;
+  Judge judge(fitter, result, noise, std::move(folds.list));
+  const Subset all = (1U << n_claims) - 1U;
+
+  Subset kept = kept_claims(judge, n_claims);
+  if (all != 0 &&
+      (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier || judge.is_much_worse(all, 0))) {
+    held.fails = true;
+    held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
+  }
+  const Subset named = weigh_claims(held, judge, result, kept);
+  kept = written_claims(held, judge, result);
   Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(kept)};
   if (named != 0) models.named = judge.filed(named);
   if (n_claims == 0) {
     // Nothing is claimed, so there is no choice that kept-out rows could judge: only the scenario's own numbers.
   } else if (search_again) {
-    Judge::Refound again = judge.refound(search_again, kept, listener);
-    models.calibrated = std::move(again.calibrated);
-    models.found = std::move(again.extended);
-    // If a search finds causes that harm unseen rows, it would harm future records as well.
-    if (kept != 0 && judge.squares_over_noise(models.found) > kWorseForeseen * judge.squares_over_noise(models.calibrated)) {
-      for (std::size_t c = 0; c < n_claims; ++c) {
-        if (((kept >> c) & 1U) != 0)
-          held.why_not_written[c] =
-              "when the search was repeated without some rows, what it found predicted these rows worse than the scenario "
-              "with only "
-              "its own numbers fitted";
-      }
-      kept = 0;
-    }
-    models.extended = kept != 0 ? models.found : models.calibrated;
-    held.how += "; the search for what is wrong was made again without them";
-    held.n_searched = again.n_searched;
-    held.n_again = std::move(again.n_again);
+    search_without(held, judge, kept, models, search_again, listener);
   } else {
     held.how += "; which effect it is was decided on all rows";
   }

@@ -1,3 +1,4 @@
+// From a record to a run, step by step; the helpers serve this one course and nothing else.
 #include "diagnosis/measured_run.hpp"
 
 #include <fmt/format.h>

@@ -25,15 +25,15 @@ struct StatedWindow {
 /// A statement without its size.
 struct Statement {
   StatedQuantity quantity = StatedQuantity::kHeat;
-  std::vector<std::string> place;          ///< bodies, the ambient, instruments
+  std::vector<std::string> place = {};     ///< bodies, the ambient, instruments
   std::string at = {};                     ///< surface or joint at that place, if there is one; else empty
-  std::string follows;                     ///< constant, running, power of NAME, temperature of NAME, window, unknown ...
-  std::string law;                         ///< its course in full: exponent, lag, times
-  std::vector<char> in_run;                ///< marks the records in which it holds
+  std::string follows = {};                ///< constant, running, power of NAME, temperature of NAME, window, unknown ...
+  std::string law = {};                    ///< its course in full: exponent, lag, times
+  std::vector<char> in_run = {};           ///< marks the records in which it holds
   std::vector<StatedWindow> windows = {};  ///< for a course `window`
   std::vector<std::string> record = {};    ///< names of the records
   double unit_size = 1.0;                  ///< typical size, in `unit`; a column is for this size
-  std::string unit;
+  std::string unit = {};
 };
 
 /// "heat in spindle, while the spindle turns", "thermometer t_head, 84 % of the ambient from 95 min on": what, where, and

@@ -73,6 +73,14 @@ struct TakenColumns {
   Eigen::MatrixXd x, nuisance;
 };
 
+/// Share of a column's squares, below which roughly known numbers can fully replace it.
+inline constexpr double kNothingLeft = 1e-9;
+
+/// Number of steps of an unknown course in a record of n cells.
+[[nodiscard]] Eigen::Index n_pieces_of(Eigen::Index n_cells);
+/// Maps steps that last, a random walk, to cells: n_cells x n_pieces.
+[[nodiscard]] Eigen::MatrixXd walk(Eigen::Index n_cells);
+
 /// A statement that belongs to a set.
 struct Item {
   Statement says;
@@ -150,9 +158,10 @@ class StatementEvidence {
     std::size_t best = 0;  ///< index of the likeliest window
     double width = 1.0;    ///< its likeliest width
   };
+  void score_columns(const Sizes& on, std::vector<Scored>& list) const;
+  // From here on in statement_times.cpp.
   /// @param windows  one at least
   [[nodiscard]] OfWindows evaluated(const Windows& windows) const;
-  void score_columns(const Sizes& on, std::vector<Scored>& list) const;
   void score_windows(std::size_t k, const Sizes& on, const Eigen::MatrixXd& g, const Eigen::VectorXd& along,
                      std::vector<Scored>& list) const;
   /// Mean evidence of a window whose edges may be at any row of the neighbouring cells. For actions on a channel

@@ -44,9 +44,6 @@ StatementBuilder::Row StatementBuilder::predicted(std::size_t r, const std::stri
 Statement StatementBuilder::about(const Channel& c) {
   return {.quantity = c.unit == "K" ? StatedQuantity::kReading : StatedQuantity::kDisplacement,
           .place = {c.name},
-          .follows = {},
-          .law = {},
-          .in_run = {},
           .unit_size = c.swing,
           .unit = c.unit};
 }
@@ -162,7 +159,6 @@ void StatementBuilder::exchanged_channels() {
            .place = {channels_[i].name, channels_[j].name},
            .follows = "exchanged",
            .law = "exchanged",
-           .in_run = {},
            .unit_size = 1.0,
            .unit = "1"},
           {alone(channels_[i].name, difference), alone(channels_[j].name, other)});
@@ -184,7 +180,6 @@ void StatementBuilder::expansions() {
          .place = {parts[p].body},
          .follows = "expansion",
          .law = "its expansion",
-         .in_run = {},
          .unit_size = kUsualLogarithm,
          .unit = "1"},
         acts);

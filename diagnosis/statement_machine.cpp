@@ -34,9 +34,6 @@ void StatementBuilder::heats() {
                          .place = body.kind == effects::BodyKind::kSurface ? fitter_.twin().bodies_at(body.name)
                                                                            : std::vector<std::string>{body.name},
                          .at = body.kind == effects::BodyKind::kSurface ? body.name : "",
-                         .follows = {},
-                         .law = {},
-                         .in_run = {},
                          .unit_size = size_W,
                          .unit = "W"};
     for (const TimedCourse& course : courses_) {
@@ -53,13 +50,7 @@ void StatementBuilder::heats() {
 void StatementBuilder::all_alike() {
   const auto say = [&](StatedQuantity quantity, const char* follows, std::string law, double size, const char* unit,
                        std::vector<Acting> acts) {
-    add({.quantity = quantity,
-         .place = {"all"},
-         .follows = follows,
-         .law = std::move(law),
-         .in_run = {},
-         .unit_size = size,
-         .unit = unit},
+    add({.quantity = quantity, .place = {"all"}, .follows = follows, .law = std::move(law), .unit_size = size, .unit = unit},
         std::move(acts));
   };
   auto heat = std::make_shared<Loads>(), air = std::make_shared<Loads>();
@@ -156,9 +147,6 @@ void StatementBuilder::exchanges() {
       const double is = own(bodies[i], other.name);
       const Statement says{.quantity = StatedQuantity::kExchange,
                            .place = {bodies[i].name, other.name},
-                           .follows = {},
-                           .law = {},
-                           .in_run = {},
                            .unit_size = is > 0.0 ? is : typical,
                            .unit = "W/K"};
       courses_at(says, loads);
@@ -189,9 +177,6 @@ void StatementBuilder::exchanges() {
     const Statement says{.quantity = StatedQuantity::kExchange,
                          .place = where,
                          .at = is_of_mesh ? place.body.name : "",
-                         .follows = {},
-                         .law = {},
-                         .in_run = {},
                          .unit_size = is > 0.0                           ? is
                                       : place.per == effects::Per::kArea ? 10.0
                                                                          : typical,
@@ -260,7 +245,6 @@ void StatementBuilder::conductivities() {
          .place = {parts[p].body},
          .follows = "constant",
          .law = "its conductivity",
-         .in_run = {},
          .unit_size = kUsualLogarithm,
          .unit = "1"},
         {respond(loads, courses_.front())});
@@ -278,7 +262,6 @@ void StatementBuilder::capacities() {
                      .place = {material.body.name},
                      .follows = lag_s > 0.0 ? "lagged" : "constant",
                      .law = lag_s > 0.0 ? fmt::format("a body with a lag of {:g} min", lag_s / 60.0) : "its own",
-                     .in_run = {},
                      .unit_size = material.capacity_J_K,
                      .unit = "J/K"};
       add(says, {respond(loads, courses_.front())});

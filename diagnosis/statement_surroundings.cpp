@@ -32,13 +32,7 @@ void StatementBuilder::surroundings() {
 }
 
 Statement StatementBuilder::of_ambient() {
-  return {.quantity = StatedQuantity::kAmbient,
-          .place = {"hall"},
-          .follows = {},
-          .law = {},
-          .in_run = {},
-          .unit_size = kAmbient_K,
-          .unit = "K"};
+  return {.quantity = StatedQuantity::kAmbient, .place = {"hall"}, .unit_size = kAmbient_K, .unit = "K"};
 }
 
 void StatementBuilder::ambients() {
@@ -101,7 +95,6 @@ void StatementBuilder::speeds() {
                   .place = {"spindle"},
                   .follows = "constant",
                   .law = "a factor",
-                  .in_run = {},
                   .unit_size = kUsualLogarithm,
                   .unit = "1"};
   for (double factor : kSpeedFactors) {
@@ -125,13 +118,8 @@ void StatementBuilder::clocks() {
     return exactly(effects::make_effect("clock_offset", effects::Place::kClock, "clock", {{"offset", late_s / 60.0}}),
                    late_s);
   };
-  Statement clock{.quantity = StatedQuantity::kClock,
-                  .place = {"clock"},
-                  .follows = "constant",
-                  .law = {},
-                  .in_run = {},
-                  .unit_size = kSet_s,
-                  .unit = "s"};
+  Statement clock{
+      .quantity = StatedQuantity::kClock, .place = {"clock"}, .follows = "constant", .unit_size = kSet_s, .unit = "s"};
   for (double late_s : kClocks_s) {
     if (std::abs(late_s) > 0.2 * longest_s) continue;
     clock.law = fmt::format("{}, by some {:g} min", late_s > 0.0 ? "late" : "early", std::abs(late_s) / 60.0);

@@ -1,3 +1,4 @@
+// One class in one file: what a state of the twin changes in the reduced machine, which all its methods share.
 #include "diagnosis/twin.hpp"
 
 #include <Eigen/Cholesky>

@@ -8,14 +8,8 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::AxisLoop;
-using compensation::AxisLoopResult;
-using compensation::ErrorStage;
-using output::Bars;
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
+using compensation::AxisLoop, compensation::AxisLoopResult, compensation::ErrorStage;
+using output::Bars, output::Plot, output::Series, output::Table, output::Value;
 
 /// Plots show every n-th sample, and of the samples between these the worst.
 constexpr std::size_t kMostPoints = 1500;
@@ -70,10 +64,7 @@ Table cause_table(const AxisLoopResult& run) {
 }
 
 Plot room_plot(const AxisLoop& loop) {
-  Plot plot{.title = "Correction that finds room while the axis moves",
-            .x_label = "feed [m/min]",
-            .y_label = "rate [µm/s]",
-            .series = {}};
+  Plot plot{.title = "Correction that finds room while the axis moves", .x_label = "feed [m/min]", .y_label = "rate [µm/s]"};
   const double separation_s = loop.injector.separation_s();
   const double most_um_s = compensation::largest_feed_um_s(loop.encoder.quarter_um(), 1, separation_s);
   for (int quarters : {4, 2, 1}) {
@@ -101,8 +92,7 @@ Plot step_plot(const AxisLoop& loop) {
   const double step_um = kInsertions * loop.insertion_um();
   Plot plot{.title = fmt::format("A correction of {:g} µm at standstill", step_um),
             .x_label = "time [s]",
-            .y_label = "axis - commanded [µm]",
-            .series = {}};
+            .y_label = "axis - commanded [µm]"};
   const double end_s = 1.0 + 1.2 * step_um / loop.injector.largest_slew_um_s;
   for (bool at_once : {true, false}) {
     compensation::InjectorSettings injector = loop.injector;

@@ -14,9 +14,7 @@ namespace driftwright::findings {
 namespace {
 
 using diagnosis::StatedQuantity;
-using output::Section;
-using output::Table;
-using output::Text;
+using output::Section, output::Table, output::Text;
 
 constexpr std::size_t kMostCauses = 4;        // with a section of their own; tables have all
 constexpr std::size_t kMostAlternatives = 3;  // in a sentence

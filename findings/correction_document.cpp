@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "findings/iso230_3_section.hpp"
+#include "findings/named_value.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -71,11 +72,7 @@ output::Document document_of(const CorrectionStudy& study, const scenarios::Scen
   add(body, Value{.key = "channel", .words = "displacement", .datum = target});
   add(body, Value{.key = "peak_before_um", .words = "peak without correction", .datum = before_um, .unit = "um"});
   add(body, Value{.key = "peak_left_um", .words = "peak left", .datum = left_um, .unit = "um"});
-  add(body, Value{.key = "removed_percent",
-                  .words = "removed",
-                  .datum = 100.0 * (1.0 - left_um / before_um),
-                  .unit = "percent",
-                  .digits = output::decimals(0)});
+  add(body, named_value("removed_percent", "removed", 100.0 * (1.0 - left_um / before_um), "percent", output::decimals(0)));
   for (const auto& [key, words, score] : {std::tuple{"rms_before_um", "RMS without correction", &study.before},
                                           std::tuple{"rms_left_um", "RMS left", &study.after}})
     add(body, Value{.key = key, .words = words, .datum = score->rmse, .unit = "um", .digits = output::decimals(2)});
@@ -93,11 +90,7 @@ output::Document document_of(const CorrectionStudy& study, const scenarios::Scen
     add(body, Value{.key = "n_refused_probings", .words = "refused probings", .datum = study.probed->n_refused});
   }
   if (study.margin_um) {
-    add(body, Value{.key = "margin_um",
-                    .words = "margin of the plan",
-                    .datum = *study.margin_um,
-                    .unit = "um",
-                    .digits = output::decimals(2)});
+    add(body, named_value("margin_um", "margin of the plan", *study.margin_um, "um", output::decimals(2)));
     add(body, Value{.key = "judged_as", .datum = "live"});
   }
   add(body, plot_of(study, tolerance_um));

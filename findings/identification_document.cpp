@@ -9,10 +9,7 @@
 namespace driftwright::findings {
 namespace {
 
-using identification::Driver;
-using identification::Identified;
-using identification::IdentifiedBody;
-using identification::IdentifiedChannel;
+using identification::Driver, identification::Identified, identification::IdentifiedBody, identification::IdentifiedChannel;
 using output::significant;
 
 constexpr double kWorthSaying = 0.02;  // smallest share of a driver that is mentioned

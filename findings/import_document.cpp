@@ -7,6 +7,7 @@
 
 #include "base/median.hpp"
 #include "base/usual_step.hpp"
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -78,29 +79,18 @@ output::Document document_of(const studies::LoggerImport& import, const output::
   const Record& record = import.read.record;
   output::Document document{.made_by = made_by, .title = record.source + ": as it was read"};
   output::Section& body = document.body;
-  add(body, output::Value{.key = "read_by",
-                          .words = "read by",
-                          .datum = import.read_by.empty() ? std::string("a guess from the file itself")
-                                                          : fmt::format("the columns of {}", import.read_by)});
+  add(body, named_value("read_by", "read by",
+                        import.read_by.empty() ? std::string("a guess from the file itself")
+                                               : fmt::format("the columns of {}", import.read_by)));
   add(body, output::Value{.key = "rows", .words = "rows", .datum = record.n_samples()});
   if (import.read.n_without_reading > 0)
-    add(body, output::Value{.key = "rows_without_reading",
-                            .words = "rows without a reading, left out",
-                            .datum = import.read.n_without_reading});
+    add(body, named_value("rows_without_reading", "rows without a reading, left out", import.read.n_without_reading));
   const double length_s = record.time_s.back() - record.time_s.front();
-  add(body, output::Value{
-                .key = "duration_min", .words = "from the first row to the last", .datum = length_s / 60.0, .unit = "min"});
+  add(body, named_value("duration_min", "from the first row to the last", length_s / 60.0, "min"));
   const std::vector<double> steps_s = row_steps_s(record.time_s);
-  add(body, output::Value{.key = "usual_step_s",
-                          .words = "from row to row, usually",
-                          .datum = upper_median(steps_s),
-                          .unit = "s",
-                          .digits = output::significant(4)});
-  add(body, output::Value{.key = "longest_step_s",
-                          .words = "at most",
-                          .datum = *std::max_element(steps_s.begin(), steps_s.end()),
-                          .unit = "s",
-                          .digits = output::significant(4)});
+  add(body, named_value("usual_step_s", "from row to row, usually", upper_median(steps_s), "s", output::significant(4)));
+  add(body, named_value("longest_step_s", "at most", *std::max_element(steps_s.begin(), steps_s.end()), "s",
+                        output::significant(4)));
   add(body, output::Notes{.key = "how", .lines = words(import.map)});
   add(body, channels_table(import));
   add(body, output::Notes{.key = "guesses", .sort = "guess", .lines = import.guesses});

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "findings/named_value.hpp"
+
 namespace driftwright::findings {
 namespace {
 
-using compensation::Iso230Channel;
-using compensation::Iso230Figures;
-using output::Column;
-using output::Datum;
-using output::Table;
+using compensation::Iso230Channel, compensation::Iso230Figures;
+using output::Column, output::Datum, output::Table;
 
 constexpr const char* kTest = "ISO 230-3, thermal distortion by rotating spindle";
 constexpr const char* kRanges =
@@ -44,11 +43,8 @@ output::Section iso230_3_section(const Iso230Figures& figures) {
     add(section, output::Value{.key = "not_available", .words = "not available:", .datum = figures.not_available});
     return section;
   }
-  add(section, output::Value{.key = "spindle_running_period_min",
-                             .words = "spindle running period t",
-                             .datum = figures.running_period_s / 60.0,
-                             .unit = "min",
-                             .digits = output::significant(4)});
+  add(section, named_value("spindle_running_period_min", "spindle running period t", figures.running_period_s / 60.0, "min",
+                           output::significant(4)));
   Table table{.key = "channels", .caption = kRanges, .columns = figure_columns()};
   for (const Iso230Channel& c : figures.channels) table.rows.push_back(figures_of(c));
   add(section, std::move(table));

@@ -14,13 +14,7 @@ namespace driftwright::findings {
 namespace {
 
 using compensation::CorrectedDrift;
-using output::Column;
-using output::Datum;
-using output::Plot;
-using output::Section;
-using output::Table;
-using output::Text;
-using output::Value;
+using output::Column, output::Datum, output::Plot, output::Section, output::Table, output::Text, output::Value;
 using output::Verdict;
 
 Verdict verdict(const scenarios::Study& settings, const studies::MachineStudy& study) {
@@ -88,10 +82,7 @@ Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenar
 
 /// δ over T: one curve per cyclogram; if the drift were a function of temperature they would coincide.
 Plot drift_over_temperature(const std::string& sensor, const std::string& target, const studies::MachineStudy& study) {
-  Plot plot{.title = "Drift over temperature at " + sensor,
-            .x_label = sensor + " [°C]",
-            .y_label = target + " [µm]",
-            .series = {}};
+  Plot plot{.title = "Drift over temperature at " + sensor, .x_label = sensor + " [°C]", .y_label = target + " [µm]"};
   const auto add = [&](const Record& r) {
     plot.series.push_back({.label = r.source, .x = r.at(sensor).values, .y = r.at(target).values});
   };

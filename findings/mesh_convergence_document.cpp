@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "findings/named_value.hpp"
+
 namespace driftwright::findings {
 namespace {
 
-using studies::ConvergedValue;
-using studies::Convergence;
-using studies::MeshConvergence;
+using studies::ConvergedValue, studies::Convergence, studies::MeshConvergence;
 
 std::string convergence_words(Convergence kind) {
   switch (kind) {
@@ -180,10 +180,7 @@ output::Document document_of(const MeshConvergence& found, const scenarios::Scen
   }
   add(body, output::Value{.key = "cyclogram", .datum = found.cyclogram});
   add(body, output::Value{.key = "model", .datum = found.model});
-  add(body, output::Value{.key = "theoretical_order",
-                          .words = "order in theory",
-                          .datum = found.highest_order,
-                          .digits = output::decimals(0)});
+  add(body, named_value("theoretical_order", "order in theory", found.highest_order, output::decimals(0)));
   add_plots(body, found, false);
   if (worst) body.sections.push_back(output::next_section(next_steps(found, *worst)));
   output::Section numbers;

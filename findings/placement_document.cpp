@@ -6,21 +6,14 @@
 #include <algorithm>
 
 #include "findings/machine_section.hpp"
+#include "findings/named_value.hpp"
 #include "studies/placement_tests.hpp"
 
 namespace driftwright::findings {
 namespace {
 
-using output::Column;
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::ChosenBy;
-using studies::PlacedFor;
-using studies::Placement;
-using studies::Residual;
+using output::Column, output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::ChosenBy, studies::PlacedFor, studies::Placement, studies::Residual;
 
 constexpr double kWorthBuying = 0.9;  // ratio of the remaining error: one more thermometer must reduce it below this
 
@@ -130,7 +123,6 @@ Table places_table(const Placement& p, const std::vector<std::string>& entries) 
                           {.key = "y_mm", .title = "y", .unit = "mm", .digits = output::decimals(1)},
                           {.key = "z_mm", .title = "z", .unit = "mm", .digits = output::decimals(1)},
                           {.key = "entry"}},
-              .rows = {},
               .file = "place.csv"};
   const std::vector<int> set = bought(p);
   for (std::size_t i = 0; i < set.size(); ++i) {
@@ -150,17 +142,16 @@ Table curve_table(const Placement& p) {
           "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of "
           "the same places; with the loss of the worst one "
           "where that is counted.",
-      .columns =
-          {{.key = "n", .title = "n"},
-           {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
-           {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
-           {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
-           {.key = "places", .title = "places"}},
-      .rows = {}};
+      .columns = {
+          {.key = "n", .title = "n"},
+          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
+          {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
+          {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
+          {.key = "places", .title = "places"}}};
   table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(),
                         output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
   for (std::size_t n = 0; n < p.chosen.sets.size(); ++n) {
@@ -187,8 +178,7 @@ Table ways_table(const Placement& p, double Residual::*value, const std::string&
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
               .caption = "Random: median and best of six sets; which is best is known only afterwards.",
-              .columns = {{.key = "way", .title = "way"}},
-              .rows = {}};
+              .columns = {{.key = "way", .title = "way"}}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
     table.columns.push_back(
         {.key = fmt::format("n{}_um", n), .title = fmt::format("n = {}", n), .unit = "um", .digits = output::decimals(2)});
@@ -213,15 +203,14 @@ Table losses_table(const Placement& p) {
       .key = "loss_of_one",
       .title = fmt::format("Any one of {} fails", p.options.n),
       .caption = "The observer goes on with the others, the regression is fitted anew without it: the worst of all cases.",
-      .columns =
-          {{.key = "way", .title = "way"},
-           {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "observer_worst", .title = "of"},
-           {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
-           {.key = "regression_worst", .title = "of"}},
-      .rows = {}};
+      .columns = {
+          {.key = "way", .title = "way"},
+          {.key = "observer_um", .title = "observer, all", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "observer_worst", .title = "of"},
+          {.key = "regression_um", .title = "regression, all", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
+          {.key = "regression_worst", .title = "of"}}};
   for (const studies::LossOfOne& loss : p.losses) {
     const auto lost = [&](int spot) { return spot < 0 ? output::Datum() : output::Datum(spot_name(p, spot)); };
     table.rows.push_back({loss.way, loss.all.observer_um, loss.worst.observer_um, lost(loss.worst_for_observer),
@@ -239,8 +228,7 @@ Table tests_table(const Placement& p) {
               .columns = {{.key = "duration_h", .title = "hours", .unit = "h", .digits = output::decimals(0)},
                           {.key = "programme", .title = "programme"},
                           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
-                          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)}},
-              .rows = {}};
+                          {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)}}};
   for (const studies::TriedTest& test : p.tests)
     table.rows.push_back({test.duration_s / 3600.0, test.programme, test.left.regression_um, test.left.observer_um});
   return table;
@@ -250,9 +238,6 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
   Plot plot{.title = fmt::format("When to stop buying: {}", predictor),
             .x_label = "thermometers",
             .y_label = "drift left, RMS [µm]",
-            .series = {},
-            .bands = {},
-            .marks = {},
             .half_width = true};
   const auto add_curve = [&](const std::string& label, const std::vector<Residual>& left, bool with_none,
                              Series::Style style, int color) {
@@ -325,32 +310,17 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
 
   output::Section numbers{.title = "The numbers"};
   add(numbers, places_table(p, entries));
-  add(numbers, Value{.key = "drift_um",
-                     .words = "drift without correction, RMS",
-                     .datum = p.drift_um,
-                     .unit = "um",
-                     .digits = output::decimals(2)});
-  add(numbers, Value{.key = "model_alone_um",
-                     .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted",
-                     .datum = p.without.observer_um,
-                     .unit = "um",
-                     .digits = output::decimals(2)});
-  add(numbers, Value{.key = "enough",
-                     .words = "number after which further thermometers reduce the error by less than a tenth each",
-                     .datum = enough(p)});
+  add(numbers, named_value("drift_um", "drift without correction, RMS", p.drift_um, "um", output::decimals(2)));
+  add(numbers, named_value("model_alone_um", p.mounted.empty() ? "left by the model alone" : "left with those mounted",
+                           p.without.observer_um, "um", output::decimals(2)));
+  add(numbers, named_value("enough", "number after which further thermometers reduce the error by less than a tenth each",
+                           enough(p)));
   if (p.own) {
-    add(numbers,
-        Value{.key = "own.thermometers", .words = "thermometers of the scenario", .datum = p.own->sets.front().size()});
-    add(numbers, Value{.key = "own.observer_um",
-                       .words = "error that these leave, with the observer",
-                       .datum = p.own->left.front().observer_um,
-                       .unit = "um",
-                       .digits = output::decimals(2)});
-    add(numbers, Value{.key = "own.regression_um",
-                       .words = "error that these leave, with a regression",
-                       .datum = p.own->left.front().regression_um,
-                       .unit = "um",
-                       .digits = output::decimals(2)});
+    add(numbers, named_value("own.thermometers", "thermometers of the scenario", p.own->sets.front().size()));
+    add(numbers, named_value("own.observer_um", "error that these leave, with the observer", p.own->left.front().observer_um,
+                             "um", output::decimals(2)));
+    add(numbers, named_value("own.regression_um", "error that these leave, with a regression",
+                             p.own->left.front().regression_um, "um", output::decimals(2)));
   }
   add(numbers, short_curve(curve_table(p)));
   if (const int least = studies::least_test(p.tests, &Residual::regression_um); least >= 0) {
@@ -380,18 +350,13 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   if (!p.left_out.empty())
     add(how, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
   if (!p.options.mounted.empty()) add(how, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
-  add(how,
-      Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
+  add(how, named_value("candidates", "places looked at, sensors of the scenario among them", p.spots.size()));
   add(how, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
   add(how, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
   if (!p.made.empty()) add(how, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
   add(how, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
   add(how, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
-  add(how, Value{.key = "noise_K",
-                 .words = "noise of a reading",
-                 .datum = p.options.noise_K,
-                 .unit = "K",
-                 .digits = output::significant(2)});
+  add(how, named_value("noise_K", "noise of a reading", p.options.noise_K, "K", output::significant(2)));
   output::Section compared{.title = "Other numbers and ways to choose, the loss of one, tests", .detail = true};
   add(compared, curve_table(p));
   add(compared, ways_table(p, &Residual::observer_um, "observer"));

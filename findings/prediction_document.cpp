@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "findings/iso230_3_section.hpp"
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -64,11 +65,7 @@ output::Document document_of(const studies::Prediction& prediction, const scenar
       .subtitle = fmt::format("predicted by the {}{}", prediction.predicted_by, before.empty() ? "" : "; after " + before)};
   output::Section& body = document.body;
   add(body, output::Value{.key = "cyclogram", .datum = asked});
-  add(body, output::Value{.key = "duration_min",
-                          .words = "duration",
-                          .datum = cyclogram.duration_s() / 60.0,
-                          .unit = "min",
-                          .digits = output::decimals(0)});
+  add(body, named_value("duration_min", "duration", cyclogram.duration_s() / 60.0, "min", output::decimals(0)));
   add(body, output::Value{.key = "predicted_by", .datum = prediction.predicted_by});
   add(body, output::Value{.key = "started_from", .datum = before.empty() ? output::Datum() : output::Datum(before)});
   add(body, start_checks_table(prediction.start_checks));

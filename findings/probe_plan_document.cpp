@@ -6,19 +6,13 @@
 #include <cmath>
 
 #include "findings/columns.hpp"
+#include "findings/named_value.hpp"
 
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::PlannedProbing;
-using studies::ProbePlace;
-using studies::ProbePlan;
-using studies::ProbeSequence;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::PlannedProbing, studies::ProbePlace, studies::ProbePlan, studies::ProbeSequence;
 
 std::string probings_words(std::size_t n) {
   return n == 1 ? "1 probing" : fmt::format("{} probings", n);
@@ -94,7 +88,6 @@ Table probings_table(const ProbePlan& plan) {
                           um_column("before_um", "before"),
                           um_column("after_um", "after"),
                           {.key = "lost_min", .title = "lost", .unit = "min", .digits = output::decimals(1)}},
-              .rows = {},
               .detail = false,
               .file = "probe_plan.csv"};
   if (!plan.best) return table;
@@ -140,9 +133,7 @@ Plot widths_plot(const ProbePlan& plan) {
   Plot plot{.title = "What is not known of " + plan.target,
             .x_label = "time in the job [min]",
             .y_label = "half width of the 95 % interval [µm]",
-            .series = {},
-            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}}};
   const ProbeSequence& shown = plan.shown();
   plot.series.push_back(width_series(plan, shown, fmt::format("planned, {}", probings_words(shown.probings.size()))));
   if (const ProbeSequence* equal = plan.equal(); equal && !equal->probings.empty())
@@ -162,8 +153,7 @@ Plot probe_curve_plot(const ProbePlan& plan) {
             .y_label = "largest half width of the 95 % interval [µm]",
             .series = {{.label = "planned", .style = Series::Style::kPoints},
                        {.label = "equal intervals", .style = Series::Style::kPoints}},
-            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = plan.allowed_um()}}};
   for (const studies::ProbeCurveRow& row : plan.curve) {
     plot.series[0].x.push_back(row.best.lost_s / 60.0);
     plot.series[0].y.push_back(row.best.worst_um);
@@ -237,39 +227,14 @@ output::Document document_of(const ProbePlan& plan, const scenarios::Scenario& s
   output::Section numbers;
   add(numbers, Value{.key = "predictor", .words = "predictor", .datum = plan.predictor});
   add(numbers, Value{.key = "target", .words = "axis", .datum = plan.target});
-  add(numbers, Value{.key = "tolerance_um",
-                     .words = "tolerance",
-                     .datum = plan.tolerance_um,
-                     .unit = "um",
-                     .digits = output::significant(4)});
-  add(numbers, Value{.key = "kept_free",
-                     .words = "of it kept free for all that is not thermal",
-                     .datum = plan.kept_free,
-                     .digits = output::percent(0)});
-  add(numbers, Value{.key = "work_min",
-                     .words = "end of the work",
-                     .datum = plan.job.work.back().until_s / 60.0,
-                     .unit = "min",
-                     .digits = output::decimals(1)});
+  add(numbers, named_value("tolerance_um", "tolerance", plan.tolerance_um, "um", output::significant(4)));
+  add(numbers, named_value("kept_free", "of it kept free for all that is not thermal", plan.kept_free, output::percent(0)));
+  add(numbers, named_value("work_min", "end of the work", plan.job.work.back().until_s / 60.0, "min", output::decimals(1)));
   add(numbers, Value{.key = "n_places", .words = "places for a probing", .datum = plan.job.places.size()});
-  add(numbers, Value{.key = "probe_noise_um",
-                     .words = "noise of a probing",
-                     .datum = plan.axis.probe.noise_um,
-                     .unit = "um",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "probe_lag_s",
-                     .words = "lag of the probe",
-                     .datum = plan.axis.probe.lag_s,
-                     .unit = "s",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "probing_min",
-                     .words = "time of a probing",
-                     .datum = plan.axis.probing_s / 60.0,
-                     .unit = "min",
-                     .digits = output::significant(3)});
-  add(numbers, Value{.key = "known_at_start",
-                     .words = "the drift counts from the start of the job",
-                     .datum = plan.axis.is_known_at_start});
+  add(numbers, named_value("probe_noise_um", "noise of a probing", plan.axis.probe.noise_um, "um", output::significant(3)));
+  add(numbers, named_value("probe_lag_s", "lag of the probe", plan.axis.probe.lag_s, "s", output::significant(3)));
+  add(numbers, named_value("probing_min", "time of a probing", plan.axis.probing_s / 60.0, "min", output::significant(3)));
+  add(numbers, named_value("known_at_start", "the drift counts from the start of the job", plan.axis.is_known_at_start));
   add(numbers, probings_table(plan));
   add(numbers, probe_curve_table(plan));
   if (plan.points) add(numbers, points_table(*plan.points));

@@ -9,10 +9,7 @@ namespace driftwright::findings {
 namespace {
 
 using compensation::CyclogramType;
-using output::Datum;
-using output::Section;
-using output::Table;
-using output::Value;
+using output::Datum, output::Section, output::Table, output::Value;
 
 struct Group {
   std::string name;

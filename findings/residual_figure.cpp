@@ -85,7 +85,6 @@ output::Plot channel_figure(const studies::MeasuredTwin& m, const diagnosis::Dia
                     .y_label = fmt::format("{} [{}]", c.name, output::shown_unit(as.unit)),
                     .series = {curve("measured", c.value),
                                curve("simulated with the scenario as it is", d.as_written[shown.run].row(c.output))},
-                    .bands = {},
                     .marks = section_marks(run.cyclogram)};
   plot.series.front().style = Series::Style::kPoints;
   plot.series.front().width = 1.2;

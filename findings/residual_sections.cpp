@@ -12,14 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using diagnosis::MeasuredChannel;
-using diagnosis::MeasuredRun;
-using diagnosis::ResidualStructure;
-using output::Datum;
-using output::Plot;
-using output::Section;
-using output::Series;
-using output::Table;
+using diagnosis::MeasuredChannel, diagnosis::MeasuredRun, diagnosis::ResidualStructure;
+using output::Datum, output::Plot, output::Section, output::Series, output::Table;
 
 constexpr double kTells = 0.3;  // correlations of at least this are shown
 
@@ -58,8 +52,7 @@ Curves curves_of(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, 
 }
 
 Plot drive_plot(const MeasuredRun& run) {
-  Plot plot{
-      .title = "Spindle speed", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
+  Plot plot{.title = "Spindle speed", .x_label = "time [min]", .y_label = "speed [rpm]"};
   Series speed{.label = "speed", .x = {}, .y = {}, .style = Series::Style::kSteps};
   for (double t_s : run.time_s) {
     speed.x.push_back(t_s / 60.0);
@@ -95,7 +88,6 @@ void add_plots(const Curves& c, const std::string& after, const std::vector<outp
       .series = {{.label = "measured", .x = c.time_min, .y = c.measured, .style = Series::Style::kPoints, .width = 1.2},
                  {.label = "as written", .x = c.time_min, .y = c.written},
                  {.label = after, .x = c.time_min, .y = c.after}},
-      .bands = {},
       .marks = marks,
       .half_width = true};
   Plot residuals{

@@ -11,9 +11,7 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Datum;
-using output::Plot;
-using output::Table;
+using output::Datum, output::Plot, output::Table;
 using solver::FlowKind;
 
 std::string words(FlowKind kind) {
@@ -74,12 +72,7 @@ void add_interval(output::Series& series, const RecordBand* band, const std::str
 
 Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
                    const std::vector<std::string>& names, const Cyclogram& cyclogram, const RecordBand* band) {
-  Plot plot{.title = title,
-            .x_label = "time [min]",
-            .y_label = y_label,
-            .series = {},
-            .bands = {},
-            .marks = section_marks(cyclogram)};
+  Plot plot{.title = title, .x_label = "time [min]", .y_label = y_label, .marks = section_marks(cyclogram)};
   for (const std::string& name : names) {
     plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
     add_interval(plot.series.back(), band, name);

@@ -7,6 +7,7 @@
 
 #include "findings/film_section.hpp"
 #include "findings/machine_section.hpp"
+#include "findings/named_value.hpp"
 #include "mesh/quality.hpp"
 #include "solver/joint.hpp"
 
@@ -40,24 +41,16 @@ void add_size(output::Section& section, const mesh::Mesh& mesh) {
   add(section, Value{.key = "cells", .words = "cells", .datum = mesh.cells.size()});
   add(section, Value{.key = "regions", .words = "regions", .datum = mesh.regions.size()});
   add(section, Value{.key = "joints", .words = "joints", .datum = mesh.joints.size()});
-  add(section, Value{.key = "worst_scaled_jacobian",
-                     .words = "worst scaled Jacobian",
-                     .datum = mesh::worst_quality(mesh).min_scaled,
-                     .digits = output::decimals(4)});
+  add(section, named_value("worst_scaled_jacobian", "worst scaled Jacobian", mesh::worst_quality(mesh).min_scaled,
+                           output::decimals(4)));
 }
 
 void add_demand(output::Section& section, const scenarios::MeshDemand& demand) {
   add(section, Value{.key = "solved_by", .words = "solved by", .datum = demand.method});
-  add(section, Value{.key = "memory_MB",
-                     .words = "memory that it will take, about",
-                     .datum = 1e-6 * demand.memory_bytes,
-                     .unit = "MB",
-                     .digits = output::decimals(0)});
-  add(section, Value{.key = "time_s",
-                     .words = "time of one processor, very roughly, while the machine is not known from disk",
-                     .datum = demand.time_s,
-                     .unit = "s",
-                     .digits = output::decimals(0)});
+  add(section,
+      named_value("memory_MB", "memory that it will take, about", 1e-6 * demand.memory_bytes, "MB", output::decimals(0)));
+  add(section, named_value("time_s", "time of one processor, very roughly, while the machine is not known from disk",
+                           demand.time_s, "s", output::decimals(0)));
 }
 
 /// Contact area of each joint, and the gap between its sides.
@@ -120,9 +113,8 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
   } else {
     if (placed->mesh.n_nodes() > 0) {
       add_size(body, placed->mesh);
-      add(body, Value{.key = "mesh_size",
-                      .words = "mesh size",
-                      .datum = std::visit([](const auto& of_kind) { return size_words(of_kind); }, scenario.machine->mesh)});
+      add(body, named_value("mesh_size", "mesh size",
+                            std::visit([](const auto& of_kind) { return size_words(of_kind); }, scenario.machine->mesh)));
       if (demand) add_demand(body, *demand);
     }
     add(body, Value{.key = "lumped_nodes", .words = "lumped nodes", .datum = placed->balance.nodes.size()});
@@ -152,10 +144,7 @@ output::Document mesh_document(const std::string& name, const scenarios::Machine
   add_size(body, m);
   add(body, Value{.key = "worst_cell", .words = "worst cell", .datum = quality.worst_cell});
   add(body, Value{.key = "worst_cell_region", .words = "its region", .datum = m.regions[m.cells.group[quality.worst_cell]]});
-  add(body, Value{.key = "mean_scaled_jacobian",
-                  .words = "mean scaled Jacobian",
-                  .datum = quality.mean_scaled,
-                  .digits = output::decimals(3)});
+  add(body, named_value("mean_scaled_jacobian", "mean scaled Jacobian", quality.mean_scaled, output::decimals(3)));
   Table regions{.key = "region_sizes",
                 .columns = {{.key = "region", .title = "region"},
                             {.key = "volume_l", .title = "volume", .unit = "l", .digits = output::decimals(3)},

@@ -16,17 +16,9 @@
 namespace driftwright::findings {
 namespace {
 
-using compensation::AxisCourse;
-using compensation::LongStretch;
-using compensation::SharedPlan;
-using output::Datum;
-using output::Plot;
-using output::Section;
-using output::Series;
-using output::Table;
-using output::Value;
-using studies::CorrectedProgram;
-using studies::CorrectedSeries;
+using compensation::AxisCourse, compensation::LongStretch, compensation::SharedPlan;
+using output::Datum, output::Plot, output::Section, output::Series, output::Table, output::Value;
+using studies::CorrectedProgram, studies::CorrectedSeries;
 
 constexpr const char* kLetters = "xyz";
 

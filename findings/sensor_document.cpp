@@ -9,10 +9,8 @@ namespace driftwright::findings {
 namespace {
 
 using namespace compensation;
-using output::Datum;
-using output::Table;
-using studies::ChosenSensors;
-using studies::SensorStudy;
+using output::Datum, output::Table;
+using studies::ChosenSensors, studies::SensorStudy;
 
 const char* word(Image image) {
   return image == Image::kInitialValue ? "initial value" : image == Image::kMeanValue ? "mean value" : "range";

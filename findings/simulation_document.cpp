@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "findings/iso230_3_section.hpp"
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
@@ -38,16 +39,10 @@ output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
     const solver::Trajectory& run = runs[i].trajectory;
     output::Section section{
         .key = "cyclograms", .title = "Cyclogram " + cyclogram.name, .item = output::Item{"cyclogram", cyclogram.name}};
-    add(section, output::Value{.key = "duration_min",
-                               .words = "duration",
-                               .datum = cyclogram.duration_s() / 60.0,
-                               .unit = "min",
-                               .digits = output::decimals(0)});
+    add(section, named_value("duration_min", "duration", cyclogram.duration_s() / 60.0, "min", output::decimals(0)));
     add(section, output::Value{.key = "n_steps", .words = "steps", .datum = run.n_steps});
-    add(section, output::Value{.key = "energy_balance_gap",
-                               .words = "gap of the energy balance",
-                               .datum = std::max(1e-16, run.energy_gap()),
-                               .digits = output::scientific(0)});
+    add(section, named_value("energy_balance_gap", "gap of the energy balance", std::max(1e-16, run.energy_gap()),
+                             output::scientific(0)));
     add(section, end_table(runs[i].record));
     add_overshoots(section, run, model);
     add_channel_plots(section, runs[i].record, cyclogram, bands[i] ? &*bands[i] : nullptr);

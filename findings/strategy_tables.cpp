@@ -13,8 +13,7 @@
 namespace driftwright::findings {
 
 using namespace compensation;
-using output::Datum;
-using output::Table;
+using output::Datum, output::Table;
 
 namespace {
 

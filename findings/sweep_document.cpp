@@ -12,10 +12,8 @@
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Table;
-using scenarios::SweepPlan;
-using scenarios::Variation;
+using output::Plot, output::Table;
+using scenarios::SweepPlan, scenarios::Variation;
 using studies::SweepColumns;
 
 constexpr std::size_t kMostSweepPlots = 24, kMostSweepPoints = 2000, kMostFailures = 50, kMostTornados = 6;
@@ -29,13 +27,8 @@ std::string axis_label(const Variation& v) {
 }
 
 Plot scatter(const Variation& v, const std::vector<double>& x, const std::string& result, const std::vector<double>& y) {
-  Plot plot{.title = fmt::format("{} over {}", result, v.name),
-            .x_label = axis_label(v),
-            .y_label = result,
-            .series = {},
-            .bands = {},
-            .marks = {},
-            .half_width = true};
+  Plot plot{
+      .title = fmt::format("{} over {}", result, v.name), .x_label = axis_label(v), .y_label = result, .half_width = true};
   output::Series series{.label = result, .x = {}, .y = {}, .style = output::Series::Style::kPoints};
   for (std::size_t i = 0; i < x.size() && series.x.size() < kMostSweepPoints; ++i) {
     if (std::isnan(x[i]) || std::isnan(y[i])) continue;

@@ -7,20 +7,14 @@
 
 #include "base/quantity.hpp"
 #include "findings/columns.hpp"
+#include "findings/named_value.hpp"
 #include "studies/table_strategy.hpp"
 
 namespace driftwright::findings {
 namespace {
 
-using compensation::ProbeErrors;
-using compensation::ProbeRow;
-using output::Column;
-using output::Plot;
-using output::Section;
-using output::Series;
-using output::Table;
-using output::Text;
-using output::Value;
+using compensation::ProbeErrors, compensation::ProbeRow;
+using output::Column, output::Plot, output::Section, output::Series, output::Table, output::Text, output::Value;
 
 std::string um(double m, int decimals = 1) {
   return fmt::format("{:.{}f}", 1e6 * m, decimals);
@@ -157,10 +151,7 @@ Section readings_section(const studies::TableStudy& study) {
   for (const auto& m : study.ambient_models)
     table.rows.push_back({m.name, m.n_parameters, m.rms, m.rms_left_out, m.r_squared, m.parameters});
   add(section, std::move(table));
-  add(section, Value{.key = "computed_rms_um",
-                     .words = "misfit of this machine, not fitted",
-                     .datum = study.computed_rms_um,
-                     .unit = "um"});
+  add(section, named_value("computed_rms_um", "misfit of this machine, not fitted", study.computed_rms_um, "um"));
   add(section, Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
                     "almost anything: "
                     "they do not carry a model of ambient temperature. On the second morning the error rises while the "

@@ -8,19 +8,15 @@
 #include <map>
 
 #include "base/median.hpp"
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 #include "output/heat_map.hpp"
 
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::JudgedTest;
-using studies::TestPlan;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::JudgedTest, studies::TestPlan;
 
 constexpr double kOften = 0.25;         // share of the faults of a kind from which a map is orange
 constexpr double kWorthShowing = 0.02;  // share from which a confusion is shown
@@ -180,12 +176,7 @@ void add_maps(output::Section& body, const TestPlan& plan) {
 }
 
 Plot programme_plot(const TestPlan& plan) {
-  Plot plot{.title = "Programme",
-            .x_label = "time [h]",
-            .y_label = "share of the most [%]",
-            .series = {},
-            .bands = {},
-            .marks = {}};
+  Plot plot{.title = "Programme", .x_label = "time [h]", .y_label = "share of the most [%]"};
   const auto add_series = [&](const std::string& label, const auto& of) {
     Series series{.label = label, .style = Series::Style::kSteps};
     double most = 0.0, time_s = 0.0;
@@ -209,7 +200,7 @@ Plot programme_plot(const TestPlan& plan) {
 }
 
 Plot readings_plot(const Record& record, const std::string& unit, const std::string& title, const std::string& label) {
-  Plot plot{.title = title, .x_label = "time [h]", .y_label = label, .series = {}, .bands = {}, .marks = {}};
+  Plot plot{.title = title, .x_label = "time [h]", .y_label = label};
   std::vector<double> hours;
   for (double t_s : record.time_s) hours.push_back(t_s / 3600.0);
   for (const Channel& c : record.channels) {
@@ -250,7 +241,6 @@ Table pairs_table(const TestPlan& plan) {
                           {.key = "d_planned", .title = "d', planned", .digits = output::decimals(1)},
                           {.key = "taken_usual", .title = "taken, usual", .digits = output::percent(0)},
                           {.key = "taken_planned", .title = "taken, planned", .digits = output::percent(0)}},
-              .rows = {},
               .detail = true};
   struct Pair {
     Eigen::Index a, b;
@@ -281,7 +271,6 @@ Table numbers_table(const TestPlan& plan) {
                           {.key = "known_to", .title = "known to", .digits = output::significant(2)},
                           {.key = "left_usual", .title = "left, usual", .digits = output::percent(0)},
                           {.key = "left_planned", .title = "left, planned", .digits = output::percent(0)}},
-              .rows = {},
               .detail = true};
   for (std::size_t i = 0; i < plan.numbers.size(); ++i) {
     const diagnosis::Knob& k = plan.numbers[i];
@@ -337,26 +326,10 @@ output::Document document_of(const TestPlan& plan, const scenarios::Scenario& sc
   add(body, channels_table(plan));
   add(body, pairs_table(plan));
   add(body, numbers_table(plan));
-  add(body, Value{.key = "hours",
-                  .words = "length",
-                  .datum = plan.duration_s / 3600.0,
-                  .unit = "h",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "interval_s",
-                  .words = "rows every",
-                  .datum = plan.interval_s,
-                  .unit = "s",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "noise_K",
-                  .words = "noise of a thermometer",
-                  .datum = plan.noise.temperature_K,
-                  .unit = "K",
-                  .digits = output::significant(3)});
-  add(body, Value{.key = "noise_um",
-                  .words = "noise of a displacement",
-                  .datum = plan.noise.displacement_um,
-                  .unit = "um",
-                  .digits = output::significant(3)});
+  add(body, named_value("hours", "length", plan.duration_s / 3600.0, "h", output::significant(4)));
+  add(body, named_value("interval_s", "rows every", plan.interval_s, "s", output::significant(4)));
+  add(body, named_value("noise_K", "noise of a thermometer", plan.noise.temperature_K, "K", output::significant(3)));
+  add(body, named_value("noise_um", "noise of a displacement", plan.noise.displacement_um, "um", output::significant(3)));
   add(body, Value{.key = "programmes_tried", .words = "programmes tried", .datum = plan.n_tried});
   add(body, Value{.key = "share_named_by_search",
                   .words = "faults named, as the search's linear machine has it",

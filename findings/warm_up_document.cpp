@@ -6,18 +6,14 @@
 #include <algorithm>
 #include <array>
 
+#include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
 
 namespace driftwright::findings {
 namespace {
 
-using output::Plot;
-using output::Series;
-using output::Table;
-using output::Value;
-using output::Verdict;
-using studies::WarmUp;
-using studies::WarmUpPlan;
+using output::Plot, output::Series, output::Table, output::Value, output::Verdict;
+using studies::WarmUp, studies::WarmUpPlan;
 
 std::string speeds_words(const std::vector<Cyclogram::Section>& sections) {
   if (sections.size() > 6) return fmt::format("{} sections", sections.size());
@@ -111,7 +107,6 @@ Plot levels_plot(const WarmUpPlan& plan) {
             .y_label = "least peak of the job's drift [µm]",
             .series = {{.label = "one speed"}, {.label = "two speeds"}},
             .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
-            .marks = {},
             .half_width = true};
   for (const studies::WarmUpLevel& level : plan.levels) {
     for (Series& series : plot.series) series.x.push_back(level.duration_s / 60.0);
@@ -122,13 +117,8 @@ Plot levels_plot(const WarmUpPlan& plan) {
 }
 
 Plot programme_plot(const WarmUpPlan& plan) {
-  Plot plot{.title = "Shortest warm-up",
-            .x_label = "time before the job [min]",
-            .y_label = "speed [rpm]",
-            .series = {},
-            .bands = {},
-            .marks = {},
-            .half_width = true};
+  Plot plot{
+      .title = "Shortest warm-up", .x_label = "time before the job [min]", .y_label = "speed [rpm]", .half_width = true};
   std::vector<const WarmUp*> ways = {&plan.constant, &plan.staged};
   if (plan.finest) ways.push_back(&*plan.finest);
   for (const WarmUp* way : ways) {
@@ -153,7 +143,6 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
   Plot plot{.title = "Drift of the job",
             .x_label = "time in the job [min]",
             .y_label = "drift from its first row [µm]",
-            .series = {},
             .bands = {{.label = "allowed", .low = -kept_um(plan), .high = kept_um(plan)}},
             .marks = section_marks(job)};
   for (const std::string& name : plan.channels) {
@@ -187,9 +176,7 @@ Plot corrected_plot(const studies::CorrectedWarmUps& corrected, const WarmUpPlan
   Plot plot{.title = "Warm-up beside correction",
             .x_label = fmt::format("warm-up at {:.0f} rpm [min]", corrected.speed_rpm),
             .y_label = fmt::format("peak of what is left of {} [µm]", corrected.target),
-            .series = {},
-            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
-            .marks = {}};
+            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}}};
   for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
     if (std::find(kDrawn.begin(), kDrawn.end(), strategy.strategy) == kDrawn.end()) continue;
     Series series{.label = strategy.strategy, .y = strategy.left_um};
@@ -221,7 +208,6 @@ Table corrected_times_table(const studies::CorrectedWarmUps& corrected) {
               .columns = {{.key = "strategy", .title = "strategy"},
                           {.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
                           {.key = "left_um", .title = "left", .unit = "um", .digits = output::decimals(2)}},
-              .rows = {},
               .detail = true};
   for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
     for (std::size_t i = 0; i < corrected.times_s.size(); ++i)
@@ -241,45 +227,21 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
   output::Section& body = document.body;
   add(body, verdict_of(plan, job));
   add(body, Value{.key = "job", .datum = asked});
-  add(body, Value{.key = "tolerance_um",
-                  .words = "tolerance",
-                  .datum = plan.tolerance_um,
-                  .unit = "um",
-                  .digits = output::significant(4)});
-  add(body, Value{.key = "kept_free",
-                  .words = "of it kept free for what the model does not know",
-                  .datum = plan.kept_free,
-                  .digits = output::percent(0)});
-  add(body, Value{.key = "speed_limit_rpm",
-                  .words = "speed limit",
-                  .datum = plan.most_speed_rpm,
-                  .unit = "rpm",
-                  .digits = output::decimals(0)});
+  add(body, named_value("tolerance_um", "tolerance", plan.tolerance_um, "um", output::significant(4)));
+  add(body,
+      named_value("kept_free", "of it kept free for what the model does not know", plan.kept_free, output::percent(0)));
+  add(body, named_value("speed_limit_rpm", "speed limit", plan.most_speed_rpm, "rpm", output::decimals(0)));
   if (plan.most_power_W > 0.0)
-    add(body, Value{.key = "power_limit_W",
-                    .words = "limit of a speed's heat",
-                    .datum = plan.most_power_W,
-                    .unit = "W",
-                    .digits = output::decimals(0)});
-  add(body, Value{.key = "power_at_limit_W",
-                  .words = "heat of the fastest speed that is allowed",
-                  .datum = plan.power_at_most_W,
-                  .unit = "W",
-                  .digits = output::decimals(0)});
-  add(body, Value{.key = "time_limit_min",
-                  .words = "time limit",
-                  .datum = plan.most_s / 60.0,
-                  .unit = "min",
-                  .digits = output::decimals(0)});
+    add(body, named_value("power_limit_W", "limit of a speed's heat", plan.most_power_W, "W", output::decimals(0)));
+  add(body, named_value("power_at_limit_W", "heat of the fastest speed that is allowed", plan.power_at_most_W, "W",
+                        output::decimals(0)));
+  add(body, named_value("time_limit_min", "time limit", plan.most_s / 60.0, "min", output::decimals(0)));
   if (plan.held) {
-    add(body,
-        Value{
-            .key = "model_error", .words = "machines are off by", .datum = plan.model_error, .digits = output::percent(0)});
+    add(body, named_value("model_error", "machines are off by", plan.model_error, output::percent(0)));
     add(body, Value{.key = "machines", .words = "machines that the free share was chosen by", .datum = plan.held->n});
     add(body, Value{.key = "machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_kept});
     add(body, Value{.key = "fresh_machines", .words = "other machines", .datum = plan.held->n_fresh});
-    add(body,
-        Value{.key = "fresh_machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_fresh_kept});
+    add(body, named_value("fresh_machines_kept", "of them within the tolerance", plan.held->n_fresh_kept));
   }
   add(body, Value{.key = "predicted_by", .datum = plan.predicted_by});
   add(body,
@@ -299,7 +261,6 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
                .columns = {{.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
                            {.key = "one_speed_um", .title = "one speed", .unit = "um", .digits = output::decimals(2)},
                            {.key = "two_speeds_um", .title = "two speeds", .unit = "um", .digits = output::decimals(2)}},
-               .rows = {},
                .detail = true};
   for (const studies::WarmUpLevel& level : plan.levels)
     levels.rows.push_back({level.duration_s / 60.0, level.constant_um, level.staged_um});

@@ -4,8 +4,7 @@
 
 namespace driftwright::follow {
 
-using output::finite;
-using output::value;
+using output::finite, output::value;
 
 namespace {
 

@@ -1,3 +1,4 @@
+// One reader of one language: its modes are the state that each word changes.
 #include "nc/iso_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// One reader of one language: parameters, calls and loops change the same place in the program.
 #include "nc/iso_source.hpp"
 
 #include <fmt/format.h>

@@ -14,10 +14,7 @@ namespace driftwright::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using schema::Group;
-using schema::Key;
-using schema::Map;
-using schema::Value;
+using schema::Group, schema::Key, schema::Map, schema::Value;
 using ValueKind = Value::Kind;
 
 /// Common spellings of units. A schema cannot do dimensional analysis; it refuses those of this list that UDUNITS cannot

@@ -5,12 +5,6 @@
 
 namespace driftwright::output {
 
-using json::finite;
-using json::Json;
-using json::list;
-using json::number;
-using json::number_or;
-using json::positive;
-using json::value;
+using json::finite, json::Json, json::list, json::number, json::number_or, json::positive, json::value;
 
 }  // namespace driftwright::output

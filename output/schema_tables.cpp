@@ -8,10 +8,7 @@
 namespace driftwright::output {
 namespace {
 
-using schema::Group;
-using schema::Key;
-using schema::Map;
-using schema::Value;
+using schema::Group, schema::Key, schema::Map, schema::Value;
 using ValueKind = Value::Kind;
 
 constexpr std::size_t kMostWords = 12;  // most words that a cell lists

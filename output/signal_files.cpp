@@ -12,10 +12,7 @@
 namespace driftwright::output {
 namespace {
 
-using compensation::Counting;
-using compensation::kLineA;
-using compensation::kLineB;
-using compensation::kLineIndex;
+using compensation::Counting, compensation::kLineA, compensation::kLineB, compensation::kLineIndex;
 
 /// Rows that halstreamer may buffer ahead of the encoder.
 constexpr std::int64_t kHalDepth = 16384;

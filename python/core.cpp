@@ -55,11 +55,9 @@ Listener listener_of(const py::object& progress) {
           .wants_end_now = {}};
 }
 
-}  // namespace
+using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-PYBIND11_MODULE(core, m) {
-  m.doc() = "Driftwright: digital twin of a machine tool's thermal behaviour";
-  m.attr("__version__") = version();
+void add_errors(py::module_& m) {
   static py::exception<InputError> input_error(m, "InputError", PyExc_ValueError);
   static py::exception<SolveError> solve_error(m, "SolveError", PyExc_ArithmeticError);
   py::register_exception_translator([](std::exception_ptr p) {
@@ -73,8 +71,9 @@ PYBIND11_MODULE(core, m) {
       solve_error(e.what());
     }
   });
-  using Unlocked = py::call_guard<py::gil_scoped_release>;
+}
 
+void add_records_and_cyclograms(py::module_& m) {
   py::class_<Record>(m, "Record").def(py::init(&record_of)).def_property_readonly("columns", &columns_of);
   m.def("read_record", &read_record_csv, Unlocked());
   m.def("record_csv", &record_csv, Unlocked());
@@ -92,6 +91,10 @@ PYBIND11_MODULE(core, m) {
           }
           return cyclogram;
         });
+}
+
+/// Meshes, fields and runs, which machines give.
+void add_runs(py::module_& m) {
   py::class_<PredictOptions>(m, "PredictOptions")
       .def(py::init([](std::string start, std::string after_pause, std::string model) {
         return PredictOptions{std::move(start), std::move(after_pause), std::move(model)};
@@ -123,6 +126,9 @@ PYBIND11_MODULE(core, m) {
                              .ambient_degC = ambient_degC});
           },
           Unlocked());
+}
+
+void add_diagnosis(py::module_& m) {
   py::class_<Estimate>(m, "Estimate")
       .def_readonly("name", &Estimate::name)
       .def_readonly("unit", &Estimate::unit)
@@ -160,19 +166,9 @@ PYBIND11_MODULE(core, m) {
       .def_readonly("gain", &Diagnosis::gain)
       .def_readonly("extended_scenario", &Diagnosis::extended_scenario)
       .def_readonly("not_written", &Diagnosis::not_written);
-  py::class_<JudgedCase>(m, "JudgedCase")
-      .def_readonly("record", &JudgedCase::record)
-      .def_readonly("failed", &JudgedCase::failed)
-      .def_readonly("rms_before_um", &JudgedCase::rms_before_um)
-      .def_readonly("peak_before_um", &JudgedCase::peak_before_um)
-      .def_readonly("rms_left_um", &JudgedCase::rms_left_um)
-      .def_readonly("peak_left_um", &JudgedCase::peak_left_um);
-  py::class_<JudgedStrategy>(m, "JudgedStrategy")
-      .def_readonly("name", &JudgedStrategy::name)
-      .def_readonly("verdict", &JudgedStrategy::verdict)
-      .def_readonly("why", &JudgedStrategy::why)
-      .def_readonly("is_baseline", &JudgedStrategy::is_baseline)
-      .def_readonly("cases", &JudgedStrategy::cases);
+}
+
+void add_machine(py::module_& m) {
   py::class_<Machine>(m, "Machine")
       .def(py::init(
           [](const std::string& scenario, const py::object& progress) { return Machine(scenario, listener_of(progress)); }))
@@ -206,11 +202,40 @@ PYBIND11_MODULE(core, m) {
           },
           Unlocked())
       .def("calibrate", &Machine::calibrate, Unlocked());
+}
+
+void add_judging(py::module_& m) {
+  py::class_<JudgedCase>(m, "JudgedCase")
+      .def_readonly("record", &JudgedCase::record)
+      .def_readonly("failed", &JudgedCase::failed)
+      .def_readonly("rms_before_um", &JudgedCase::rms_before_um)
+      .def_readonly("peak_before_um", &JudgedCase::peak_before_um)
+      .def_readonly("rms_left_um", &JudgedCase::rms_left_um)
+      .def_readonly("peak_left_um", &JudgedCase::peak_left_um);
+  py::class_<JudgedStrategy>(m, "JudgedStrategy")
+      .def_readonly("name", &JudgedStrategy::name)
+      .def_readonly("verdict", &JudgedStrategy::verdict)
+      .def_readonly("why", &JudgedStrategy::why)
+      .def_readonly("is_baseline", &JudgedStrategy::is_baseline)
+      .def_readonly("cases", &JudgedStrategy::cases);
   m.def(
       "judge",
       [](const std::string& scenario, const std::vector<std::string>& train, const std::vector<std::string>& test) {
         return judge(scenario, train, test);
       },
       Unlocked());
+}
+
+}  // namespace
+
+PYBIND11_MODULE(core, m) {
+  m.doc() = "Driftwright: digital twin of a machine tool's thermal behaviour";
+  m.attr("__version__") = version();
+  add_errors(m);
+  add_records_and_cyclograms(m);
+  add_runs(m);
+  add_diagnosis(m);
+  add_machine(m);
+  add_judging(m);
   m.def("command", &command, Unlocked());
 }

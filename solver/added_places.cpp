@@ -7,8 +7,7 @@
 namespace driftwright::solver {
 namespace {
 
-using effects::Body;
-using effects::BodyKind;
+using effects::Body, effects::BodyKind;
 
 const HeatSource* source_at(const ReducedSystem& system, const Body& body) {
   const auto found =

@@ -11,8 +11,7 @@
 namespace driftwright::solver {
 namespace {
 
-using mesh::CellShape;
-using mesh::Mesh;
+using mesh::CellShape, mesh::Mesh;
 
 /// The shape functions at the points of a rule, evaluated once.
 template <int N>

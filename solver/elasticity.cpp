@@ -152,12 +152,6 @@ Eigen::VectorXd Elasticity::influence(const DisplacementFunctional& functional) 
   return parts_->thermal_load.transposed(response(functional));
 }
 
-Eigen::VectorXd Elasticity::influence(const StressFunctional& functional) const {
-  Eigen::VectorXd g = influence(functional.displacement);
-  for (const auto& [node, weight_Pa_K] : functional.temperature) g[node] += weight_Pa_K;
-  return g;
-}
-
 Eigen::Matrix3Xd Elasticity::displacement(const Eigen::VectorXd& theta) const {
   const Eigen::VectorXd u = parts_->solve(parts_->thermal_load.forces_N(theta));
   return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);

@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -25,12 +24,6 @@ struct DisplacementFunctional {
     Eigen::Vector3d weight;
   };
   std::vector<Term> terms;
-};
-
-/// A component of stress at a point [Pa]: a part from displacements and a part from the temperatures there.
-struct StressFunctional {
-  DisplacementFunctional displacement;
-  std::vector<std::pair<int, double>> temperature;  ///< node, Pa/K
 };
 
 /// How K u = f is solved.
@@ -78,8 +71,6 @@ class Elasticity {
   [[nodiscard]] Eigen::VectorXd response(const DisplacementFunctional& functional) const;
   /// Influence vector over the mesh's nodes [unit of the functional per K].
   [[nodiscard]] Eigen::VectorXd influence(const DisplacementFunctional& functional) const;
-  /// Influence vector of a stress [Pa/K].
-  [[nodiscard]] Eigen::VectorXd influence(const StressFunctional& functional) const;
 
   /// Displacement of all nodes, 3 x n_nodes [m], for temperatures θ of the nodes [K] (of longer vectors only the first
   /// n_nodes are used). Nodes in no cell do not move.

@@ -1,3 +1,4 @@
+// One class in one file: slopes, implicit stages and heat balances work on the same state of a step.
 #include "solver/heat_ode.hpp"
 
 #include <fmt/format.h>

@@ -66,8 +66,8 @@ class AlongSteps {
     }
     return false;
   }
-  /// True if a stored step is short enough for the differences of the other machine: checks its middle as ExponentialIntegrator
-  /// does.
+  /// True if a stored step is short enough for the differences of the other machine: checks its middle as
+  /// ExponentialIntegrator does.
   [[nodiscard]] bool is_true(const StepsTaken::Matrices& m, const Eigen::VectorXd& more, double from_s) {
     end_.noalias() = m.second * (n1_ - n0_ - more);
     const double apart = end_.lpNorm<Eigen::Infinity>();

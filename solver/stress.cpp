@@ -52,30 +52,6 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> gather(std::span<const int> nodes, c
 
 }  // namespace
 
-Stress stress_at(const Mesh& mesh, const RegionMaterials& materials, const Eigen::Matrix3Xd& displacement_m,
-                 const Eigen::VectorXd& theta_K, int cell, const Eigen::Vector3d& xi) {
-  const auto nodes = mesh.cells.nodes(cell);
-  const auto [u_m, t_K] = gather(nodes, displacement_m, theta_K);
-  return stress_in(cell_point(mesh.cells.shape[cell], mesh::cell_coords(mesh, nodes), xi), materials[mesh.cells.group[cell]],
-                   u_m, t_K);
-}
-
-StressFunctional stress_functional(const Mesh& mesh, const RegionMaterials& materials, int cell, const Eigen::Vector3d& xi,
-                                   int component) {
-  const auto nodes = mesh.cells.nodes(cell);
-  const Material& material = materials[mesh.cells.group[cell]];
-  const CellPoint p = cell_point(mesh.cells.shape[cell], mesh::cell_coords(mesh, nodes), xi);
-  const Eigen::RowVectorXd row_Pa = elasticity_tensor_Pa(material).row(component);
-  const Eigen::RowVectorXd of_u = row_Pa * p.strain;
-  const double of_theta_Pa_K = -row_Pa.dot(thermal_strain_1_K(material).transpose());
-  StressFunctional functional;
-  for (int i = 0; i < p.shape.n; ++i) {
-    functional.displacement.terms.push_back({nodes[i], of_u.segment<3>(3 * i).transpose()});
-    functional.temperature.emplace_back(nodes[i], of_theta_Pa_K * p.shape.N[i]);
-  }
-  return functional;
-}
-
 double von_mises(const Stress& s) {
   const double normal = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
   return std::sqrt(0.5 * normal + 3.0 * s.tail<3>().squaredNorm());

@@ -9,17 +9,6 @@ namespace driftwright::solver {
 /// Six components per node [Pa], one column each.
 using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Stress at the reference point xi of a cell, from the derivatives of the shape functions there [Pa]. It jumps between
-/// cells; it is most accurate at the points of mesh::stiffness_rule().
-/// @param displacement_m  3 x n_nodes;  @param theta_K  n_nodes or longer, over the reference temperature
-[[nodiscard]] Stress stress_at(const mesh::Mesh& mesh, const RegionMaterials& materials,
-                               const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K, int cell,
-                               const Eigen::Vector3d& xi);
-
-/// The same as a functional, for Elasticity::influence(). @param component  0 ... 5 = xx, yy, zz, xy, yz, zx
-[[nodiscard]] StressFunctional stress_functional(const mesh::Mesh& mesh, const RegionMaterials& materials, int cell,
-                                                 const Eigen::Vector3d& xi, int component);
-
 /// Stresses recovered at the nodes. In each cell a polynomial is fitted by least squares to the stresses at the points of
 /// mesh::stiffness_rule() (tetrahedra: linear; a single point: constant) and extrapolated to its nodes; at each node the
 /// values of the adjacent cells are averaged, weighted by their volumes.

@@ -9,8 +9,8 @@ struct BandLimits {
   Eigen::VectorXd low, high;  ///< per function
 };
 
-/// Limits of each function from draws. A quantile of 200 draws alone errs by 10 % of the band's half width, because the draws
-/// reach into the tail by chance. The linear part of the function says how far they do: its limits are known exactly,
+/// Limits of each function from draws. A quantile of 200 draws alone errs by 10 % of the band's half width, because the
+/// draws reach into the tail by chance. The linear part of the function says how far they do: its limits are known exactly,
 ///
 ///     y ≈ a + b'x (least squares over the draws),   limits of the linear part  a ∓ 1.96 |b|,
 ///

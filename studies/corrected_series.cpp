@@ -9,8 +9,7 @@
 
 namespace driftwright::studies {
 
-using compensation::ProgramSchedule;
-using compensation::SharedPlan;
+using compensation::ProgramSchedule, compensation::SharedPlan;
 
 std::string corrected_file(const std::string& file, const SharedPlan& shared, std::size_t n_parts) {
   if (shared.last_part - shared.first_part + 1 == static_cast<int>(n_parts)) return file;

@@ -15,19 +15,19 @@
 namespace driftwright::studies {
 namespace {
 
-using diagnosis::Knob;
-using diagnosis::Twin;
+using diagnosis::Knob, diagnosis::Twin;
 
 constexpr std::size_t kMostBandRows = 500;  // of a longer record the band is linear between this many of its rows
 constexpr std::uint64_t kBandSeed = 1;
 constexpr Eigen::Index kFewStates = 60;
 constexpr int kFewestDraws = 40;
 
-/// Number of machines that are drawn: as many as `predict` takes at most twice its time for (0.3 to 0.4 s of processor time).
-/// A machine whose laws depend on the drive alone takes 0.05 ms (two bodies) to 1.4 ms (49 states) a draw, so kBandDraws of
-/// them fit; the time grows with the cube of the states. Laws of temperatures need steps in time, 3 ms a draw for six bodies
-/// with a thermostat. The number of draws then follows that of the scenario's numbers: the limits of a linear function are
-/// exact from any number of draws above n_numbers + 1 (band_limits.hpp), and twice as many show how a function bends.
+/// Number of machines that are drawn: as many as `predict` takes at most twice its time for (0.3 to 0.4 s of processor
+/// time). A machine whose laws depend on the drive alone takes 0.05 ms (two bodies) to 1.4 ms (49 states) a draw, so
+/// kBandDraws of them fit; the time grows with the cube of the states. Laws of temperatures need steps in time, 3 ms a draw
+/// for six bodies with a thermostat. The number of draws then follows that of the scenario's numbers: the limits of a linear
+/// function are exact from any number of draws above n_numbers + 1 (band_limits.hpp), and twice as many show how a function
+/// bends.
 int n_draws_of(const solver::ReducedSystem& system, std::size_t n_knobs) {
   const bool is_quick = system.is_linear() && system.size() <= kFewStates;
   return std::max(2 * (static_cast<int>(n_knobs) + 1), is_quick ? kBandDraws : kFewestDraws);

@@ -20,8 +20,7 @@
 namespace driftwright::studies {
 namespace {
 
-using mesh::OuterFacet;
-using mesh::OuterPlane;
+using mesh::OuterFacet, mesh::OuterPlane;
 
 constexpr double kFilm_W_m2K = 10.0, kWarms_K = 2.0;
 constexpr double kLarge = 0.02;  ///< share of a region's surface: smaller planes are treated as pieces of curved faces

@@ -19,8 +19,7 @@
 namespace driftwright::studies {
 namespace {
 
-using diagnosis::Diagnosis;
-using diagnosis::StatedChange;
+using diagnosis::Diagnosis, diagnosis::StatedChange;
 
 void require_candidates(const MeasuredTwin& m, const std::vector<std::string>& without) {
   if (without.empty()) return;

@@ -1,3 +1,4 @@
+// The course of one study, in its order: candidates, choice, rivals, judgement. What it computes with is in placement_*.
 #include "studies/placement.hpp"
 
 #include <fmt/format.h>

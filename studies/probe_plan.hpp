@@ -11,10 +11,10 @@
 // of the 95 % interval, factor √v, only grows between two probings. The time of a probing counts as lost, and not as growth.
 //
 // Fewest probings: each one at the latest place that is reached within the tolerance, which is the place of the probing
-// before it if no later one is (noise is then averaged). No plan has fewer. Proof by induction over the number k of probings:
-// the k-th probing of this plan is at least as late as that of any other plan, and after it the variance is at most that of
-// the other plan with k probings. The step: let v be the other plan's variance at its place and v' = a² v + (1 - a²) s² >= v
-// at this plan's later one. With f(v) = v - g(v), g(v) = v² / (v + r²),
+// before it if no later one is (noise is then averaged). No plan has fewer. Proof by induction over the number k of
+// probings: the k-th probing of this plan is at least as late as that of any other plan, and after it the variance is at
+// most that of the other plan with k probings. The step: let v be the other plan's variance at its place and v' = a² v + (1
+// - a²) s² >= v at this plan's later one. With f(v) = v - g(v), g(v) = v² / (v + r²),
 //
 //     f(v') - a² f(v) = (1 - a²) s² - [g(v') - a² g(v)] <= (1 - a²) s²,
 //
@@ -81,8 +81,8 @@ struct WidthAt {
   double time_s = 0.0, um = 0.0;
 };
 
-/// Probings of one place at most: their mean has 0.22 of the noise of one. Beyond it errors that all of them share (the ball,
-/// the ring) are larger.
+/// Probings of one place at most: their mean has 0.22 of the noise of one. Beyond it errors that all of them share (the
+/// ball, the ring) are larger.
 inline constexpr int kMostAtAPlace = 20;
 
 /// Some probings, judged.
@@ -107,8 +107,8 @@ struct ProbeSequence {
 /// fewest_probings() to 1e-6 of itself.
 [[nodiscard]] ProbeSequence best_probings(const ProbeJob& job, const ProbedAxis& axis, std::size_t n);
 
-/// n probings at equal intervals, each at the nearest of the places with the fewest of them. The first interval begins with the
-/// job; for an axis that is not known at the start the first probing is there.
+/// n probings at equal intervals, each at the nearest of the places with the fewest of them. The first interval begins with
+/// the job; for an axis that is not known at the start the first probing is there.
 /// @param n  0 for a job without places
 [[nodiscard]] ProbeSequence equal_probings(const ProbeJob& job, const ProbedAxis& axis, std::size_t n);
 

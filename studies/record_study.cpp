@@ -73,9 +73,7 @@ std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const s
   return found;
 }
 
-using scenarios::is_same_file;
-using scenarios::RecordPart;
-using scenarios::RunRows;
+using scenarios::is_same_file, scenarios::RecordPart, scenarios::RunRows;
 
 /// A file, read once, whichever parts of it are requested.
 struct ReadFile {

@@ -17,10 +17,7 @@
 namespace driftwright::studies {
 namespace {
 
-using scenarios::Machine;
-using scenarios::Scenario;
-using scenarios::Shared;
-using scenarios::SweepPlan;
+using scenarios::Machine, scenarios::Scenario, scenarios::Shared, scenarios::SweepPlan;
 
 /// Calls `work`; stores a failure of the member in its outcome, and passes all other exceptions on.
 template <class Work>

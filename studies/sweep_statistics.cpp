@@ -11,8 +11,7 @@
 namespace driftwright::studies {
 namespace {
 
-using scenarios::SweepPlan;
-using scenarios::Variation;
+using scenarios::SweepPlan, scenarios::Variation;
 
 double number_of(const std::string& cell) {
   return cell.empty() ? std::nan("") : std::strtod(cell.c_str(), nullptr);

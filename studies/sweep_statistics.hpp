@@ -39,8 +39,9 @@ struct Tornado {
   double explained = 0.0;      ///< share of the variance that the fit explains, R² [-]
   std::vector<EndToEnd> bars;  ///< of the varied numbers, the longest first
 };
-/// The bars by least squares over the members, y = a + Σ b_i x_i; for a log_uniform number x_i is the logarithm. The ends of a
-/// distribution are the values that 2.5 % and 97.5 % of all lie below; of listed values and steps the least and the greatest.
+/// The bars by least squares over the members, y = a + Σ b_i x_i; for a log_uniform number x_i is the logarithm. The ends of
+/// a distribution are the values that 2.5 % and 97.5 % of all lie below; of listed values and steps the least and the
+/// greatest.
 /// @param result  index among plan.collect
 /// @returns none without varied numbers, for fewer whole members than two for each number and two more, for numbers that
 ///          the members do not tell apart, and for a constant result

@@ -22,8 +22,7 @@ namespace driftwright::studies {
 namespace {
 
 using namespace compensation;
-using scenarios::Scenario;
-using scenarios::Validation;
+using scenarios::Scenario, scenarios::Validation;
 
 constexpr double kRounding = 0.289;  // standard deviation of a rounding error of one step, 1 / sqrt(12)
 

@@ -197,6 +197,68 @@ def in_words(causes):
     return "; ".join(" | ".join(f"{m.get('effect')} {m.get('where')}" for m in members(c)) for c in causes) or "nothing"
 
 
+def told_rightly(table, truth, diagnosis, band, per_law):
+    """Adds what a case says by its class to the table. @return whether its cause is told rightly"""
+    verdict, causes, kind = diagnosis["verdict"], diagnosis.get("causes", []), truth["class"]
+    right = True
+    if kind == "one":
+        effect = truth["effects"][0]
+        found = find(effect, causes)
+        alone = len(causes) == 1 and len(members(causes[0])) == 1 and same_cause(effect, causes[0])
+        right = found is not None
+        table.add("one: cause named or in a set of three" + band, right)
+        table.add("one: cause named alone" + band, alone)
+        if found:
+            table.add("one: its place right" + band, same_place(effect, found[1]))
+        if not band:
+            table.add("one: no cause beside it", len(causes) <= 1)
+            hits, n = per_law.get(effect["law"], (0, 0))
+            per_law[effect["law"]] = hits + right, n + 1
+        right = right and same_place(effect, found[1])
+    elif kind == "two":
+        right = both_found(truth["effects"], causes)
+        table.add("two: both found" + band, right)
+        table.add("two: one or both found" + band, any(find(e, causes) for e in truth["effects"]))
+    elif kind == "none":
+        right = verdict == "consistent" and not causes
+        table.add("none: consistent", right)
+    elif kind == "outside":
+        since = [dict(e, effect=HELD_SINCE.get(e["law"])) for e in truth["effects"]]
+        is_right = not truth["without"] and all(e["effect"] and find(e, causes) for e in since)
+        right = verdict != "failed" and (verdict != "named" or is_right)
+        of = "taken out of the catalogue" if truth["without"] else "in no catalogue"
+        table.add("outside: not confidently misnamed", right)
+        table.add(f"outside, {of}: not confidently misnamed", right)
+        table.add("outside: something is said to be wrong", verdict not in ("consistent", "failed"))
+    else:
+        in_set = all(any(same_place(e, m) for c in causes for m in members(c)) for e in truth["effects"])
+        wrong = verdict == "named" and not any(same_place(e, m) for e in truth["effects"] for c in causes for m in members(c))
+        right = not wrong and verdict != "failed"
+        table.add("confounded: not confidently misnamed", right)
+        table.add("confounded: truth among what is said", in_set)
+        table.add("confounded: said to be ambiguous, or more is asked for", verdict in ("ambiguous", "insufficient_data"))
+        table.add("confounded: truth or what it is confused with",
+                  any(same_place(e, m) or confusable(truth, m) for e in truth["effects"] for c in causes for m in members(c)))
+    return right
+
+
+def show(table):
+    print(f"{'figure':<62} {'wanted':>8} {'got':>8}  {'95 % interval':>14}")
+    order = [("one: cause named or in a set of three", ">= 95 %"), ("one: cause named alone", ">= 80 %"),
+             ("one: its place right", ">= 90 %"), ("one: no cause beside it", ""), ("two: both found", ">= 85 %"),
+             ("two: one or both found", ""), ("none: consistent", ">= 98 %"),
+             ("true value inside its 95 % interval", "90-98 %"), ("held-out residual at most 1.1 of the noise", ""),
+             ("outside: not confidently misnamed", ">= 95 %"), ("outside, taken out of the catalogue: not confidently misnamed", ""),
+             ("outside, in no catalogue: not confidently misnamed", ""), ("outside: something is said to be wrong", ""),
+             ("confounded: not confidently misnamed", ""), ("confounded: truth among what is said", ""),
+             ("confounded: truth or what it is confused with", ""),
+             ("confounded: said to be ambiguous, or more is asked for", ""), (RESOLVED, ">= 90 %"), (RESOLVED_CATALOGUE, "")]
+    for band in (", d' 5 to 10", ", d' < 5"):
+        order += [(row + band, "") for row in ("one: cause named or in a set of three", "one: cause named alone", "one: its place right",
+                                               "two: both found", "two: one or both found")]
+    table.show(order)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("cases")
@@ -219,45 +281,7 @@ def main():
             failed += 1
         verdict, causes, kind, loud = diagnosis["verdict"], diagnosis.get("causes", []), truth["class"], loudness(truth)
         band = "" if loud >= 10 else ", d' 5 to 10" if loud >= 5 else ", d' < 5"
-        right = True
-        if kind == "one":
-            effect = truth["effects"][0]
-            found = find(effect, causes)
-            alone = len(causes) == 1 and len(members(causes[0])) == 1 and same_cause(effect, causes[0])
-            right = found is not None
-            table.add("one: cause named or in a set of three" + band, right)
-            table.add("one: cause named alone" + band, alone)
-            if found:
-                table.add("one: its place right" + band, same_place(effect, found[1]))
-            if not band:
-                table.add("one: no cause beside it", len(causes) <= 1)
-                hits, n = per_law.get(effect["law"], (0, 0))
-                per_law[effect["law"]] = hits + right, n + 1
-            right = right and same_place(effect, found[1])
-        elif kind == "two":
-            right = both_found(truth["effects"], causes)
-            table.add("two: both found" + band, right)
-            table.add("two: one or both found" + band, any(find(e, causes) for e in truth["effects"]))
-        elif kind == "none":
-            right = verdict == "consistent" and not causes
-            table.add("none: consistent", right)
-        elif kind == "outside":
-            since = [dict(e, effect=HELD_SINCE.get(e["law"])) for e in truth["effects"]]
-            is_right = not truth["without"] and all(e["effect"] and find(e, causes) for e in since)
-            right = verdict != "failed" and (verdict != "named" or is_right)
-            of = "taken out of the catalogue" if truth["without"] else "in no catalogue"
-            table.add("outside: not confidently misnamed", right)
-            table.add(f"outside, {of}: not confidently misnamed", right)
-            table.add("outside: something is said to be wrong", verdict not in ("consistent", "failed"))
-        else:
-            in_set = all(any(same_place(e, m) for c in causes for m in members(c)) for e in truth["effects"])
-            wrong = verdict == "named" and not any(same_place(e, m) for e in truth["effects"] for c in causes for m in members(c))
-            right = not wrong and verdict != "failed"
-            table.add("confounded: not confidently misnamed", right)
-            table.add("confounded: truth among what is said", in_set)
-            table.add("confounded: said to be ambiguous, or more is asked for", verdict in ("ambiguous", "insufficient_data"))
-            table.add("confounded: truth or what it is confused with",
-                      any(same_place(e, m) or confusable(truth, m) for e in truth["effects"] for c in causes for m in members(c)))
+        right = told_rightly(table, truth, diagnosis, band, per_law)
         if kind in ("one", "two"):
             for effect in truth["effects"]:
                 found = find(effect, causes)
@@ -286,20 +310,7 @@ def main():
                               + ("not diagnosed" if after is None else f"{after['verdict']}: {in_words(after.get('causes', []))}"))
         if not right:
             misses.append(f"{name} -> {verdict}: {in_words(causes)}")
-    print(f"{'figure':<62} {'wanted':>8} {'got':>8}  {'95 % interval':>14}")
-    order = [("one: cause named or in a set of three", ">= 95 %"), ("one: cause named alone", ">= 80 %"),
-             ("one: its place right", ">= 90 %"), ("one: no cause beside it", ""), ("two: both found", ">= 85 %"),
-             ("two: one or both found", ""), ("none: consistent", ">= 98 %"),
-             ("true value inside its 95 % interval", "90-98 %"), ("held-out residual at most 1.1 of the noise", ""),
-             ("outside: not confidently misnamed", ">= 95 %"), ("outside, taken out of the catalogue: not confidently misnamed", ""),
-             ("outside, in no catalogue: not confidently misnamed", ""), ("outside: something is said to be wrong", ""),
-             ("confounded: not confidently misnamed", ""), ("confounded: truth among what is said", ""),
-             ("confounded: truth or what it is confused with", ""),
-             ("confounded: said to be ambiguous, or more is asked for", ""), (RESOLVED, ">= 90 %"), (RESOLVED_CATALOGUE, "")]
-    for band in (", d' 5 to 10", ", d' < 5"):
-        order += [(row + band, "") for row in ("one: cause named or in a set of three", "one: cause named alone", "one: its place right",
-                                               "two: both found", "two: one or both found")]
-    table.show(order)
+    show(table)
     if ratios:
         ratios.sort()
         print(f"held-out residual over noise, a model that knows all has 1: median {ratios[len(ratios) // 2]:.3f}, "

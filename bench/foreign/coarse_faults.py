@@ -18,6 +18,7 @@ def can_be_on(kind, family):
 
 
 def draw(rng, kind, t, m, records, column):
+    """One branch a kind: a table."""
     names = [r.name for r in records]
     measured = [r for r in records if r.name.startswith("measured")]
     own = [b for b in m["names"] if any(s["body"] == b for s in t.sensors)]

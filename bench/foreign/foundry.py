@@ -3,7 +3,7 @@
 usage: foundry.py [--out foundry] [--check] [--only N]
 Driftwright (DW) meshes the machine and writes its reduced model (matrices); the truth is integrated here from these matrices with the scattered
 numbers and with the fault, which may look at temperatures, times and its own memory. Needs numpy and scipy; one core."""
-import os, sys, json, math, shutil, subprocess, hashlib, argparse, tempfile, copy
+import os, sys, json, math, shutil, subprocess, argparse, tempfile
 for k in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"): os.environ[k] = "1"
 import numpy as np
 DW = os.environ.get("DW", "driftwright")
@@ -57,6 +57,7 @@ def D(name, along, r1, a1, r2=None, a2=None):
     return s + (", table: {region: %s, at: [%g mm, %g mm, %g mm]}}" % ((r2,) + tuple(a2)) if r2 else "}")
 
 def families():
+    """A table, one machine after the other."""
     fam = {}
     # 1: toolroom mill, horizontal spindle, the generator's knee mill; idle runs
     fam["toolroom_mill"] = dict(inp=None, cad=dict(top=2500, feeds=(), cut=0),
@@ -173,7 +174,6 @@ def families():
         sensor_body=dict(g_head="wheelhead", g_front="wheelhead", g_drive="drive", g_post_low="post", g_post_high="post", g_table="table", g_chuck="chuck", g_base="base", g_tank="tank", g_air="guard_air"),
         displacements={"gap_z": D("gap_z", "z", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), "gap_y": D("gap_y", "y", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), "post_y": D("post_y", "y", "post", (700, 550, 1250))},
         regions=["base", "post", "wheelhead", "table", "chuck", "drive"], dummies=["wheelhead", "post", "table", "base", "drive"])
-    surf_region = {"headstock_outer": "headstock", "head_outer": None}
     return fam
 
 def region_of(fam, surface):
@@ -268,7 +268,7 @@ class Model:
         if speeds is not None: dr[:, 0] = speeds
         fixP = (lambda P, d: P) if scaleP is None else scaleP
         fixc = (lambda c, d: c) if scalec is None else scalec
-        st, cx = {}, {}
+        st = {}
         d0 = np.zeros(dr.shape[1])
         if start == "steady":
             c, P = (x.copy() for x in self.drive(d0)); c, P = fixc(c, d0), fixP(P, d0)
@@ -354,7 +354,7 @@ SAYABLE = ["hidden_heat", "law_power", "film", "contact", "link_ambient", "fan_l
 OUTSIDE = ["stick_slip", "backlash", "thermostat_valve", "phase_change", "restart_grease", "loose_sensor", "lift_off", "cross_talk", "coolant_splash", "preload_hysteresis", "frozen_reading", "start_loss", "wandering_sun", "saturated", "self_heating_lead"]
 
 def make_fault(kind, rng, fam, case, a):
-    """a: an amplitude factor that is tried around 1"""
+    """One branch a kind: a table in the order of SAYABLE and OUTSIDE. a: an amplitude factor that is tried around 1"""
     D_, Se, R = case["disps"], case["sensors"], case["records"]; effects = case["effects"]
     dum = fam["dummies"]; body = str(rng.choice(dum)); top = fam["cad"]["top"]; nrec = len(R)
     pick = lambda L: L[int(rng.integers(0, len(L)))]
@@ -599,7 +599,6 @@ def simulate(model, case, faults, offs):
     out = []
     for r in case["records"]:
         amb = r["amb"] + offs[r["no"] - 1]; sp = r["drives"][:, 0].copy()
-        fs = [f for f in faults if r["no"] in f.records or f.step or f.read]
         for f in faults:
             if f.amb: amb = f.amb(r, amb)
             if f.speed: sp = f.speed(r, sp)
@@ -626,7 +625,7 @@ def worst_rms(case, out, base):
 
 def sensitivities(case, model, fammodels, base, offs):
     """one column per scattered number, for one sigma of its prior, over noise"""
-    fam, cols = case["fam"], []
+    cols = []
     def runs(m, **k):
         res = []
         for r in case["records"]:
@@ -799,7 +798,7 @@ def plan():
 
 def check(tmp):
     """B cases without scatter and noise: Driftwright's own run of scenario.yaml against what is integrated here"""
-    worst = [0., 0.]; names = list(FAM); bad = 0
+    names = list(FAM); bad = 0
     for j, fname in enumerate(names):
         fam = FAM[fname]; no = 9000 + j; case = draw_machine(np.random.default_rng([SEED, no]), fname, fam)
         case["start"] = ["ambient", "steady"][j % 2]

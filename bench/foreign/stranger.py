@@ -148,6 +148,7 @@ class Machine:
 
 
 def draw_machine(rng, fam):
+    """In one piece: another order of draws would be another set."""
     s = FAM[fam]
     m = Machine()
     m.fam = fam
@@ -278,7 +279,6 @@ def draw_records(rng, m):
     nrec = int(rng.choice([1, 2, 3, 4], p=[.2, .35, .3, .15]))
     recs = []
     same = rng.random() < .6
-    lam = 0
     dt0 = None
     levels = sorted(round(m.top * f / 10) * 10 if m.top > 600 else round(m.top * f) for f in (U(rng, .25, .45), U(rng, .5, .75), 1.0))
     base = U(rng, 17, 26)
@@ -373,7 +373,7 @@ class Ctx:
 
 
 def simulate(m, val, R, r, aoff, faults, amps, hsub=1.0):
-    """Temperatures (rows, P, n), the readings by channel (rows, P), over P variants."""
+    """Temperatures (rows, P, n), the readings by channel (rows, P), over P variants. In one piece: the steps of one record in their order."""
     P, n, N = val.shape[0], m.n, R.n
     live = [(f, a) for f, a in zip(faults, amps) if r in f.recs]
     v = val.copy()
@@ -441,7 +441,6 @@ def simulate(m, val, R, r, aoff, faults, amps, hsub=1.0):
         T = np.repeat(c.amb[0][:, None], n, 1)
     elif m.start == "steady":
         qs = np.zeros((P, n))
-        z = np.zeros(P)
         for hh in m.heats:
             if hh["kind"] == "const" and hh["run"] == "always":
                 qs[:, hh["b"]] += v[:, hh["p"]]
@@ -586,7 +585,6 @@ def F_heat(kind):
         f.lo, f.hi = .03 * m.Pref, .6 * m.Pref
         e = U(rng, 1.3, 2.6)
         sgn = -1. if kind in ("constant", "window") and rng.random() < .2 else 1.
-        src = None
         if kind == "constant":
             shape, tx, fo = (lambda R: np.ones(R.n)), "constant heat", "constant"
         elif kind == "running":
@@ -621,7 +619,6 @@ def F_heat(kind):
             f.qrow = lambda c, a: c.q.__setitem__((slice(None), slice(None), b), c.q[:, :, b] + sgn * shape(c.R)[:, None] * a)
             f.unit = "W"
             f.statements = st("heat", [nm], fo)
-            hs = [h for h in m.heats if h["kind"] in ("src", "fric", "motor")]
             if kind == "speed" and only_speed(m) and len(speed_bodies(m)) == 1 and b in speed_bodies(m):
                 f.statements += st("speed", ["spindle"], "constant")
         f.text = lambda a: "%s in %s: %.3g %s, %s" % (tx, nm, sgn * a, f.unit, f.when)
@@ -833,7 +830,6 @@ def F_all(what):
             f.statements = st("heat", ["all"], "constant")
             if only_speed(m):
                 f.statements += st("speed", ["spindle"], "constant")
-            bs = {h["b"] for h in m.heats}
         else:
             ps = [l[2] for l in m.links if l[1] < 0]
             f.statements = st("exchange", ["all"], "constant")

@@ -267,7 +267,7 @@ class Ctx:
 
 
 def simulate(mc, rec, M, offset=0.0, faults=(), amps=None, fine=1):
-    """Readings (rows, B, channels) and temperatures (rows, B, nodes) of a record; amps: one vector (B) for each fault."""
+    """Readings (rows, B, channels) and temperatures (rows, B, nodes) of a record; amps: one vector (B) for each fault. In one piece: the steps of one record in their order."""
     B, R, dt, r = len(M), rec["R"], rec["dt"], rec["index"]
     acts = [(f, a) for f, a in zip(faults, amps or []) if r in f["records"]]
     M = M.copy()
@@ -1080,7 +1080,7 @@ def _(rng, S):
     ts, tr = rng.uniform(15, 60) * 60, rng.uniform(5, 20) * 60
     shape = {}
     for r in S.recs:
-        on, u, stiff, y = r["drive"]["speed_rpm"] > 0, 1.0, np.zeros(r["R"]), 1.0
+        on, stiff, y = r["drive"]["speed_rpm"] > 0, np.zeros(r["R"]), 1.0
         for k in range(r["R"]):
             y = y * math.exp(-r["dt"] / tr) if on[k] else 1 - (1 - y) * math.exp(-r["dt"] / ts)
             stiff[k] = y if on[k] else 0
@@ -1268,7 +1268,7 @@ def _(rng, S):
     s = 1 if rng.random() < 0.5 else -1
     shape = {}
     for r in S.recs:
-        on, u, since, level, o = r["drive"]["speed_rpm"] > 0, 0.0, 0.0, 0.0, np.zeros(r["R"])
+        on, since, level, o = r["drive"]["speed_rpm"] > 0, 0.0, 0.0, np.zeros(r["R"])
         for k in range(1, r["R"]):
             if on[k] != on[k - 1]:
                 level, since = o[k - 1], 0.0
@@ -1661,7 +1661,6 @@ def generate(folder):
 
 
 def check(dw):
-    worst = {}
     tmp = tempfile.mkdtemp(prefix="visitor_check_")
     for family in sorted(FAMILIES):
         rng = np.random.default_rng(zlib.crc32(family.encode()))

@@ -1,8 +1,8 @@
 /* From a correction to the counts of a control's external offset, with a watchdog, cycle by cycle. C99; it needs no library, and
  * what it remembers is all zero before the first cycle.
  *
- * The offset goes to sign * correction while it is enabled and the heartbeat is in time, and else to 0: both ways no faster than
- * the slew limit. LinuxCNC adds up the changes of its pin axis.L.eoffset-counts, times axis.L.eoffset-scale, while
+ * The offset goes to sign * correction while it is enabled and the heartbeat is in time, and else to 0: both ways no faster
+ * than the slew limit. LinuxCNC adds up the changes of its pin axis.L.eoffset-counts, times axis.L.eoffset-scale, while
  * axis.L.eoffset-enable is on, and begins at 0 whenever the machine is switched on: so do the counts here.
  * Source: LinuxCNC, "External Axis Offsets" (docs/src/motion/external-offsets). */
 #ifndef DRIFTWRIGHT_AXIS_OFFSET_H

@@ -2,17 +2,19 @@
  * worse. This very file is compiled into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone,
  * allocates nothing, and keeps all that it remembers in structs of the caller, which are all zero before the first row.
  *
- * Three stages, each of which can be called by itself, with the time since the row before (dt_s, of no account in the first row):
+ * Three stages, each of which can be called by itself, with the time since the row before (dt_s, of no account in the first
+ * row):
  *
  *   drift_repair()           readings -> repaired readings, the trust that they deserve, doubts
  *   drift_formula_value()    repaired readings -> prediction; a prediction from elsewhere may take its place
  *   drift_guarded_um()       prediction, deserved trust -> correction: times trust, clamped, no faster than the slew limit
  *
- * and drift_correction_step(), which calls them in this order. The correction is what is to be taken away from the position: the
- * axis moves by its negative.
+ * and drift_correction_step(), which calls them in this order. The correction is what is to be taken away from the position:
+ * the axis moves by its negative.
  *
- * To give the same bits everywhere it must be compiled to plain double arithmetic: with -ffp-contract=off (no fused multiply-add),
- * without -ffast-math, on a processor that computes in double (no x87). The .c file asks GCC and Clang for the first itself. The
+ * To give the same bits everywhere it must be compiled to plain double arithmetic: with -ffp-contract=off (no fused
+ * multiply-add), without -ffast-math, on a processor that computes in double (no x87). The .c file asks GCC and Clang for
+ * the first itself. The
  * only function whose last bit is the C library's own is exp(). */
 #ifndef DRIFTWRIGHT_DRIFT_CORRECTION_H
 #define DRIFTWRIGHT_DRIFT_CORRECTION_H
@@ -100,11 +102,12 @@ typedef struct {
 
 /* Readings with what is doubted replaced by what the other inputs lead to.
  *
- * A reading is doubted that is missing for too long, that jumps, or that is too far from what the others say; of several that
- * disagree the one furthest beyond its bound is doubted first, and the rest is looked at anew with its replacement. It stays
- * doubted until nothing has been wrong, and its reading near what the others say, for back_after_s. Those in doubt are replaced
- * all at once by what those beyond doubt lead to. Up to most_replaced of them cost no trust; more, or one that nothing can
- * replace, cost all of it. A rise that has no reading in the first row goes on from its replacement where it begins.
+ * A reading is doubted that is missing for too long, that jumps, or that is too far from what the others say; of several
+ * that disagree the one furthest beyond its bound is doubted first, and the rest is looked at anew with its replacement. It
+ * stays doubted until nothing has been wrong, and its reading near what the others say, for back_after_s. Those in doubt are
+ * replaced all at once by what those beyond doubt lead to. Up to most_replaced of them cost no trust; more, or one that
+ * nothing can replace, cost all of it. A rise that has no reading in the first row goes on from its replacement where it
+ * begins.
  *
  * readings: n_inputs, in their units; what is no finite number is missing. repaired: n_inputs; never missing.
  * Returns the trust that the readings deserve, 0 to 1. */

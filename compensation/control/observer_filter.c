@@ -1,5 +1,5 @@
-/* See observer_filter.h. Loops add whole rows, so that a compiler may take several columns at once and the sums stay in the
- * same order. */
+/* See observer_filter.h. One file: all its functions work on one covariance. Loops add whole rows, so that a compiler may
+ * take several columns at once and the sums stay in the same order. */
 #include "observer_filter.h"
 
 #include <math.h>

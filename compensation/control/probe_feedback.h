@@ -1,32 +1,36 @@
 /* What a correction leaves, estimated from probings: a touch probe measures now and then by how much an axis is off, and the
- * correction takes up what it found and forgets it as fast as errors of the model come and go. This very file is compiled into
- * Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and keeps all that it
- * remembers in a struct of the caller, which is all zero before the first row.
+ * correction takes up what it found and forgets it as fast as errors of the model come and go. This very file is compiled
+ * into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and keeps all
+ * that it remembers in a struct of the caller, which is all zero before the first row.
  *
  *   drift = prediction + level + r,   dr = -r / T dt + s sqrt(2 / T) dW   (Ornstein-Uhlenbeck: deviation s, time constant T)
  *   a probing reads level + r as they were lag_s ago, + noise
  *
- * Errors of this run may be larger than those of the runs of the fit. All variances, s^2 and noise^2 among them, are therefore those
- * above times a scale, known beforehand as well as from one probing (a unit of information), and from the n that were taken:
+ * Errors of this run may be larger than those of the runs of the fit. All variances, s^2 and noise^2 among them, are
+ * therefore those above times a scale, known beforehand as well as from one probing (a unit of information), and from the n
+ * that were taken:
  *
  *   scale = max(1, (1 + sum min(u^2, PROBE_REFUSED^2)) / (1 + n)),   u = (read - expected) / deviation of it before scaling
  *
- * the conjugate estimate of a variance, but never below that of the fit: a calm axis says nothing of the next cut. What is expected after
- * given probings does not depend on the scale; the interval and the bound beyond which a probing is refused do.
+ * the conjugate estimate of a variance, but never below that of the fit: a calm axis says nothing of the next cut. What is
+ * expected after given probings does not depend on the scale; the interval and the bound beyond which a probing is refused
+ * do.
  *
- * `level` is 0 until a jump. The filter is the one of Kalman for these two numbers. It runs lag_s late, and its answer is continued
- * over lag_s: with a constant lag that is exact.
+ * `level` is 0 until a jump. The filter is the one of Kalman for these two numbers. It runs lag_s late, and its answer is
+ * continued over lag_s: with a constant lag that is exact.
  *
- * A probing that is further than PROBE_REFUSED deviations from what is expected is refused (a chip, another tool). From there a
- * second filter starts, for which the level has jumped to a value of which nothing was known before. The next probing that the first
- * filter refuses is taken if the second one expects it: two probings that agree with each other, within PROBE_REFUSED deviations
- * sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of the axis. It does not fade, as a collision or
- * another clamping does not; later probings correct it. A probing that the first filter expects ends the second one. The third
- * refused probing in a row is taken as a jump, too, though it agrees with none: errors are then larger than was known, and it adds
- * to the scale. If no more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
+ * A probing that is further than PROBE_REFUSED deviations from what is expected is refused (a chip, another tool). From
+ * there a second filter starts, for which the level has jumped to a value of which nothing was known before. The next
+ * probing that the first filter refuses is taken if the second one expects it: two probings that agree with each other,
+ * within PROBE_REFUSED deviations sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of
+ * the axis. It does not fade, as a collision or another clamping does not; later probings correct it. A probing that the
+ * first filter expects ends the second one. The third refused probing in a row is taken as a jump, too, though it agrees
+ * with none: errors are then larger than was known, and it adds to the scale. If no more than 4 % of all probings are bad,
+ * three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
  *
- * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter: Willsky &
- * Jones, IEEE Trans. Autom. Control 21 (1976) 108; a variance that is learned with the state: West & Harrison, Bayesian Forecasting
+ * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter:
+ * Willsky & Jones, IEEE Trans. Autom. Control 21 (1976) 108; a variance that is learned with the state: West & Harrison,
+ * Bayesian Forecasting
  * and Dynamic Models (1997), 4.5; a unit of information: Kass & Wasserman, J. Am. Stat. Assoc. 90 (1995) 928. */
 #ifndef DRIFTWRIGHT_PROBE_FEEDBACK_H
 #define DRIFTWRIGHT_PROBE_FEEDBACK_H

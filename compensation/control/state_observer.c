@@ -1,4 +1,4 @@
-/* See state_observer.h. */
+/* See state_observer.h. One file, so that a control needs no more than it and its filter. */
 #include "state_observer.h"
 
 #include <math.h>

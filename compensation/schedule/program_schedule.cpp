@@ -1,3 +1,4 @@
+// Plan and course of an axis in one file: the course repeats the rules by which the plan was made.
 #include "compensation/schedule/program_schedule.hpp"
 
 #include <fmt/format.h>

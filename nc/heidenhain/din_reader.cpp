@@ -1,3 +1,4 @@
+// One reader of one language: blocks, words and their meaning; what it shares with plain language is in execution.
 #include "nc/heidenhain/din_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// One reader of one language: what it shares with DIN/ISO is in execution.
 #include "nc/heidenhain/klartext_reader.hpp"
 
 #include <fmt/format.h>

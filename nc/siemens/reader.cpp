@@ -1,3 +1,4 @@
+// One reader of one language: its modes are the state that each word changes; cycles and words have files of their own.
 #include "nc/siemens/reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The three sources of a cyclogram with their keys, which one schema describes.
 #include "scenarios/reader/read_cyclogram.hpp"
 
 #include <fmt/format.h>

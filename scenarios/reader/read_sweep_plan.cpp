@@ -1,4 +1,4 @@
-// Reads the file of a study into a SweepPlan.
+// Reads the file of a study into a SweepPlan: its keys, then what must fit together, which needs the whole plan.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,6 +2,7 @@
 // their names in a list: each is simulated, fitted, found in records that it was hidden in, written into the scenario,
 // and listed among the effects.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,36 +10,20 @@
 #include "diagnosis/extended_scenario.hpp"
 #include "effects/catalogue_table.hpp"
 #include "tests/shared/beside_records.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::diagnosis::added_kinds_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using ::testing::HasSubstr, ::testing::IsEmpty, ::testing::SizeIs;
 
-constexpr const char* kMachine = R"(name: two_nodes
-reference_temperature: 20 degC
-machine: {generator: lumped}
-effects:
-  - {type: node, node: head, capacity: 6 kJ/K}
-  - {type: node, node: column, capacity: 40 kJ/K}
-  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
-  - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: ambient, conductance: 14 W/K}
-ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
-sensors:
-  - {name: t_head, node: head}
-  - {name: t_column, node: column}
-displacements:
-  - name: nose
-    sensitivities:
-      - {node: head, sensitivity: 3 um/K}
-cyclograms:
-  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
-  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
-solver: {output_interval: 1 min}
-)";
+/// The two nodes of other tests, with one link and one record less.
+std::string machine() {
+  using fixtures::replaced;
+  return replaced(replaced(kTwoNodes, "  - {type: link, node: head, to: ambient, conductance: 4 W/K}\n", ""),
+                  "  friday: [[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]\n", "");
+}
+
 struct Added {
   const char* key;
   const char* entry;  ///< of the truth
@@ -48,19 +33,12 @@ struct Added {
   double tolerance;  ///< relative: some two of its standard deviations
 };
 
-/// The scenario, with one more effect.
-std::string scenario_with(const std::string& entry) {
-  std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
-  return text;
-}
-
 class AnAddedKind : public testing::TestWithParam<Added> {};
 
 TEST_P(AnAddedKind, IsSimulatedFoundWrittenAndListed) {
   const Added& added = GetParam();
-  const std::string plain = write_file("plain.yaml", scenario_with("")),
-                    truth = write_file("truth.yaml", scenario_with(added.entry));
+  const std::string plain = write_file("plain.yaml", machine()),
+                    truth = write_file("truth.yaml", with_effect(machine(), added.entry));
   const Beside beside(plain, record(truth, added.key));
   const Diagnosis d = beside.diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
@@ -88,8 +66,8 @@ TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
   const std::string digits = fmt::format("{:g}", added.value);
   ASSERT_NE(off.find(digits), std::string::npos);
   off.replace(off.find(digits), digits.size(), fmt::format("{:g}", 0.9 * added.value));
-  const Beside beside(write_file("off.yaml", scenario_with(off)),
-                      record(write_file("truth.yaml", scenario_with(added.entry)), added.key));
+  const Beside beside(write_file("off.yaml", with_effect(machine(), off)),
+                      record(write_file("truth.yaml", with_effect(machine(), added.entry)), added.key));
   const Diagnosis d = calibrate(*beside.twin, nullptr, beside.runs, {});
   const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
                                    [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });

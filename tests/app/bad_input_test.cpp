@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::bad_input_test {
 namespace {
@@ -17,19 +18,13 @@ struct Mistake {
   std::vector<const char*> message;
 };
 
-std::string replace_first(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << "the shipped scenario no longer holds: " << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), with);
-}
-
 class BadScenario : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(BadScenario, EndsWithTwoNamesThePlaceAndWritesNothing) {
   const Mistake& mistake = GetParam();
   const auto folder = fresh_folder(std::string("bad_") + mistake.name);
   const auto scenario = folder / "scenario.yaml";
-  std::ofstream(scenario) << replace_first(read_text("scenarios/fp3_spindle.yaml"), mistake.right, mistake.wrong);
+  std::ofstream(scenario) << fixtures::replaced(read_text("scenarios/fp3_spindle.yaml"), mistake.right, mistake.wrong);
   const CommandOutcome outcome = run_program("run " + scenario.string() + " -o " + (folder / "out").string());
   EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr(scenario.string() + ":"));
@@ -287,9 +282,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& conflict) { return conflict.param.name; });
 
 TEST(BadCommand, AMeshThatGmshCannotMakeEndsWithThree) {
-  const std::string scenario = write_file(
-      "coarse.yaml",
-      replace_first(read_text("scenarios/fp3_spindle.yaml"), "frame: 80 mm, spindle: 20 mm", "frame: 1 m, spindle: 1 m"));
+  const std::string scenario =
+      write_file("coarse.yaml", fixtures::replaced(read_text("scenarios/fp3_spindle.yaml"), "frame: 80 mm, spindle: 20 mm",
+                                                   "frame: 1 m, spindle: 1 m"));
   const auto out = fresh_folder("coarse") / "out";
   const CommandOutcome outcome = run_program("run " + scenario + " -o " + out.string());
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;

@@ -8,8 +8,7 @@
 namespace driftwright::check_test {
 namespace {
 
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
+using ::testing::ContainsRegex, ::testing::HasSubstr;
 
 TEST(Check, TellsDurationSpeedSectionsAndMachiningTime) {
   std::string scenario = read_text("scenarios/fp3_spindle.yaml");

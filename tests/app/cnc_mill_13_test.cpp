@@ -15,10 +15,7 @@
 namespace driftwright::cnc_mill_13_test {
 namespace {
 
-using ::testing::ContainsRegex;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsSupersetOf;
+using ::testing::ContainsRegex, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsSupersetOf;
 
 class CncMill13 : public ::testing::Test {
  protected:

@@ -13,10 +13,7 @@
 namespace driftwright::environment_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::AnyOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::AnyOf, ::testing::HasSubstr, ::testing::Not;
 
 /// A variable of the environment for as long as this lives.
 class Environment {

@@ -1,4 +1,5 @@
-// `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses.
+// `driftwright follow` as a user runs it: the drift of `predict`, row by row; restarts; replays; what it refuses. One file:
+// all cases follow one machine.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,9 +15,7 @@
 namespace driftwright::follow_verb_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 /// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient

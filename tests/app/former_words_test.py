@@ -8,18 +8,13 @@ Without names it runs the lumped scenarios, which take seconds; former_words_tes
 """
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
+
 LUMPED = ["first_machine", "lumped_spindle", "measured/lathe", "measured/heated_plate"]
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
 
 
 def in_former_words(text):
@@ -36,10 +31,7 @@ def main():
     program, top = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory(prefix="driftwright_former_words-") as name:
         folder = pathlib.Path(name)
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         (folder / "scenarios").mkdir()
         for entry in (top / "scenarios").iterdir():  # files that a scenario names must be in the same folder
             (folder / "scenarios" / entry.name).symlink_to(entry)

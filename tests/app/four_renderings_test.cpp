@@ -14,8 +14,7 @@ namespace driftwright::four_renderings_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 /// A number as printed.

@@ -8,12 +8,12 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::gantry_table_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 struct Outcome {
   CommandOutcome command;
@@ -143,11 +143,7 @@ TEST(GantryTable, EightReadingsLeaveTheLineAtItsPublishedFit) {
 /// The scenario with each first word of a pair replaced, as a file.
 std::string edited_file(const std::vector<std::pair<std::string, std::string>>& edits) {
   std::string text = read_text("scenarios/gantry_table.yaml");
-  for (const auto& [what, with] : edits) {
-    const auto at = text.find(what);
-    EXPECT_NE(at, std::string::npos) << what;
-    text.replace(at, what.size(), with);
-  }
+  for (const auto& [what, with] : edits) text = fixtures::replaced(text, what, with);
   const std::string data = std::filesystem::absolute("scenarios/measured/gantry_table_days.csv").string();
   for (std::size_t from = text.find("measured/gan"); from != std::string::npos;
        from = text.find("measured/gan", from + data.size()))

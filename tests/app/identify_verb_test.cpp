@@ -13,10 +13,7 @@
 namespace driftwright::identify_verb_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 class IdentifyVerb : public ::testing::Test {

@@ -11,12 +11,8 @@
 namespace driftwright::imported_scenario_test {
 namespace {
 
-using fixtures::column_and_head;
-using fixtures::inp_text;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using fixtures::column_and_head, fixtures::inp_text;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 const char* const kScenario = R"(name: imported
 reference_temperature: 20 degC

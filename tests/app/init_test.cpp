@@ -12,10 +12,7 @@
 namespace driftwright::init_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 /// Runs what `init` has written. The heat would warm a machine that loses it by 10 W/(m^2 K) everywhere by 2 K in the
 /// mean; the heated part is warmer, and nothing is colder than the ambient.

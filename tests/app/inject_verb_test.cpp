@@ -15,9 +15,7 @@
 namespace driftwright::inject_verb_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::StartsWith;
 
 std::string file(const std::string& name, const std::string& text) {
   return write_file(name, text);

@@ -16,8 +16,7 @@ namespace driftwright::mesh_convergence_test {
 namespace {
 
 using Json = nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 const std::string kTable = fixtures::small_table("400 mm") +
                            R"(  - {type: heat_source, surface: table_low_x, power: 500 W, at_speed: 1 rpm, exponent: 0}

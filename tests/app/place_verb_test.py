@@ -7,17 +7,11 @@ and are written as sensors that `check` and `simulate` accept. Wrong options are
 import csv
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
 
 
 def main():
@@ -25,10 +19,7 @@ def main():
     fp3 = top / "scenarios/fp3_spindle.yaml"
     with tempfile.TemporaryDirectory(prefix="driftwright_place-") as name:
         folder = pathlib.Path(name)
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         done = call("place", fp3, "--count", "3", "--points", "80", "--exclude", "quill", "--exclude", "table", "-o", "out")
         expect(done.returncode == 0, f"place: {done.stderr.strip()[-300:]}")
         result = json.loads((folder / "out/place.json").read_text())

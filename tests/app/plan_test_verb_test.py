@@ -14,7 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-failures = []
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
 
 AXES = """name: axes
 reference_temperature: 20 degC
@@ -37,12 +38,6 @@ JOB = """cyclograms:
 """
 
 
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
-
-
 def rows_of(path):
     return list(csv.DictReader(line for line in path.open() if not line.startswith("#")))
 
@@ -52,10 +47,7 @@ def main():
     first = top / "scenarios/first_machine.yaml"
     with tempfile.TemporaryDirectory(prefix="driftwright_plan_test-") as name:
         folder = pathlib.Path(name)
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         (folder / "axes.yaml").write_text(AXES + JOB)
         done = call("plan-test", "axes.yaml", "--time", "4 h", "--interval", "30 s", "--programmes", "400", "-o", "axes")
         expect(done.returncode == 0, f"plan-test of spindle and axis: {done.stderr.strip()[-300:]}")

@@ -9,15 +9,13 @@
 #include <fstream>
 
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::plausibility_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 
 /// A spindle in its housing; one number of it may be another.
 std::string scenario(const std::string& name, const std::string& usual = "", const std::string& other = "") {
@@ -35,11 +33,7 @@ sensors: [{name: t_housing, node: housing}]
 displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
 cyclograms: {shift: [[120 min, 6000 rpm]]}
 )";
-  if (!usual.empty()) {
-    const std::size_t at = text.find(usual);
-    EXPECT_NE(at, std::string::npos) << usual;
-    text.replace(at, usual.size(), other);
-  }
+  if (!usual.empty()) text = fixtures::replaced(text, usual, other);
   const fs::path folder = fresh_folder("plausibility_" + name);
   std::ofstream(folder / "m.yaml") << text;
   return (folder / "m.yaml").string();

@@ -9,14 +9,13 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::predict_verb_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using fixtures::replaced;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 /// One body of 60 kJ/K on 20 W/K: 15 K and 60 um at 2000 rpm with a time constant of 50 min. Linear.
@@ -41,19 +40,11 @@ cyclograms:
 
 /// The same in exact exponentials: what two runs differ by is no error of an integrator.
 std::string exact_head() {
-  std::string text = kHead;
-  text += "solver: {model: reduced}\n";
-  return text;
+  return std::string(kHead) + "solver: {model: reduced}\n";
 }
 
 double warming_um(double t_min) {
   return 60.0 * -std::expm1(-t_min / 50.0);
-}
-
-std::string with(std::string text, const std::string& what, const std::string& instead) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), instead);
 }
 
 /// Runs a verb in a folder of its own. @returns the folder of results
@@ -103,7 +94,8 @@ TEST(PredictVerb, RunsTheModelThatSimulateRuns) {
 
 TEST(PredictVerb, HasTheBandOfWhatIsKnownAndSoHaveTheOthers) {
   // The drift is proportional to the power, which alone is uncertain: its limits are those of the power.
-  const std::string known = write_file("known.yaml", with(kHead, "exponent: 1}", "exponent: 1, known_to: {power: 10 %}}"));
+  const std::string known =
+      write_file("known.yaml", replaced(kHead, "exponent: 1}", "exponent: 1, known_to: {power: 10 %}}"));
   const auto predicted = run_verb("band_p", "predict " + known + " --cyclogram morning");
   const Record record = record_in(predicted), band = read_record_csv((predicted / "record_band.csv").string());
   ASSERT_EQ(band.time_s, record.time_s);
@@ -179,10 +171,10 @@ TEST(WarmStart, BehindARecordIsTheRecordAndTheJobInOneCyclogram) {
 // A cyclogram of the scenario is exact where a record's rows are not: speeds that change between two rows.
 TEST(WarmStart, BehindACyclogramIsBothInOneCyclogram) {
   const std::string odd =
-      write_file("odd.yaml", with(exact_head(), "  short:",
-                                  "  odd: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm]]\n"
-                                  "  odd_day: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm], "
-                                  "[45 min, 2000 rpm]]\n  short:"));
+      write_file("odd.yaml", replaced(exact_head(), "  short:",
+                                      "  odd: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm]]\n"
+                                      "  odd_day: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm], "
+                                      "[45 min, 2000 rpm]]\n  short:"));
   const Record day = record_in(run_verb("odd_day", "simulate " + odd + " --cyclogram odd_day"));
   const Record warm = record_in(run_verb("odd_warm", "predict " + odd + " --cyclogram short --start odd"));
   EXPECT_NEAR(warm.time_s.back() + 21.7 * 60.0, day.time_s.back(), 1e-6);
@@ -218,9 +210,9 @@ TEST(WarmStart, APauseIsTimeAtRest) {
 // within what the integrator's tolerance (1e-3 K, 2.9 um/K; switches may come a step apart).
 TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
   const std::string scenario = write_file(
-      "spindle.yaml", with(read_text("scenarios/lumped_spindle.yaml"), "  warm_up:",
-                           "  first: [[60 min, 12000 rpm]]\n  second: [[40 min, 6000 rpm]]\n  both: [[60 min, 12000 "
-                           "rpm], [40 min, 6000 rpm]]\n  warm_up:"));
+      "spindle.yaml", replaced(read_text("scenarios/lumped_spindle.yaml"), "  warm_up:",
+                               "  first: [[60 min, 12000 rpm]]\n  second: [[40 min, 6000 rpm]]\n  both: [[60 min, 12000 "
+                               "rpm], [40 min, 6000 rpm]]\n  warm_up:"));
   const auto first = run_verb("first", "simulate " + scenario + " --cyclogram first");
   const Record both = record_in(run_verb("both_2", "simulate " + scenario + " --cyclogram both"));
   const Record second = record_in(
@@ -233,8 +225,8 @@ TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
 TEST(WarmStart, FollowsTheAmbientOfTheRecord) {
   const std::string scenario = write_file("exact.yaml", exact_head());
   const auto morning = run_verb("ambient_cold", "simulate " + scenario + " --cyclogram morning");
-  const std::string warmer =
-      write_file("warmer.yaml", with(exact_head(), "[[0 h, 20 degC], [9 h, 20 degC]]", "[[0 h, 25 degC], [9 h, 25 degC]]"));
+  const std::string warmer = write_file(
+      "warmer.yaml", replaced(exact_head(), "[[0 h, 20 degC], [9 h, 20 degC]]", "[[0 h, 25 degC], [9 h, 25 degC]]"));
   const auto warm_morning = run_verb("ambient_warm", "simulate " + warmer + " --cyclogram morning");
   const auto after = [&](const std::string& name, const std::filesystem::path& record) {
     return record_in(
@@ -267,7 +259,7 @@ TEST(WarmStart, RefusesARecordThatIsNoRunAndTimesThatAreNone) {
 TEST(WarmStart, RefusesToLeaveOutAnEffectOfTheRecordsRun) {
   const std::string scenario = write_file(
       "in.yaml",
-      with(kHead, "start: ambient", "  - {type: heat_source, node: head, power: 50 W, in: morning}\nstart: ambient"));
+      replaced(kHead, "start: ambient", "  - {type: heat_source, node: head, power: 50 W, in: morning}\nstart: ambient"));
   const std::string start = write_file("morning.csv", "time_min,speed_rpm\n0,2000\n60,0\n");
   const CommandOutcome outcome = run_program("predict " + scenario + " --cyclogram afternoon --start " + start);
   EXPECT_EQ(outcome.exit_code, 2);

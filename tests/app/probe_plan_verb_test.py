@@ -9,11 +9,11 @@ import json
 import math
 import pathlib
 import random
-import subprocess
 import sys
 import tempfile
 
-failures = []
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
 
 SHOP = """name: shop
 reference_temperature: 20 degC
@@ -30,12 +30,6 @@ cyclograms: {shift: [[50 min, 3000 rpm], [20 min, 0 rpm], [40 min, 1500 rpm], [1
 SCHEDULE = "schedule: {axes: {z: {displacement: nose_z}}, tolerance: 5 um, rapid: 10 m/min, tool_change: 30 s}\n"
 # 0.5 + 20 + 25 + 0.5 + 14 = 60 min; places at 0, 20.5 and 45.5 min
 PART = "G21 G90\nT1 M6\nS3000 M3\nG4 P1200\nM0\nG4 P1500\nT2 M6\nG4 P840\nM2\n"
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
 
 
 def write_record(path, rate, draw):
@@ -72,10 +66,7 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory(prefix="driftwright_probe_plan-") as name:
         folder = pathlib.Path(name)
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         def plan(out, *words):
             done = call("probe-plan", *words, "-o", out)
             expect(done.returncode == 0, f"{out}: exit {done.returncode} {done.stderr.strip()[-300:]}")

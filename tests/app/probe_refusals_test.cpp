@@ -1,5 +1,5 @@
-// What `probe-plan` and `validate --probe` refuse, in this process: starting the program for each line would take longer than
-// all of them.
+// What `probe-plan` and `validate --probe` refuse, in this process: starting the program for each line would take longer
+// than all of them.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -17,8 +17,7 @@
 namespace driftwright::app::probe_refusals_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr const char* kShop = R"(name: shop
 reference_temperature: 20 degC

@@ -19,14 +19,10 @@
 namespace driftwright::reduced_run_test {
 namespace {
 
-using fixtures::read_table;
-using fixtures::Table;
+using fixtures::read_table, fixtures::Table;
 namespace fs = std::filesystem;
-using fixtures::ColumnAndHead;
-using fixtures::write_column_and_head;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using fixtures::ColumnAndHead, fixtures::write_column_and_head;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
 

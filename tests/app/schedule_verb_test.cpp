@@ -1,5 +1,5 @@
 // `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is
-// installed.
+// installed. One file: all its cases correct programs for one machine.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,21 +14,14 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 #include "tests/shared/one_hal.hpp"
 
 namespace driftwright::schedule_verb_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
+using fixtures::lines_of;
+using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr;
 
 /// One lumped body that grows 60 um along z over hours, as a milling head does, and half as much along x.
 constexpr const char* kHead = R"(name: head
@@ -579,10 +572,7 @@ struct BadSchedule {
 class ScheduleMistakes : public ::testing::TestWithParam<BadSchedule> {};
 
 TEST_P(ScheduleMistakes, EndWithTwoAndNameTheKey) {
-  std::string scenario = kHead;
-  const auto at = scenario.find(GetParam().right);
-  ASSERT_NE(at, std::string::npos);
-  scenario.replace(at, std::string(GetParam().right).size(), GetParam().wrong);
+  const std::string scenario = fixtures::replaced(kHead, GetParam().right, GetParam().wrong);
   const Scheduled s = run_schedule(std::string("bad_") + GetParam().name, passes(), "", scenario);
   EXPECT_EQ(s.outcome.exit_code, 2) << s.outcome.output;
   EXPECT_THAT(s.outcome.output, HasSubstr(GetParam().message));

@@ -7,18 +7,12 @@ pieces, wrong shards and two processes at one shard are refused.
 import fcntl
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
 
 
 def files_of(folder):
@@ -30,10 +24,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="driftwright_shards-") as name:
         folder = pathlib.Path(name)
         shutil.copy(top / "scenarios/first_machine.yaml", folder / "plain.yaml")
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         for verb, scenario, options in (("place", "plain.yaml", ["--count", "1"]), ("plan-test", "plain.yaml", ["--programmes", "600", "--time", "4 h"])):
             command = [verb, scenario, *options]
             done = call(*command, "-o", "whole")

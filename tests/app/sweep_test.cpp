@@ -1,5 +1,5 @@
 // `driftwright sweep` as a user runs it: members are what `simulate` gives, failures stay alone, kill and shards change
-// no byte.
+// no byte. One file: all its cases read tables of small sweeps in one way.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,16 +16,14 @@
 #include "base/record.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::sweep_test {
 namespace {
 
-using fixtures::read_table;
-using fixtures::Table;
+using fixtures::read_table, fixtures::replaced, fixtures::Table;
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 std::string lumped() {
   return fs::absolute("scenarios/lumped_spindle.yaml").string();
@@ -52,11 +50,6 @@ std::string cell(const Table& table, std::size_t member, const std::string& colu
   const auto found = std::find(table[0].begin(), table[0].end(), column);
   EXPECT_NE(found, table[0].end()) << column;
   return found == table[0].end() ? "" : table[member][static_cast<std::size_t>(found - table[0].begin())];
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  EXPECT_NE(text.find(what), std::string::npos) << what;
-  return text.replace(text.find(what), what.size(), with);
 }
 
 /// The last value of a channel as `simulate` gives it, in the digits of a table.

@@ -1,4 +1,5 @@
-// `validate` on records as a user has them: with and without a machine in the scenario, with an ambient, without one.
+// `validate` on records as a user has them: with and without a machine in the scenario, with an ambient, without one. One
+// file: its cases share records that take most of its time to simulate.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,6 +16,7 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::validate_records_test {
 namespace {
@@ -81,8 +83,7 @@ class ValidateRecords : public ::testing::Test {
     return write_file(name + ".yaml", text);
   }
   static void replace(std::string& text, const std::string& what, const std::string& by) {
-    ASSERT_NE(text.find(what), std::string::npos) << what;
-    text.replace(text.find(what), what.size(), by);
+    text = fixtures::replaced(text, what, by);
   }
   static void simulate(const std::string& scenario, const std::string& cyclogram, const std::string& into) {
     const CommandOutcome run =

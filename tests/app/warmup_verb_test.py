@@ -14,13 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
 
 
 LAG = """name: lag
@@ -50,10 +45,7 @@ def main():
     fp3 = top / "scenarios/fp3_spindle.yaml"
     with tempfile.TemporaryDirectory(prefix="driftwright_warmup-") as name:
         folder = pathlib.Path(name)
-
-        def call(*words):
-            return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder)
-
+        call = caller(program, folder)
         def way(summary, name):
             return next(w for w in summary["ways"] if w["way"] == name)
 

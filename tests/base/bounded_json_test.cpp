@@ -14,8 +14,7 @@
 namespace driftwright::bounded_json_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 using Json = nlohmann::ordered_json;
 
 std::string lists(std::size_t n) {

@@ -9,9 +9,7 @@
 namespace driftwright::config_address_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 const char* const kText = R"(ambient: [[0 h, 22 degC], [4 h, 23 degC]]
 materials:

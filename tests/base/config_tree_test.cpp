@@ -11,9 +11,7 @@
 namespace driftwright::config_tree_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 std::string line_of(const std::string& yaml) {
   return written(*read_config_tree(write_file("tree.yaml", yaml)));

@@ -14,8 +14,7 @@
 namespace driftwright::delimited_text_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// What glibc makes of one byte of Windows-1252; "" if the encoding lacks it.
 std::string by_glibc(char byte) {

@@ -8,8 +8,7 @@
 namespace driftwright::dense::dense_test {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Eigen::MatrixXd, Eigen::VectorXd;
 
 MatrixXd matrix(Eigen::Index rows, Eigen::Index cols, std::initializer_list<double> row_by_row) {
   MatrixXd m(rows, cols);

@@ -12,8 +12,7 @@
 namespace driftwright::file_bytes_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 TEST(FileBytes, ComeBackAsTheyWereWritten) {
   const std::string bytes("a\0\r\n\xFF", 5);

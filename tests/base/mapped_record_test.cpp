@@ -25,15 +25,8 @@
 namespace driftwright::mapped_record_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::NanSensitiveDoubleEq;
-using ::testing::Pointwise;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::Contains, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr;
+using ::testing::IsEmpty, ::testing::NanSensitiveDoubleEq, ::testing::Pointwise, ::testing::ThrowsMessage;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 

@@ -10,10 +10,7 @@
 namespace driftwright::no_reading_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty;
 
 Record record_of(const std::string& unit, std::vector<double> values) {
   Record record{.source = "r", .time_s = {}, .channels = {{"t", unit, std::move(values)}}};

@@ -7,8 +7,7 @@
 namespace driftwright::option_quantity_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 TEST(OptionQuantity, ReadsSharesAndQuantities) {
   EXPECT_DOUBLE_EQ(option_quantity("--margin", "20 %", "1", 0.0, 0.95), 0.2);

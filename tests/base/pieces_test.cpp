@@ -11,10 +11,7 @@
 namespace driftwright::pieces_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::ThrowsMessage;
 
 TEST(Pieces, OfAShardAreAsItSaysAndEachIsSomeShards) {
   EXPECT_TRUE(read_shard("").is_all());

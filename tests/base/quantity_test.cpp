@@ -8,8 +8,7 @@
 namespace driftwright::quantity_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 struct Good {
   const char* text;

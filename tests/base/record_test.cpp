@@ -11,8 +11,7 @@
 namespace driftwright::record_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 TEST(RecordCsv, ReadsNamesUnitsMinutesAndMissingValues) {
   const Record r =

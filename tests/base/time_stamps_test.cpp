@@ -11,8 +11,7 @@
 namespace driftwright::time_stamps_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 double seconds_between(TimeStamps stamps, const std::string& a, const std::string& b) {
   const auto first = stamps.read(a);

@@ -9,9 +9,7 @@
 namespace driftwright::blind {
 namespace {
 
-using effects::HeatBalance;
-using effects::Inputs;
-using effects::Law;
+using effects::HeatBalance, effects::Inputs, effects::Law;
 
 template <class List>
 auto& named(List& list, const std::string& name) {

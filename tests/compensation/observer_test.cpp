@@ -17,9 +17,7 @@
 namespace driftwright::compensation::observer_test {
 namespace {
 
-using fixtures::kWork;
-using fixtures::run_of;
-using fixtures::three_parts;
+using fixtures::kWork, fixtures::run_of, fixtures::three_parts;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

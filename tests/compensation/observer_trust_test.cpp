@@ -19,8 +19,7 @@
 namespace driftwright::compensation::observer_trust_test {
 namespace {
 
-using fixtures::run_of;
-using fixtures::three_parts;
+using fixtures::run_of, fixtures::three_parts;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

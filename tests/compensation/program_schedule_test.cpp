@@ -13,11 +13,13 @@
 
 #include "compensation/sensors/interpolate.hpp"
 #include "nc/program.hpp"
+#include "tests/shared/edited_text.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::compensation::program_schedule_test {
 namespace {
 
+using fixtures::lines_of;
 using ::testing::HasSubstr;
 
 NcProgram read(const std::string& text) {
@@ -43,13 +45,6 @@ Corrected correct(const std::string& text, const NcProgram& program, const std::
   c.text =
       corrected_nc_program(text, program.steps, initial_shift_m(c.plan, axes), offset_changes(c.plan, axes), offsets).text;
   return c;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 std::map<char, double> words_of(const std::string& line) {

@@ -28,37 +28,8 @@ std::string axis_or_joint(const std::string& head, int travel_mm) {
 }
 
 std::string ini() {
-  std::string text = R"([EMC]
-MACHINE = table
-VERSION = 1.1
-[DISPLAY]
-DISPLAY = ./script.py
-[RS274NGC]
-PARAMETER_FILE = sim.var
-[EMCMOT]
-EMCMOT = motmod
-COMM_TIMEOUT = 1.0
-SERVO_PERIOD = 1000000
-[TASK]
-TASK = milltask
-CYCLE_TIME = 0.005
-[EMCIO]
-EMCIO = io
-CYCLE_TIME = 0.1
-TOOL_TABLE = tool.tbl
-[HAL]
-HALFILE = sim.hal
-[TRAJ]
-COORDINATES = X Y Z
-LINEAR_UNITS = mm
-ANGULAR_UNITS = degree
-MAX_LINEAR_VELOCITY = 4000
-DEFAULT_LINEAR_VELOCITY = 4000
-MAX_LINEAR_ACCELERATION = 20000
-[KINS]
-KINEMATICS = trivkins coordinates=XYZ
-JOINTS = 3
-)";
+  std::string text = read_text("tests/shared/linuxcnc.ini") +
+                     "MAX_LINEAR_VELOCITY = 4000\nDEFAULT_LINEAR_VELOCITY = 4000\nMAX_LINEAR_ACCELERATION = 20000\n";
   for (const char* letter : {"X", "Y", "Z"}) text += axis_or_joint(std::string("AXIS_") + letter, 5000);
   for (int j = 0; j < 3; ++j) {
     text += axis_or_joint("JOINT_" + std::to_string(j), 5000) +

@@ -12,6 +12,7 @@
 
 #include "diagnosis/discrepancy.hpp"
 #include "diagnosis/output_error.hpp"
+#include "tests/shared/edited_text.hpp"
 #include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::calibration_test {
@@ -96,10 +97,6 @@ class Calibration : public ::testing::Test {
                         noisy_records(write_file(prefix + "truth.yaml", truth), prefix, 120.0, 0.05, 0.3));
     return calibrate(*beside.twin, nullptr, beside.runs, {});
   }
-  static std::string with(std::string text, const std::string& old, const std::string& other) {
-    text.replace(text.find(old), old.size(), other);
-    return text;
-  }
   static const Estimate& number(const Diagnosis& d, const std::string& name) {
     const auto found =
         std::find_if(d.calibrated.begin(), d.calibrated.end(), [&](const Estimate& e) { return e.name == name; });
@@ -109,7 +106,7 @@ class Calibration : public ::testing::Test {
 };
 
 TEST_F(Calibration, FindsANumberWhereTheModelIsRight) {
-  const Diagnosis d = of(with(kTwoNodes, "conductance: 12 W/K", "conductance: 10 W/K"), kTwoNodes, "right_");
+  const Diagnosis d = of(fixtures::replaced(kTwoNodes, "conductance: 12 W/K", "conductance: 10 W/K"), kTwoNodes, "right_");
   EXPECT_FALSE(d.weighed_by_model_error);
   EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
@@ -136,8 +133,8 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
 
 // One record has wrong speeds, which no number mends.
 TEST_F(Calibration, WritesNothingThatPredictsKeptOutRowsWorse) {
-  const std::string truth =
-      with(kTwoNodes, "monday: [[60 min, 600 rpm], [60 min, 1900 rpm]", "monday: [[60 min, 1900 rpm], [60 min, 600 rpm]");
+  const std::string truth = fixtures::replaced(kTwoNodes, "monday: [[60 min, 600 rpm], [60 min, 1900 rpm]",
+                                               "monday: [[60 min, 1900 rpm], [60 min, 600 rpm]");
   const std::vector<std::string> records = noisy_records(write_file("other_truth.yaml", truth), "other_", 120.0, 0.05, 0.3);
   const Beside beside(write_file("other.yaml", kTwoNodes), records);
   std::vector<MeasuredRun> runs = beside.runs;

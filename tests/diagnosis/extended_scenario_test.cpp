@@ -1,5 +1,5 @@
 // Possible findings of a diagnosis, written into a scenario file and simulated from it, against the twin with the same
-// changes.
+// changes. Its longest part is the table of these findings.
 
 #include "diagnosis/extended_scenario.hpp"
 

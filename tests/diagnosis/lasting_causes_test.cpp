@@ -1,6 +1,6 @@
 // Causes that hold for more than an instant of one record: what begins in one record and lasts in the next, what is there
 // for a while, a record run in another state. Each is found in records made with it, and written so that it is found no
-// more.
+// more. Most of it is the table of these causes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

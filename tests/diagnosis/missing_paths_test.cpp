@@ -49,12 +49,6 @@ cyclograms:
 solver: {output_interval: 1 min}
 )";
 
-std::string scenario_with(const std::string& entry) {
-  std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
-  return text;
-}
-
 struct Missing {
   const char* name;
   const char* entry;  ///< of the truth
@@ -69,8 +63,8 @@ class AMissingPath : public testing::TestWithParam<Missing> {};
 
 TEST_P(AMissingPath, IsNamedWithItsNumbersAndWritten) {
   const Missing& missing = GetParam();
-  const std::string plain = write_file("plain.yaml", scenario_with("")),
-                    truth = write_file("truth.yaml", scenario_with(missing.entry));
+  const std::string plain = write_file("plain.yaml", kMachine),
+                    truth = write_file("truth.yaml", with_effect(kMachine, missing.entry));
   const Beside beside(plain, record(truth, missing.name));
   const Diagnosis d = beside.diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
@@ -150,13 +144,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST(NoMissingPath, IsConsistent) {
-  const std::string plain = write_file("plain.yaml", scenario_with(""));
+  const std::string plain = write_file("plain.yaml", kMachine);
   const Diagnosis d = Beside(plain, record(plain, "none")).diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 
 TEST(MissingPaths, AreOfferedOnceWhereNothingJoinsTwoBodies) {
-  const std::string plain = write_file("plain.yaml", scenario_with(""));
+  const std::string plain = write_file("plain.yaml", kMachine);
   const Beside beside(plain, record(plain, "offered"));
   std::vector<std::string> links, bodies;
   for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {

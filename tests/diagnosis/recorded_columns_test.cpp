@@ -63,8 +63,7 @@ constexpr double kNoise_K = 0.03, kNoise_um = 0.2;
 
 /// The scenario with further effects. @param with_columns  whether its cyclograms say more than speeds
 std::string scenario_with(const std::string& entry, bool with_columns = true) {
-  std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
+  std::string text = with_effect(kMachine, entry);
   if (!with_columns) return text + "  idle: [[60 min, 500 rpm]]\nsolver: {output_interval: 1 min}\n";
   for (int i = 0; i < 2; ++i)
     text += std::string(i == 0 ? "  monday" : "  tuesday") + ": {columns: " + kColumns + ", rows: " + kRows[i] + "}\n";

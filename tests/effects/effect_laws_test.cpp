@@ -1,4 +1,5 @@
-// Effects of bearings, axes, cutting, joints and time windows, as the user writes them, by value.
+// Effects of bearings, axes, cutting, joints and time windows, as the user writes them, by value. Long,
+// because each effect adds a case.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // Functional mock-up units as an importer of the standard runs them: the numbers of `predict` and of the observer, in
-// both versions, in co-simulation at any step and in model exchange with the importer's own integrator.
+// both versions, in co-simulation at any step and in model exchange with the importer's own integrator. One file: one
+// importer runs all units.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,10 +19,12 @@
 #include "studies/prediction.hpp"
 #include "tests/fmu/importer.h"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::output::fmu_test {
 namespace {
 
+using fixtures::replaced;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -495,12 +498,6 @@ cyclograms:
   morning: [[60 min, 2000 rpm], [20 min, 500 rpm]]
 )";
 
-std::string with(std::string text, const std::string& what, const std::string& instead) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), instead);
-}
-
 TEST(ExportVerb, WritesOneFileWithAReference) {
   const std::filesystem::path folder = fresh_folder("verb");
   const std::string file = driftwright::write_file("head.yaml", kHead);
@@ -535,14 +532,14 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
   refused(kHead, "--fmu --of observer " + target, "--model FILE");
   refused(kHead, "--fmu --model x.json " + target, "--of observer");
   refused(kHead, "--fmu --fmi 1 " + target, "--fmi");
-  refused(with(kHead, "effects:\n", "effects:\n  - {type: sensor_bias, sensor: t_head, bias: 1 K}\n"), "--fmu " + target,
+  refused(replaced(kHead, "effects:\n", "effects:\n  - {type: sensor_bias, sensor: t_head, bias: 1 K}\n"), "--fmu " + target,
           "sensor_bias t_head");
-  refused(with(kHead, "exponent: 1}", "exponent: 1, from: 1 h, until: 2 h}"), "--fmu " + target, "acts for a time");
-  refused(with(kHead, "{type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}",
-               "{type: bearing_friction, node: head, f0: 1, viscosity_40: 25 mm^2/s, viscosity_100: 5 mm^2/s, "
-               "mean_diameter: 60 mm}"),
+  refused(replaced(kHead, "exponent: 1}", "exponent: 1, from: 1 h, until: 2 h}"), "--fmu " + target, "acts for a time");
+  refused(replaced(kHead, "{type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}",
+                   "{type: bearing_friction, node: head, f0: 1, viscosity_40: 25 mm^2/s, viscosity_100: 5 mm^2/s, "
+                   "mean_diameter: 60 mm}"),
           "--fmu " + target, "follows temperatures");
-  refused(with(kHead, "name: t_head", "name: spindle_speed"), "--fmu " + target, "rename");
+  refused(replaced(kHead, "name: t_head", "name: spindle_speed"), "--fmu " + target, "rename");
   EXPECT_FALSE(std::filesystem::exists(fresh_folder("refused") / "x.fmu"));
 }
 

@@ -11,18 +11,19 @@
 #include "importer.h"
 
 /* What of the interface is called, by the types of the standard. */
-#define FOR_EACH_FUNCTION(X)                                                                                                \
-  X(GetTypesPlatform)                                                                                                       \
-  X(GetVersion)                                                                                                             \
-  X(SetDebugLogging)                                                                                                        \
-  X(Instantiate) X(FreeInstance) X(SetupExperiment) X(EnterInitializationMode) X(ExitInitializationMode) X(Terminate)       \
-      X(Reset) X(GetReal) X(SetReal) X(GetInteger) X(SetInteger) X(GetBoolean) X(SetBoolean) X(GetString) X(SetString)      \
-          X(GetFMUstate) X(SetFMUstate) X(FreeFMUstate) X(SerializedFMUstateSize) X(SerializeFMUstate)                      \
-              X(DeSerializeFMUstate) X(GetDirectionalDerivative) X(EnterEventMode) X(NewDiscreteStates)                     \
-                  X(EnterContinuousTimeMode) X(CompletedIntegratorStep) X(SetTime) X(SetContinuousStates) X(GetDerivatives) \
-                      X(GetEventIndicators) X(GetContinuousStates) X(GetNominalsOfContinuousStates)                         \
-                          X(SetRealInputDerivatives) X(GetRealOutputDerivatives) X(DoStep) X(CancelStep) X(GetStatus)       \
-                              X(GetRealStatus) X(GetIntegerStatus) X(GetBooleanStatus) X(GetStringStatus)
+#define FOR_EACH_FUNCTION(X)                                                                                               \
+  X(GetTypesPlatform)                                                                                                      \
+  X(GetVersion)                                                                                                            \
+  X(SetDebugLogging)                                                                                                       \
+  X(Instantiate)                                                                                                           \
+  X(FreeInstance) X(SetupExperiment) X(EnterInitializationMode) X(ExitInitializationMode) X(Terminate) X(Reset) X(GetReal) \
+      X(SetReal) X(GetInteger) X(SetInteger) X(GetBoolean) X(SetBoolean) X(GetString) X(SetString) X(GetFMUstate)          \
+          X(SetFMUstate) X(FreeFMUstate) X(SerializedFMUstateSize) X(SerializeFMUstate) X(DeSerializeFMUstate)             \
+              X(GetDirectionalDerivative) X(EnterEventMode) X(NewDiscreteStates) X(EnterContinuousTimeMode)                \
+                  X(CompletedIntegratorStep) X(SetTime) X(SetContinuousStates) X(GetDerivatives) X(GetEventIndicators)     \
+                      X(GetContinuousStates) X(GetNominalsOfContinuousStates) X(SetRealInputDerivatives)                   \
+                          X(GetRealOutputDerivatives) X(DoStep) X(CancelStep) X(GetStatus) X(GetRealStatus)                \
+                              X(GetIntegerStatus) X(GetBooleanStatus) X(GetStringStatus)
 
 typedef struct {
   importer_run* run;
@@ -36,9 +37,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
                    fmi2String message, ...) {
   unit* const u = environment;
   va_list arguments;
-  (void)name;
-  (void)status;
-  (void)category;
+  (void)name, (void)status, (void)category;
   va_start(arguments, message);
   vsnprintf(u->message, sizeof u->message, message, arguments);
   va_end(arguments);
@@ -51,32 +50,30 @@ static int fail(unit* u, const char* what) {
 #define CALL(name, ...) \
   if (u->name(u->c, ##__VA_ARGS__) != fmi2OK) return fail(u, "fmi2" #name)
 
-static int set_inputs(unit* u, size_t row) {
-  const importer_run* const run = u->run;
-  CALL(SetReal, run->inputs, run->n_inputs, run->input_rows + row * run->n_inputs);
-  if (run->is_co_simulation && run->ambient_input >= 0 && row + 1 < run->n_rows) {
-    const size_t i = (size_t)run->ambient_input;
-    const fmi2Integer order = 1;
-    const double rate = (run->input_rows[(row + 1) * run->n_inputs + i] - run->input_rows[row * run->n_inputs + i]) /
-                        (run->time_s[row + 1] - run->time_s[row]);
-    CALL(SetRealInputDerivatives, &run->inputs[i], 1, &order, &rate);
-  }
+static int get(unit* u, const unsigned* variables, size_t n, double* values) {
+  CALL(GetReal, variables, n, values);
   return 0;
 }
-
-static int tell(unit* u, size_t row) {
-  CALL(GetReal, u->run->outputs, u->run->n_outputs, u->run->output_rows + row * u->run->n_outputs);
+static int set(unit* u, const unsigned* variables, size_t n, const double* values) {
+  CALL(SetReal, variables, n, values);
   return 0;
 }
-
-static int steps(unit* u, double from_s, double to_s) {
-  const int n = (int)ceil((to_s - from_s) / u->run->step_s - 1e-9);
-  int k;
-  for (k = 0; k < n; ++k) {
-    const double t_s = k == 0 ? from_s : from_s + k * u->run->step_s,
-                 end_s = k + 1 == n ? to_s : from_s + (k + 1) * u->run->step_s;
-    CALL(DoStep, t_s, end_s - t_s, fmi2True);
-  }
+static int set_rate(unit* u, unsigned input, double rate) {
+  const fmi2Integer order = 1;
+  CALL(SetRealInputDerivatives, &input, 1, &order, &rate);
+  return 0;
+}
+static int step(unit* u, double t_s, double end_s) {
+  CALL(DoStep, t_s, end_s - t_s, fmi2True);
+  return 0;
+}
+static int sensitivity(unit* u, const unsigned* unknowns, size_t n, unsigned known, double* values) {
+  const double one = 1.0;
+  CALL(GetDirectionalDerivative, unknowns, n, &known, 1, &one, values);
+  return 0;
+}
+static int derivatives(unit* u, double* dz, size_t n) {
+  CALL(GetDerivatives, dz, n);
   return 0;
 }
 
@@ -98,90 +95,7 @@ static int rewind_state(unit* u, double t_s) {
   return 0;
 }
 
-static int co_simulate(unit* u) {
-  const importer_run* const run = u->run;
-  size_t row;
-  if (!run->tells_behind_step && tell(u, 0)) return 1;
-  for (row = 0; row + 1 < run->n_rows; ++row) {
-    if (row > 0 && row == run->rewind_at_row && rewind_state(u, run->time_s[row])) return 1;
-    if (set_inputs(u, row) || steps(u, run->time_s[row], run->time_s[row + 1])) return 1;
-    if (tell(u, run->tells_behind_step ? row : row + 1)) return 1;
-  }
-  return 0;
-}
-
-static int slopes(void* of, double t_s, const double* z, double* dz) {
-  unit* const u = of;
-  CALL(SetTime, t_s);
-  CALL(SetContinuousStates, z, u->run->n_states);
-  CALL(GetDerivatives, dz, u->run->n_states);
-  return 0;
-}
-static int column(void* of, size_t state, double* derivatives) {
-  unit* const u = of;
-  const double one = 1.0;
-  CALL(GetDirectionalDerivative, u->run->derivatives, u->run->n_states, &u->run->states[state], 1, &one, derivatives);
-  return 0;
-}
-
-/* Directional derivatives of slopes and outputs against differences, along states and along all inputs. */
-static int check_jacobian(unit* u) {
-  importer_run* const run = u->run;
-  const size_t n = run->n_states, n_all = n + run->n_outputs;
-  double* const z = malloc((n + 4 * n_all) * sizeof *z);
-  double *const low = z + n, *const high = low + n_all, *const told = high + n_all;
-  unsigned* const unknowns = malloc(n_all * sizeof *unknowns);
-  double most = 0.0, gap = 0.0;
-  size_t k, i;
-  memcpy(unknowns, run->derivatives, n * sizeof *unknowns);
-  memcpy(unknowns + n, run->outputs, run->n_outputs * sizeof *unknowns);
-  CALL(GetContinuousStates, z, n);
-  for (k = 0; k < n + run->n_inputs; ++k) {
-    const int is_state = k < n;
-    const unsigned known = is_state ? run->states[k] : run->inputs[k - n];
-    const double one = 1.0;
-    double value = 0.0, half = 1.0;
-    CALL(GetDirectionalDerivative, unknowns, n_all, &known, 1, &one, told);
-    if (is_state) {
-      value = z[k];
-      z[k] = value - half;
-      CALL(SetContinuousStates, z, n);
-    } else {
-      CALL(GetReal, &known, 1, &value);
-      half = 1e-4 * fabs(value);
-      value -= half;
-      CALL(SetReal, &known, 1, &value);
-      value += half;
-    }
-    CALL(GetReal, unknowns, n_all, low);
-    if (is_state) {
-      z[k] = value + half;
-      CALL(SetContinuousStates, z, n);
-    } else {
-      value += half;
-      CALL(SetReal, &known, 1, &value);
-      value -= half;
-    }
-    CALL(GetReal, unknowns, n_all, high);
-    if (is_state) {
-      z[k] = value;
-      CALL(SetContinuousStates, z, n);
-    } else {
-      CALL(SetReal, &known, 1, &value);
-    }
-    most = gap = 0.0;
-    for (i = 0; i < n_all; ++i) {
-      if (half == 0.0) continue;
-      most = fmax(most, fabs(told[i]));
-      gap = fmax(gap, fabs(told[i] - (high[i] - low[i]) / (2.0 * half)));
-    }
-    if (most > 0.0) run->jacobian_gap = fmax(run->jacobian_gap, gap / most);
-    if (most == 0.0 && gap > 0.0) run->jacobian_gap = HUGE_VAL;
-  }
-  free(z);
-  free(unknowns);
-  return 0;
-}
+typedef fmi2EventInfo event_info;
 
 static int handle_events(unit* u, fmi2EventInfo* info) {
   do {
@@ -192,51 +106,18 @@ static int handle_events(unit* u, fmi2EventInfo* info) {
   return 0;
 }
 
-static int exchange(unit* u) {
-  importer_run* const run = u->run;
-  const integrand f = {u, slopes, column};
-  fmi2EventInfo info;
-  double *const z = malloc((run->n_states + 1) * sizeof *z), *const nominal = malloc((run->n_states + 1) * sizeof *nominal);
-  size_t row, i;
-  memset(&info, 0, sizeof info);
-  for (row = 0; row < run->n_rows; ++row) {
-    double t_s = run->time_s[row];
-    if (row > 0) CALL(EnterEventMode);
-    if (set_inputs(u, row) || handle_events(u, &info)) return 1;
-    CALL(GetNominalsOfContinuousStates, nominal, run->n_states);
-    for (i = 0; i < run->n_states; ++i) {
-      if (!(nominal[i] > 0.0)) return fail(u, "a nominal is not above 0");
-    }
-    if (tell(u, row)) return 1;
-    if (row == 2 && run->n_states > 0 && check_jacobian(u)) return 1;
-    while (row + 1 < run->n_rows && t_s < run->time_s[row + 1]) {
-      const int is_event = info.nextEventTimeDefined && info.nextEventTime < run->time_s[row + 1];
-      const double until_s = is_event ? info.nextEventTime : run->time_s[row + 1];
-      fmi2Boolean enter = fmi2False, terminate = fmi2False;
-      CALL(GetContinuousStates, z, run->n_states);
-      if (run->n_states > 0 && integrate_radau(&f, run->n_states, t_s, until_s, z)) return fail(u, "the integrator");
-      t_s = until_s;
-      CALL(SetTime, t_s);
-      CALL(SetContinuousStates, z, run->n_states);
-      CALL(CompletedIntegratorStep, fmi2True, &enter, &terminate);
-      if (enter || terminate) return fail(u, "an event that nothing announced");
-      if (is_event) {
-        CALL(EnterEventMode);
-        if (handle_events(u, &info)) return 1;
-      }
-    }
-  }
-  free(z);
-  free(nominal);
+static int completed_step(unit* u) {
+  fmi2Boolean enter = fmi2False, terminate = fmi2False;
+  CALL(CompletedIntegratorStep, fmi2True, &enter, &terminate);
+  if (enter || terminate) return fail(u, "an event that nothing announced");
   return 0;
 }
+
+#include "importer_body.h"
 
 static int go(unit* u, void* library) {
   importer_run* const run = u->run;
   const fmi2CallbackFunctions functions = {logger, calloc, free, NULL, u};
-  double began_s;
-  size_t before;
-  int failed;
 #define LOAD(name)                                    \
   *(void**)(&u->name) = dlsym(library, "fmi2" #name); \
   if (!u->name) return fail(u, "the binary lacks fmi2" #name);
@@ -255,31 +136,9 @@ static int go(unit* u, void* library) {
   CALL(EnterInitializationMode);
   if (set_inputs(u, 0)) return 1;
   CALL(ExitInitializationMode);
-  before = mallinfo2().uordblks;
-  began_s = monotonic_s();
-  failed = run->is_co_simulation ? co_simulate(u) : exchange(u);
-  run->seconds = monotonic_s() - began_s;
-  run->allocated = (long long)mallinfo2().uordblks - (long long)before;
-  if (failed) return 1;
-  CALL(Terminate);
-  u->FreeInstance(u->c);
-  return 0;
+  return run_rows(u);
 }
 
 int import_fmi2(importer_run* run) {
-  unit u;
-  void* const library = dlopen(run->library, RTLD_NOW | RTLD_LOCAL);
-  int failed;
-  memset(&u, 0, sizeof u);
-  u.run = run;
-  run->wrong[0] = '\0';
-  run->n_events = 0;
-  run->jacobian_gap = 0.0;
-  if (!library) {
-    snprintf(run->wrong, sizeof run->wrong, "%s", dlerror());
-    return 1;
-  }
-  failed = go(&u, library);
-  dlclose(library);
-  return failed;
+  return import(run, go);
 }

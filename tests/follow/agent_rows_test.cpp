@@ -19,11 +19,7 @@ namespace driftwright::follow::agent_rows_test {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
+using ::testing::AllOf, ::testing::Contains, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
 /// Seconds after noon of 2026-11-23, as agents and rows write them.

@@ -18,11 +18,7 @@ namespace driftwright::follow::bounded_server_test {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::ElementsAre;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Pair;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::Pair;
 using ::testing::StartsWith;
 using Clock = std::chrono::steady_clock;
 

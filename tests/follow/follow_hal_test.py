@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Checks the lines of `driftwright follow` on the pins of a real HAL, and which values remain when it is killed. follow_hal_test.py PROGRAM PROJECT"""
 import fcntl
-import json
 import os
 import pathlib
 import shutil

@@ -19,36 +19,7 @@ from one_head import HEAD
 
 MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 RATE_UM_S, MOST_AGE_S, LOW_MM = 20.0, 5.0, -10.0
-INI = f"""[EMC]
-MACHINE = mill
-VERSION = 1.1
-[DISPLAY]
-DISPLAY = ./script.py
-[RS274NGC]
-PARAMETER_FILE = sim.var
-[EMCMOT]
-EMCMOT = motmod
-COMM_TIMEOUT = 1.0
-SERVO_PERIOD = 1000000
-[TASK]
-TASK = milltask
-CYCLE_TIME = 0.005
-[EMCIO]
-EMCIO = io
-CYCLE_TIME = 0.1
-TOOL_TABLE = tool.tbl
-[HAL]
-HALFILE = sim.hal
-[TRAJ]
-COORDINATES = X Y Z
-LINEAR_UNITS = mm
-ANGULAR_UNITS = degree
-MAX_LINEAR_VELOCITY = 100
-MAX_LINEAR_ACCELERATION = 1000
-[KINS]
-KINEMATICS = trivkins coordinates=XYZ
-JOINTS = 3
-""" + "".join(
+INI = (pathlib.Path(__file__).resolve().parents[1] / "shared/linuxcnc.ini").read_text() + "MAX_LINEAR_VELOCITY = 100\nMAX_LINEAR_ACCELERATION = 1000\n" + "".join(
     f"[{head}]\nMIN_LIMIT = {LOW_MM}\nMAX_LIMIT = 10\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 1000\n{more}"
     for head, more in [("AXIS_X", ""), ("AXIS_Y", ""), ("AXIS_Z", "OFFSET_AV_RATIO = 0.2\n")]
     + [(f"JOINT_{j}", "TYPE = LINEAR\nFERROR = 100\nMIN_FERROR = 100\nHOME_SEQUENCE = 0\n") for j in range(3)])

@@ -10,8 +10,7 @@
 namespace driftwright::follow::row_guard_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
+using ::testing::ElementsAre, ::testing::IsEmpty;
 
 const std::vector<Channel> kChannels = {{"t01", "degC", {}}, {"speed", "rpm", {}}};
 

@@ -15,10 +15,7 @@
 namespace driftwright::follow::row_text_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsNan;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsNan, ::testing::ThrowsMessage;
 
 ColumnMap map_of(const std::string& yaml) {
   static const schema::Map columns = scenarios::columns_schema();

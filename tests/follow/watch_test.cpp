@@ -15,9 +15,7 @@
 namespace driftwright::follow::watch_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 using Kind = TrialFault::Kind;
 
 constexpr double kDay_s = 86400.0;

@@ -15,13 +15,8 @@
 namespace driftwright::identification::identification_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::Contains, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty;
+using ::testing::Not, ::testing::ThrowsMessage;
 
 TEST(Lags, OfAStepAreExponentials) {
   const std::vector<double> time_s = {0.0, 30.0, 100.0, 400.0};

@@ -17,9 +17,7 @@ namespace driftwright::scenarios::as_recorded_test {
 namespace {
 
 using fixtures::ColumnAndHead;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// Two bodies: 100 W into `hot` at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the ambient.
 std::string two_bodies(const std::string& effects, const std::string& more = "",

@@ -8,9 +8,7 @@
 namespace driftwright::scenarios::body_range_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty;
 
 MachineModel with_table_to_100_degC() {
   MachineModel machine;

@@ -14,9 +14,7 @@
 namespace driftwright::scenarios::lumped_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// Two bodies: 100 W into `hot` while the spindle turns at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the ambient.
 std::string two_bodies(const std::string& more = "", const std::string& effects = "") {

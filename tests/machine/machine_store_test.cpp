@@ -1,4 +1,5 @@
-// Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
+// Reduced machines on disk: what is found is what was kept, and nothing else is ever found. One file: each case changes one
+// thing of the same machine.
 
 #include "machine/machine_store.hpp"
 
@@ -24,8 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using fixtures::ColumnAndHead;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr;
 
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
 constexpr const char* kOil =

@@ -11,13 +11,8 @@ import subprocess
 import sys
 import tempfile
 
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import expect, failures
 
 
 def main():

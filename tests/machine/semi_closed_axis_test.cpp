@@ -19,9 +19,7 @@ namespace driftwright::scenarios::semi_closed_axis_test {
 namespace {
 
 using fixtures::ColumnAndHead;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 const std::string kPoints =
     "along: z, tool: {region: head, at: [50 mm, 200 mm, 350 mm]}, table: {region: column, at: [50 mm, 100 mm, 0 mm]}";

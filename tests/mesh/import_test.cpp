@@ -1,4 +1,5 @@
-// Mesh files of every format against closed forms of what is in them, and files that cannot be right.
+// Mesh files of every format against closed forms of what is in them, and files that cannot be right. Both
+// begin with the same files, so they are in one place.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

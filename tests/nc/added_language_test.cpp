@@ -22,9 +22,7 @@ namespace driftwright::added_language_test {
 namespace {
 
 using fixtures::on_line;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// MARK first; UNIT MM, UNIT INCH; SPIN S600; JUMP X0 Z5; LINE X10 F300; SHIFT X0.1, which sets an added offset; ORIGIN X3,
 /// which moves the origin by 3 and takes the added offset away; STOP; ! remarks. Blocks may have numbers, such as :7, and a

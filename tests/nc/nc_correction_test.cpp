@@ -11,9 +11,7 @@
 namespace driftwright::nc_correction_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 std::vector<NcStep> steps_of(const std::string& text) {
   const NcSettings settings{.rapid_m_s = 0.25,

@@ -1,5 +1,5 @@
 // Programs as Siemens and Heidenhain controls write them: times and travels by hand, one part in five languages, mistakes
-// by their line.
+// by their line. Most of it is the table of these programs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,13 +16,8 @@
 namespace driftwright::nc_languages_test {
 namespace {
 
-using fixtures::on_line;
-using fixtures::revolutions;
-using fixtures::travel_mm;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using fixtures::on_line, fixtures::revolutions, fixtures::travel_mm;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // relative: sums of a few dozen terms of one sign in double precision

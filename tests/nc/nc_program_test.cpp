@@ -1,4 +1,4 @@
-// NC programs against times and travels computed by hand.
+// NC programs against times and travels computed by hand. A quarter of it is tables of programs and mistakes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,13 +15,8 @@
 namespace driftwright::nc_program_test {
 namespace {
 
-using fixtures::revolutions;
-using fixtures::travel_mm;
-using ::testing::AllOf;
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using fixtures::revolutions, fixtures::travel_mm;
+using ::testing::AllOf, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // relative: sums of a few dozen terms of one sign in double precision

@@ -15,11 +15,7 @@
 namespace driftwright::nc_subprograms_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::Pair, ::testing::ThrowsMessage;
 
 NcSettings settings() {
   return {.rapid_m_s = 0.25,

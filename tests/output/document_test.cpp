@@ -14,9 +14,7 @@
 namespace driftwright::output::document_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::ordered_json;
 
 Section cyclogram(const std::string& name, double peak_um) {

@@ -10,9 +10,7 @@
 namespace driftwright::output::html::html_report_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 Plot ramp(const std::string& title) {
   return {.title = title,

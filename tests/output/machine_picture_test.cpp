@@ -11,8 +11,7 @@
 namespace driftwright::output::machine_picture_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::HasSubstr, ::testing::Not;
 
 mesh::Mesh box() {
   return fixtures::box_mesh({.size_m = {0.1, 0.1, 0.2}, .n = {2, 2, 4}});

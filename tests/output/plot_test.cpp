@@ -18,10 +18,7 @@
 namespace driftwright::output::plot_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::Not;
 
 Plot ramp() {
   return {.title = "Ramp",

@@ -17,11 +17,7 @@ namespace driftwright::output::results_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::ThrowsMessage;
 
 std::string read(const fs::path& file) {
   std::ostringstream text;

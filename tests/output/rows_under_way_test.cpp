@@ -12,10 +12,7 @@
 namespace driftwright::output::rows_under_way_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::Pair, ::testing::ThrowsMessage;
 
 /// A row as a line of the file.
 std::string line(const std::string& row) {

@@ -13,8 +13,7 @@
 namespace driftwright::output::twin_page_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using ::testing::HasSubstr, ::testing::Not;
 
 TEST(TwinSurface, KeepsModesToHalfAStepOfSixteenBits) {
   Eigen::MatrixXf modes = Eigen::MatrixXf::Random(400, 3);

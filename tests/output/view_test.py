@@ -13,6 +13,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
+
 MOST_UM, MOST_K = 0.1, 0.02   # allowed difference between the page and `predict`
 MOST_MB, MOST_FRAME_MS = 15.0, 8.0
 
@@ -28,14 +31,6 @@ effects:
 sensors: [{{name: t_spindle, node: "{NODE}"}}]
 cyclograms: {{shift: [[60 min, 6000 rpm]]}}
 """
-failures = []
-
-
-def expect(holds, what):
-    print(("" if holds else "FAILED: ") + what, flush=True)
-    if not holds:
-        failures.append(what)
-
 
 def browse(browser, page, *options):
     """The JSON that a page with #report writes in the browser."""
@@ -81,10 +76,7 @@ def main():
 
 def check(program, top, browser, folder):
     env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(folder / "cache")))
-
-    def call(*words):
-        return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder, env=env)
-
+    call = caller(program, folder, env=env)
     fp3, lumped = top / "scenarios/fp3_spindle.yaml", top / "scenarios/first_machine.yaml"
     for words, says in [((lumped, "-o", "twin.txt"), ".html is required"), ((lumped, "-o", folder), ".html is required"),
                         ((lumped, "--cyclogram", "night"), "night"), ((top / "scenarios/spindle_22.yaml",), "machine"),

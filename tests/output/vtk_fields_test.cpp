@@ -27,8 +27,7 @@ namespace driftwright::output::vtk_fields_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// A quadratic tetrahedron on a linear one; 11 nodes.
 mesh::Mesh two_tetrahedra() {

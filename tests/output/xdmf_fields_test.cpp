@@ -23,10 +23,7 @@ namespace driftwright::output::xdmf_fields_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::ElementsAre;
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::ElementsAreArray, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 /// Cells of these shapes, each with nodes of its own, side by side, in two regions by turns.
 mesh::Mesh mesh_of(const std::vector<mesh::CellShape>& shapes) {

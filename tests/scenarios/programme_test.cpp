@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "tests/shared/edited_text.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::programme_test {
@@ -33,9 +34,7 @@ Programme read(const std::string& text) {
 }
 
 std::string with(const std::string& what, const std::string& instead) {
-  std::string text = kGood;
-  EXPECT_NE(text.find(what), std::string::npos) << what;
-  return text.replace(text.find(what), what.size(), instead);
+  return fixtures::replaced(kGood, what, instead);
 }
 
 TEST(Programme, IsReadWithItsUnits) {

@@ -8,11 +8,8 @@
 namespace driftwright::scenarios::read_axis_loop_test {
 namespace {
 
-using compensation::Counting;
-using compensation::Feedback;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using compensation::Counting, compensation::Feedback;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 const AxisLoopContext kContext{.displacements = {"nose_y", "nose_z"},
                                .sensors = {"t1", "t2"},

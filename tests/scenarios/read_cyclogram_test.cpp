@@ -16,8 +16,7 @@
 namespace driftwright::scenarios::read_cyclogram_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 Cyclogram read(const std::string& entry) {
   const ConfigMap in = ConfigMap::read_file(write_file("scenario.yaml", "cyclograms:\n" + entry));

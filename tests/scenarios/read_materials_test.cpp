@@ -10,8 +10,7 @@
 namespace driftwright::scenarios::read_materials_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 solver::Material read(const std::string& yaml) {
   static const schema::Map description = materials_schema();

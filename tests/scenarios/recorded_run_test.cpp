@@ -10,12 +10,7 @@
 namespace driftwright::scenarios::recorded_run_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::DoubleNear;
-using ::testing::Each;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using ::testing::AllOf, ::testing::DoubleNear, ::testing::Each, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
 /// Rows a minute apart, from 300 s on: two minutes of 1000 rpm, one of a jitter about it, rest.

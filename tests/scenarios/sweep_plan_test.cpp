@@ -12,10 +12,7 @@
 namespace driftwright::scenarios::sweep_plan_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 SweepPlan read(const std::string& rest) {
   const std::string scenario = std::filesystem::absolute("scenarios/lumped_spindle.yaml").string();

@@ -13,11 +13,7 @@
 namespace driftwright::scenarios::validation_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::SizeIs, ::testing::ThrowsMessage;
 
 const std::vector<Cyclogram>& known() {
   static const std::vector<Cyclogram> all = {

@@ -16,8 +16,7 @@
 namespace driftwright::fixtures {
 namespace {
 
-using mesh::CellShape;
-using mesh::Mesh;
+using mesh::CellShape, mesh::Mesh;
 using Index3 = std::array<int, 3>;  // on the doubled grid, so that mid-side nodes have indices too
 
 int sign_of(const Index3& p) {

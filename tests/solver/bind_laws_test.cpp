@@ -17,8 +17,7 @@
 namespace driftwright::solver::bind_laws_test {
 namespace {
 
-using effects::HeatBalance;
-using effects::Law;
+using effects::HeatBalance, effects::Law;
 
 const std::vector<std::string> kMachine = {
     "{type: node, node: head, capacity: 6 kJ/K}",

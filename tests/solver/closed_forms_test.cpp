@@ -12,9 +12,7 @@
 namespace driftwright::solver::closed_forms_test {
 namespace {
 
-using fixtures::film;
-using fixtures::fixed_at;
-using fixtures::text;
+using fixtures::film, fixtures::fixed_at, fixtures::text;
 using mesh::CellShape;
 using std::numbers::pi;
 

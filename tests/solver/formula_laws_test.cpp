@@ -1,4 +1,5 @@
-// Formulas that repeat laws of the catalogue, in the full model, the reduced one and its linearisation: the same temperatures.
+// Formulas that repeat laws of the catalogue, in the full model, the reduced one and its linearisation: the same
+// temperatures.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

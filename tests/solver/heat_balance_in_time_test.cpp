@@ -10,9 +10,7 @@
 namespace driftwright::solver::heat_balance_in_time_test {
 namespace {
 
-using fixtures::constant;
-using fixtures::film;
-using fixtures::text;
+using fixtures::constant, fixtures::film, fixtures::text;
 using mesh::CellShape;
 
 const TransientOptions kShipped{.relative_tolerance = 1e-3, .absolute_tolerance_K = 5e-3, .max_step_s = 1200.0};

@@ -15,9 +15,7 @@
 namespace driftwright::solver::invariance_test {
 namespace {
 
-using fixtures::constant;
-using fixtures::film;
-using fixtures::text;
+using fixtures::constant, fixtures::film, fixtures::text;
 using mesh::CellShape;
 
 /// Relative to the largest temperature or displacement.

@@ -14,8 +14,7 @@
 namespace driftwright::solver::materials_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 std::string expansion_text(const Expansion& a) {
   if (a.x == a.y && a.y == a.z) return fmt::format("{:.1f}", 1e6 * a.x);

@@ -22,9 +22,7 @@ namespace {
 
 using fixtures::Box;
 using mesh::CellShape;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::Not, ::testing::ThrowsMessage;
 
 constexpr double kTheta_K = 10.0;
 const Material kSteel = fixtures::steel();

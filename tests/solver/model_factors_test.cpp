@@ -15,9 +15,7 @@
 namespace driftwright::solver::model_factors_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 template <class Matrix>
 Matrix as(const Eigen::MatrixXd& m) {

@@ -15,10 +15,7 @@
 namespace driftwright::solver::overshoot_test {
 namespace {
 
-using fixtures::constant;
-using fixtures::film;
-using fixtures::fixed_at;
-using fixtures::text;
+using fixtures::constant, fixtures::film, fixtures::fixed_at, fixtures::text;
 using mesh::CellShape;
 
 class OvershootInEachCell : public ::testing::TestWithParam<CellShape> {};

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "mesh/quality.hpp"
 #include "tests/shared/fixtures.hpp"
@@ -182,21 +181,6 @@ TEST(ClosedForm, OfTheCylinderMeetsItsOwnConditions) {
   const double f = Cylinder::factor_Pa(), ln2 = std::log(2.0);
   EXPECT_NEAR(Cylinder::hoop_Pa(0.1), f * (1 - 2 * 4.0 / 3.0 * ln2), 1e-3);
   EXPECT_NEAR(Cylinder::hoop_Pa(0.2), f * (1 - 2 * 1.0 / 3.0 * ln2), 1e-3);
-}
-
-TEST(StressFunctional, IsTheStressOfAFullSolve) {
-  const mesh::Mesh mesh = fixtures::box_mesh({{0, 0, 0}, {0.2, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10});
-  const Elasticity elastic(mesh, {kSteel}, {{"x0"}});
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd theta(mesh.n_nodes());
-  for (double& t : theta) t = 10.0 * normal(random);
-  const Eigen::Matrix3Xd u = elastic.displacement(theta);
-  const Eigen::Vector3d xi(0.2, 0.3, 0.1);
-  const Stress stress = stress_at(mesh, {kSteel}, u, theta, 7, xi);
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_NEAR(elastic.influence(stress_functional(mesh, {kSteel}, 7, xi, i)).dot(theta), stress[i], 1e-9 * stress.norm());
-  }
 }
 
 TEST(VonMises, OfTensionShearAndPressure) {

@@ -13,10 +13,7 @@
 namespace driftwright::solver::time_integration_test {
 namespace {
 
-using fixtures::constant;
-using fixtures::film;
-using fixtures::fixed_at;
-using fixtures::text;
+using fixtures::constant, fixtures::film, fixtures::fixed_at, fixtures::text;
 using mesh::CellShape;
 
 constexpr double kKelvin = 293.15;

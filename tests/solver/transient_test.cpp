@@ -19,8 +19,7 @@ namespace driftwright::solver::transient_test {
 namespace {
 
 using mesh::CellShape;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 const TimeSeries kStillAmbient{{0.0}, {0.0}};
 

@@ -23,11 +23,7 @@
 namespace driftwright::logger_import_test {
 namespace {
 
-using ::testing::Contains;
-using ::testing::DoubleNear;
-using ::testing::HasSubstr;
-using ::testing::Pointwise;
-using ::testing::ThrowsMessage;
+using ::testing::Contains, ::testing::DoubleNear, ::testing::HasSubstr, ::testing::Pointwise, ::testing::ThrowsMessage;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 

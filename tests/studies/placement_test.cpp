@@ -21,10 +21,7 @@
 namespace driftwright::studies::placement_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
-using ::testing::UnorderedElementsAre;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage, ::testing::UnorderedElementsAre;
 
 // Each is heated by its own source and cooled by its own link; the tool sees the difference.
 constexpr const char* kTwoBodies = R"(name: two_bodies

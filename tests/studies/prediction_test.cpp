@@ -10,8 +10,7 @@
 namespace driftwright::studies::prediction_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 scenarios::ModelKind model_of(const std::string& path) {
   return studies::predicting_model(scenarios::read_scenario(path));

@@ -115,7 +115,8 @@ TEST(ProbePlan, NoOtherPlanHasFewerProbingsOrLeavesLess) {
   EXPECT_GT(n_doubled, 0);
 }
 
-// On drifts drawn from the process, probed where the plan says, the filter of `follow` leaves an error within the tolerance in
+// On drifts drawn from the process, probed where the plan says, the filter of `follow` leaves an error within the tolerance
+// in
 // 95 % at the worst moment; and as much on average as the plan says. 4000 draws: three standard errors are 1 %.
 TEST(ProbePlan, TheFilterOfFollowKeepsTheToleranceAsOftenAsPlanned) {
   ProbedAxis axis{.process = {3.0, 5400.0}, .probe = {.noise_um = 0.8}, .is_known_at_start = true};

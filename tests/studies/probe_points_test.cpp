@@ -44,8 +44,8 @@ TEST(ProbePoints, OneOfTwoIsTheClosedForm) {
   EXPECT_NEAR(judged_points(errors, {}, all_of(errors), r).left_um, std::sqrt(0.5 * (a * a + b * b)), 1e-12);
 }
 
-// A scale and a shift of a table of five rings, equally uncertain at its ends: with two probings both ends are chosen, with one
-// the ring that errs as the mean of all does.
+// A scale and a shift of a table of five rings, equally uncertain at its ends: with two probings both ends are chosen, with
+// one the ring that errs as the mean of all does.
 TEST(ProbePoints, OfATableItsEndsAreProbed) {
   Eigen::MatrixXd j(5, 2);
   for (int k = 0; k < 5; ++k) j.row(k) << 5.0, 10.0 * (k - 2) / 2.0;  // shift 5 um, scale 10 um at the ends

@@ -9,9 +9,7 @@
 namespace driftwright::studies::record_comparison_test {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 Record record(const std::string& source, std::vector<double> time_s, std::vector<Channel> channels) {
   return {.source = source, .time_s = std::move(time_s), .channels = std::move(channels)};

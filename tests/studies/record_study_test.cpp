@@ -16,11 +16,7 @@
 namespace driftwright::studies::record_study_test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::Contains, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::ThrowsMessage;
 
 TEST(SensorWarnings, NameWhatIsFlatMissingOrDouble) {
   std::vector<Record> records = {fixtures::sensor_record(1, 200, 6, 0.3), fixtures::sensor_record(2, 200, 6, 0.3)};

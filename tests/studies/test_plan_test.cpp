@@ -17,8 +17,7 @@ namespace driftwright::studies::test_plan_test {
 namespace {
 
 using diagnosis::Question;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 // 20 K and 4000 s at 1000 rpm.
 constexpr const char* kOneBody = R"(name: one_body

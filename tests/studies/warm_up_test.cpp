@@ -17,8 +17,7 @@
 namespace driftwright::studies::warm_up_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 // 20 K at 1000 rpm, 4000 s, 1 um/K.
 constexpr const char* kOneBody = R"(name: one_body

@@ -25,8 +25,7 @@ FMI2_Export const char* fmi2GetVersion(void) {
 }
 FMI2_Export fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                            const fmi2String categories[]) {
-  (void)nCategories;
-  (void)categories;
+  (void)nCategories, (void)categories;
   ALLOW(kAnyMode, "fmi2SetDebugLogging");
   ((instance*)c)->is_logging = loggingOn != fmi2False;
   return fmi2OK;
@@ -35,8 +34,7 @@ FMI2_Export fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingO
 FMI2_Export fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
                                           fmi2String fmuResourceLocation, const fmi2CallbackFunctions* functions,
                                           fmi2Boolean visible, fmi2Boolean loggingOn) {
-  (void)fmuResourceLocation;
-  (void)visible;
+  (void)fmuResourceLocation, (void)visible;
   if (!functions) return 0;
   return instance_new(instanceName, fmuGUID, fmuType == fmi2CoSimulation, loggingOn != fmi2False,
                       functions->componentEnvironment, tell, (void (*)(void))functions->logger,
@@ -49,10 +47,7 @@ FMI2_Export void fmi2FreeInstance(fmi2Component c) {
 
 FMI2_Export fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
                                            fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
-  (void)toleranceDefined;
-  (void)tolerance;
-  (void)stopTimeDefined;
-  (void)stopTime;
+  (void)toleranceDefined, (void)tolerance, (void)stopTimeDefined, (void)stopTime;
   ALLOW(kInstantiated, "fmi2SetupExperiment");
   return (fmi2Status)instance_set_time(c, startTime);
 }
@@ -108,24 +103,20 @@ static fmi2Status none_of_these(fmi2Component c, size_t n, const char* call) {
   return n == 0 ? fmi2OK : (fmi2Status)instance_tell(c, kError, "there is no variable of this type");
 }
 FMI2_Export fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
-  (void)vr;
-  (void)value;
+  (void)vr, (void)value;
   return none_of_these(c, nvr, "fmi2GetInteger");
 }
 FMI2_Export fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                       const fmi2Integer value[]) {
-  (void)vr;
-  (void)value;
+  (void)vr, (void)value;
   return none_of_these(c, nvr, "fmi2SetInteger");
 }
 FMI2_Export fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[]) {
-  (void)vr;
-  (void)value;
+  (void)vr, (void)value;
   return none_of_these(c, nvr, "fmi2GetString");
 }
 FMI2_Export fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[]) {
-  (void)vr;
-  (void)value;
+  (void)vr, (void)value;
   return none_of_these(c, nvr, "fmi2SetString");
 }
 
@@ -223,9 +214,7 @@ FMI2_Export fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2Va
 }
 FMI2_Export fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                                     const fmi2Integer order[], fmi2Real value[]) {
-  (void)vr;
-  (void)order;
-  (void)value;
+  (void)vr, (void)order, (void)value;
   return none_of_these(c, nvr, "fmi2GetRealOutputDerivatives");
 }
 FMI2_Export fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
@@ -239,8 +228,7 @@ FMI2_Export fmi2Status fmi2CancelStep(fmi2Component c) {
   return (fmi2Status)instance_tell(c, kError, "no step runs in the background");
 }
 FMI2_Export fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status* value) {
-  (void)s;
-  (void)value;
+  (void)s, (void)value;
   ALLOW(kStep | kTerminated | kFailed, "fmi2GetStatus");
   return fmi2Discard; /* steps end before they return */
 }
@@ -251,8 +239,7 @@ FMI2_Export fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s
   return fmi2OK;
 }
 FMI2_Export fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer* value) {
-  (void)s;
-  (void)value;
+  (void)s, (void)value;
   ALLOW(kStep | kTerminated | kFailed, "fmi2GetIntegerStatus");
   return fmi2Discard;
 }
@@ -263,8 +250,7 @@ FMI2_Export fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKin
   return fmi2OK;
 }
 FMI2_Export fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String* value) {
-  (void)s;
-  (void)value;
+  (void)s, (void)value;
   ALLOW(kStep | kTerminated | kFailed, "fmi2GetStringStatus");
   return fmi2Discard;
 }

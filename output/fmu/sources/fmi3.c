@@ -20,8 +20,7 @@ FMI3_Export const char* fmi3GetVersion(void) {
 }
 FMI3_Export fmi3Status fmi3SetDebugLogging(fmi3Instance instance_, fmi3Boolean loggingOn, size_t nCategories,
                                            const fmi3String categories[]) {
-  (void)nCategories;
-  (void)categories;
+  (void)nCategories, (void)categories;
   ALLOW(kAnyMode, "fmi3SetDebugLogging");
   ((instance*)instance_)->is_logging = loggingOn;
   return fmi3OK;
@@ -31,8 +30,7 @@ FMI3_Export fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, f
                                                       fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
                                                       fmi3InstanceEnvironment environment,
                                                       fmi3LogMessageCallback logMessage) {
-  (void)resourcePath;
-  (void)visible;
+  (void)resourcePath, (void)visible;
   return instance_new(instanceName, instantiationToken, 0, loggingOn, environment, tell, (void (*)(void))logMessage, calloc,
                       free);
 }
@@ -43,11 +41,7 @@ FMI3_Export fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fm
                                                      size_t nIntermediateVariables, fmi3InstanceEnvironment environment,
                                                      fmi3LogMessageCallback logMessage,
                                                      fmi3IntermediateUpdateCallback intermediateUpdate) {
-  (void)resourcePath;
-  (void)visible;
-  (void)earlyReturnAllowed;
-  (void)intermediateVariables;
-  (void)nIntermediateVariables;
+  (void)resourcePath, (void)visible, (void)earlyReturnAllowed, (void)intermediateVariables, (void)nIntermediateVariables;
   (void)intermediateUpdate;
   if (eventModeUsed) {
     if (logMessage)
@@ -64,14 +58,8 @@ FMI3_Export fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceNa
                                                            fmi3ClockUpdateCallback clockUpdate,
                                                            fmi3LockPreemptionCallback lockPreemption,
                                                            fmi3UnlockPreemptionCallback unlockPreemption) {
-  (void)instanceName;
-  (void)instantiationToken;
-  (void)resourcePath;
-  (void)visible;
-  (void)loggingOn;
-  (void)clockUpdate;
-  (void)lockPreemption;
-  (void)unlockPreemption;
+  (void)instanceName, (void)instantiationToken, (void)resourcePath, (void)visible, (void)loggingOn, (void)clockUpdate;
+  (void)lockPreemption, (void)unlockPreemption;
   if (logMessage) logMessage(environment, fmi3Error, "logStatusError", "scheduled execution is not supported");
   return 0;
 }
@@ -82,10 +70,7 @@ FMI3_Export void fmi3FreeInstance(fmi3Instance instance_) {
 FMI3_Export fmi3Status fmi3EnterInitializationMode(fmi3Instance instance_, fmi3Boolean toleranceDefined,
                                                    fmi3Float64 tolerance, fmi3Float64 startTime, fmi3Boolean stopTimeDefined,
                                                    fmi3Float64 stopTime) {
-  (void)toleranceDefined;
-  (void)tolerance;
-  (void)stopTimeDefined;
-  (void)stopTime;
+  (void)toleranceDefined, (void)tolerance, (void)stopTimeDefined, (void)stopTime;
   ALLOW(kInstantiated, "fmi3EnterInitializationMode");
   return (fmi3Status)instance_enter_initialization(instance_, startTime);
 }
@@ -154,191 +139,59 @@ static fmi3Status unsupported(fmi3Instance instance_, const char* call) {
   ALLOW(kAnyMode, call);
   return (fmi3Status)instance_tell(instance_, kError, "this part of the standard is not supported (modelDescription.xml)");
 }
-FMI3_Export fmi3Status fmi3GetFloat32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                      size_t nValueReferences, fmi3Float32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetFloat32");
-}
-FMI3_Export fmi3Status fmi3SetFloat32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                      size_t nValueReferences, const fmi3Float32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetFloat32");
-}
-FMI3_Export fmi3Status fmi3GetInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, fmi3Int8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt8");
-}
-FMI3_Export fmi3Status fmi3SetInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, const fmi3Int8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt8");
-}
-FMI3_Export fmi3Status fmi3GetUInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3UInt8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt8");
-}
-FMI3_Export fmi3Status fmi3SetUInt8(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3UInt8 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt8");
-}
-FMI3_Export fmi3Status fmi3GetInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt16");
-}
-FMI3_Export fmi3Status fmi3SetInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt16");
-}
-FMI3_Export fmi3Status fmi3GetUInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt16");
-}
-FMI3_Export fmi3Status fmi3SetUInt16(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt16 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt16");
-}
-FMI3_Export fmi3Status fmi3GetInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt32");
-}
-FMI3_Export fmi3Status fmi3SetInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt32");
-}
-FMI3_Export fmi3Status fmi3GetUInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt32");
-}
-FMI3_Export fmi3Status fmi3SetUInt32(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt32 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt32");
-}
-FMI3_Export fmi3Status fmi3GetInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, fmi3Int64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetInt64");
-}
-FMI3_Export fmi3Status fmi3SetInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetInt64");
-}
-FMI3_Export fmi3Status fmi3GetUInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3UInt64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetUInt64");
-}
-FMI3_Export fmi3Status fmi3SetUInt64(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3UInt64 values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetUInt64");
-}
-FMI3_Export fmi3Status fmi3GetString(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, fmi3String values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3GetString");
-}
-FMI3_Export fmi3Status fmi3SetString(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
-                                     size_t nValueReferences, const fmi3String values[], size_t nValues) {
-  (void)valueReferences;
-  (void)values;
-  (void)nValues;
-  return none_of_these(instance_, nValueReferences, "fmi3SetString");
-}
+#define NO_VARIABLES_OF(Type)                                                                                \
+  FMI3_Export fmi3Status fmi3Get##Type(fmi3Instance instance_, const fmi3ValueReference valueReferences[],   \
+                                       size_t nValueReferences, fmi3##Type values[], size_t nValues) {       \
+    (void)valueReferences, (void)values, (void)nValues;                                                      \
+    return none_of_these(instance_, nValueReferences, "fmi3Get" #Type);                                      \
+  }                                                                                                          \
+  FMI3_Export fmi3Status fmi3Set##Type(fmi3Instance instance_, const fmi3ValueReference valueReferences[],   \
+                                       size_t nValueReferences, const fmi3##Type values[], size_t nValues) { \
+    (void)valueReferences, (void)values, (void)nValues;                                                      \
+    return none_of_these(instance_, nValueReferences, "fmi3Set" #Type);                                      \
+  }
+NO_VARIABLES_OF(Float32)
+NO_VARIABLES_OF(Int8)
+NO_VARIABLES_OF(UInt8)
+NO_VARIABLES_OF(Int16)
+NO_VARIABLES_OF(UInt16)
+NO_VARIABLES_OF(Int32)
+NO_VARIABLES_OF(UInt32)
+NO_VARIABLES_OF(Int64)
+NO_VARIABLES_OF(UInt64)
+NO_VARIABLES_OF(String)
 FMI3_Export fmi3Status fmi3GetBinary(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                      size_t nValueReferences, size_t valueSizes[], fmi3Binary values[], size_t nValues) {
-  (void)valueReferences;
-  (void)valueSizes;
-  (void)values;
-  (void)nValues;
+  (void)valueReferences, (void)valueSizes, (void)values, (void)nValues;
   return none_of_these(instance_, nValueReferences, "fmi3GetBinary");
 }
 FMI3_Export fmi3Status fmi3GetClock(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                     size_t nValueReferences, fmi3Clock values[]) {
-  (void)valueReferences;
-  (void)values;
+  (void)valueReferences, (void)values;
   return none_of_these(instance_, nValueReferences, "fmi3GetClock");
 }
 FMI3_Export fmi3Status fmi3SetBinary(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                      size_t nValueReferences, const size_t valueSizes[], const fmi3Binary values[],
                                      size_t nValues) {
-  (void)valueReferences;
-  (void)valueSizes;
-  (void)values;
-  (void)nValues;
+  (void)valueReferences, (void)valueSizes, (void)values, (void)nValues;
   return none_of_these(instance_, nValueReferences, "fmi3SetBinary");
 }
 FMI3_Export fmi3Status fmi3SetClock(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                     size_t nValueReferences, const fmi3Clock values[]) {
-  (void)valueReferences;
-  (void)values;
+  (void)valueReferences, (void)values;
   return none_of_these(instance_, nValueReferences, "fmi3SetClock");
 }
 FMI3_Export fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance_, fmi3ValueReference valueReference,
                                                            size_t* nDependencies) {
-  (void)valueReference;
-  (void)nDependencies;
+  (void)valueReference, (void)nDependencies;
   return unsupported(instance_, "fmi3GetNumberOfVariableDependencies");
 }
 FMI3_Export fmi3Status fmi3GetVariableDependencies(fmi3Instance instance_, fmi3ValueReference dependent,
                                                    size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
                                                    size_t elementIndicesOfIndependents[],
                                                    fmi3DependencyKind dependencyKinds[], size_t nDependencies) {
-  (void)dependent;
-  (void)elementIndicesOfDependent;
-  (void)independents;
-  (void)elementIndicesOfIndependents;
-  (void)dependencyKinds;
-  (void)nDependencies;
+  (void)dependent, (void)elementIndicesOfDependent, (void)independents, (void)elementIndicesOfIndependents;
+  (void)dependencyKinds, (void)nDependencies;
   return unsupported(instance_, "fmi3GetVariableDependencies");
 }
 FMI3_Export fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance_) {
@@ -350,97 +203,64 @@ FMI3_Export fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance_) {
 FMI3_Export fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                               size_t nValueReferences, fmi3Float64 intervals[],
                                               fmi3IntervalQualifier qualifiers[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)intervals;
-  (void)qualifiers;
+  (void)valueReferences, (void)nValueReferences, (void)intervals, (void)qualifiers;
   return unsupported(instance_, "fmi3GetIntervalDecimal");
 }
 FMI3_Export fmi3Status fmi3GetIntervalFraction(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                                size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
                                                fmi3IntervalQualifier qualifiers[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)counters;
-  (void)resolutions;
-  (void)qualifiers;
+  (void)valueReferences, (void)nValueReferences, (void)counters, (void)resolutions, (void)qualifiers;
   return unsupported(instance_, "fmi3GetIntervalFraction");
 }
 FMI3_Export fmi3Status fmi3GetShiftDecimal(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                            size_t nValueReferences, fmi3Float64 shifts[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)shifts;
+  (void)valueReferences, (void)nValueReferences, (void)shifts;
   return unsupported(instance_, "fmi3GetShiftDecimal");
 }
 FMI3_Export fmi3Status fmi3GetShiftFraction(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                             size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)counters;
-  (void)resolutions;
+  (void)valueReferences, (void)nValueReferences, (void)counters, (void)resolutions;
   return unsupported(instance_, "fmi3GetShiftFraction");
 }
 FMI3_Export fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                               size_t nValueReferences, const fmi3Float64 intervals[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)intervals;
+  (void)valueReferences, (void)nValueReferences, (void)intervals;
   return unsupported(instance_, "fmi3SetIntervalDecimal");
 }
 FMI3_Export fmi3Status fmi3SetIntervalFraction(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                                size_t nValueReferences, const fmi3UInt64 counters[],
                                                const fmi3UInt64 resolutions[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)counters;
-  (void)resolutions;
+  (void)valueReferences, (void)nValueReferences, (void)counters, (void)resolutions;
   return unsupported(instance_, "fmi3SetIntervalFraction");
 }
 FMI3_Export fmi3Status fmi3SetShiftDecimal(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                            size_t nValueReferences, const fmi3Float64 shifts[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)shifts;
+  (void)valueReferences, (void)nValueReferences, (void)shifts;
   return unsupported(instance_, "fmi3SetShiftDecimal");
 }
 FMI3_Export fmi3Status fmi3SetShiftFraction(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                             size_t nValueReferences, const fmi3UInt64 counters[],
                                             const fmi3UInt64 resolutions[]) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)counters;
-  (void)resolutions;
+  (void)valueReferences, (void)nValueReferences, (void)counters, (void)resolutions;
   return unsupported(instance_, "fmi3SetShiftFraction");
 }
 FMI3_Export fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance_, const fmi3ValueReference unknowns[],
                                                 size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
                                                 const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[],
                                                 size_t nSensitivity) {
-  (void)unknowns;
-  (void)nUnknowns;
-  (void)knowns;
-  (void)nKnowns;
-  (void)seed;
-  (void)nSeed;
-  (void)sensitivity;
+  (void)unknowns, (void)nUnknowns, (void)knowns, (void)nKnowns, (void)seed, (void)nSeed, (void)sensitivity;
   (void)nSensitivity;
   return unsupported(instance_, "fmi3GetAdjointDerivative");
 }
 FMI3_Export fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance_, const fmi3ValueReference valueReferences[],
                                                 size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
                                                 size_t nValues) {
-  (void)valueReferences;
-  (void)nValueReferences;
-  (void)orders;
-  (void)values;
-  (void)nValues;
+  (void)valueReferences, (void)nValueReferences, (void)orders, (void)values, (void)nValues;
   return unsupported(instance_, "fmi3GetOutputDerivatives");
 }
 FMI3_Export fmi3Status fmi3ActivateModelPartition(fmi3Instance instance_, fmi3ValueReference clockReference,
                                                   fmi3Float64 activationTime) {
-  (void)clockReference;
-  (void)activationTime;
+  (void)clockReference, (void)activationTime;
   return unsupported(instance_, "fmi3ActivateModelPartition");
 }
 FMI3_Export fmi3Status fmi3EnterStepMode(fmi3Instance instance_) {

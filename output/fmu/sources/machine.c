@@ -220,8 +220,7 @@ const char* model_step(double* saved, void* scratch, double h_s) {
 }
 
 const char* model_event(double* saved, void* scratch) {
-  (void)saved;
-  (void)scratch;
+  (void)saved, (void)scratch;
   return 0;
 }
 

@@ -216,8 +216,7 @@ static int piece(void* of, long row, int number, double* until_s) {
 static int laws(void* of, long row, int number, double from_s, double outside_K, double* power_W, double* coefficient) {
   const double* const drive = piece_at(of, row, number) + 1;
   int k;
-  (void)from_s;
-  (void)outside_K;
+  (void)from_s, (void)outside_K;
   for (k = 0; k < thermal.n_sources; ++k) power_W[k] = law_value(&thermal.powers[k], drive);
   for (k = 0; k < thermal.n_exchanges; ++k) coefficient[k] = law_value(&thermal.coefficients[k], drive);
   return 0;
@@ -311,18 +310,10 @@ void model_outputs(const double* saved, void* scratch, double* outputs) {
 }
 
 void model_derivatives(const double* saved, void* scratch, double* derivatives) {
-  (void)saved;
-  (void)scratch;
-  (void)derivatives;
+  (void)saved, (void)scratch, (void)derivatives;
 }
 
 void model_add_sensitivity(const double* saved, void* scratch, int known_is_state, int known, double seed, double* outputs,
                            double* derivatives) {
-  (void)saved;
-  (void)scratch;
-  (void)known_is_state;
-  (void)known;
-  (void)seed;
-  (void)outputs;
-  (void)derivatives;
+  (void)saved, (void)scratch, (void)known_is_state, (void)known, (void)seed, (void)outputs, (void)derivatives;
 }
