@@ -55,8 +55,9 @@ struct FurtherColumn {
 std::optional<FurtherColumn> further_column(const std::string& header) {
   for (const std::string& unit : known_units()) {  // longest first
     const std::string end = "_" + unit;
-    if (header.size() > end.size() && header.ends_with(end) && is_of_column(unit))
-      return FurtherColumn{header.substr(0, header.size() - end.size()), unit};
+    if (!(header.size() > end.size() && header.ends_with(end))) continue;
+    const std::string name = header.substr(0, header.size() - end.size());
+    if (is_of_column(name, unit)) return FurtherColumn{name, unit};
   }
   return std::nullopt;
 }
