@@ -39,6 +39,15 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
 
+/// Drops the places of an NC program's axes that no effect asks for.
+void keep_wanted_columns(const MachineModel& machine, Cyclogram& cyclogram) {
+  const std::vector<std::string> wanted = wanted_columns(machine, cyclogram.name);
+  std::erase_if(cyclogram.columns, [&](const Cyclogram::Column& c) {
+    return std::none_of(wanted.begin(), wanted.end(),
+                        [&](const auto& name) { return name == c.name || name == c.header(); });
+  });
+}
+
 /// Gives displacements with a `screw` what the effects `feed_axis` say of it.
 void find_screws(MachineModel& m) {
   for (DisplacementOutput& d : m.displacements) {
@@ -343,7 +352,10 @@ Scenario read_scenario(const ConfigMap& top) {
   if (has_machine) {
     scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");
-    for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
+    for (const std::string& name : cyclograms.keys()) {
+      Cyclogram& read = scenario.cyclograms.emplace_back(read_cyclogram(cyclograms, name));
+      if (cyclograms.is_map(name) && cyclograms.map(name).has("nc_program")) keep_wanted_columns(*scenario.machine, read);
+    }
     if (scenario.cyclograms.empty())
       in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);

@@ -118,7 +118,10 @@ TEST(FeedAxisError, OfALinearScaleIsItsGrowthFromWhereItIsFixed) {
 
 TEST(FeedAxisError, WhatCannotBeReadIsRefused) {
   const auto refuses = [](const std::string& text, const auto& message) {
-    EXPECT_THAT(([&] { felt_run(*read(text).machine, read(text).cyclogram("strokes")); }),
+    EXPECT_THAT(([&] {
+                  const Scenario s = read(text);
+                  (void)felt_run(*s.machine, s.cyclogram("strokes"));
+                }),
                 ThrowsMessage<InputError>(message));
   };
   refuses(machine("  - {name: e, screw: scrw, at: [0 mm]}\n"),
