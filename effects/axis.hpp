@@ -21,8 +21,8 @@ namespace driftwright::effects {
   return 60.0 * feed_m_s / lead_m;
 }
 
-/// Heat of a ball screw and its nut [W]: drag of the preloaded nut times the screw's angular velocity, and what the drive loses
-/// on a thrust.
+/// Heat of a ball screw and its nut [W]: drag of the preloaded nut times the screw's angular velocity, and what the drive
+/// loses on a thrust.
 ///
 ///     P = 2 pi torque v / lead + thrust v (1 / efficiency - 1)
 ///

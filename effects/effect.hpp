@@ -218,7 +218,7 @@ struct Effect {
 [[nodiscard]] bool changes_drive(const Effect& effect);
 /// True if an effect changes readings, in the cyclograms in which it acts.
 [[nodiscard]] bool changes_readings(const Effect& effect);
-/// The bodies whose mean temperatures the effect uses to change readings; with the ambient, where it is one of them.
+/// The bodies whose mean temperatures the effect uses to change readings; with the ambient, if it is one of them.
 [[nodiscard]] std::vector<Body> bodies_read(const Effect& effect);
 /// True if some effect changes readings, in any cyclogram.
 [[nodiscard]] bool has_reading_effects(const std::vector<Effect>& effects);

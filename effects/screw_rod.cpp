@@ -13,7 +13,8 @@ double square_of_positive(double x) {
   return x > 0.0 ? x * x : 0.0;
 }
 
-/// Share of the sum of two independent, evenly spread distances about zero that is below x. @param a_m, b_m  their widths, a > 0
+/// Share of the sum of two independent, evenly spread distances about zero that is below x.
+/// @param a_m, b_m  their widths, a > 0
 double share_below(double x_m, double a_m, double b_m) {
   constexpr double kNoStroke = 1e-6;  // of the nut's length; the trapezoid below would divide by it
   if (b_m <= kNoStroke * a_m) return std::clamp(x_m / a_m + 0.5, 0.0, 1.0);

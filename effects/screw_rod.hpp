@@ -6,8 +6,8 @@
 
 namespace driftwright::effects {
 
-/// A rod from s = 0 at the fixed bearing to s = length, in sections of one length. Temperatures of sections are means over the
-/// section, above the temperature at which the screw is right [K].
+/// A rod from s = 0 at the fixed bearing to s = length, in sections of one length. Temperatures of sections are means over
+/// the section, above the temperature at which the screw is right [K].
 struct ScrewRod {
   double length_m = 1.0;
   int n_sections = 20;  ///< >= 4
@@ -33,8 +33,8 @@ struct ScrewRod {
   }
 };
 
-/// Share of the nut's heat that enters section i [-], 0 <= i < n_sections: the nut gives it evenly over its length, while its
-/// middle is spread evenly over a stroke. What would lie beyond an end of the rod enters the last section there, so the
+/// Share of the nut's heat that enters section i [-], 0 <= i < n_sections: the nut gives it evenly over its length, while
+/// its middle is spread evenly over a stroke. What would lie beyond an end of the rod enters the last section there, so the
 /// shares add up to 1.
 /// @param position_m  of the axis, at the middle of the stroke;  @param stroke_m  >= 0
 [[nodiscard]] double nut_share(const ScrewRod& rod, int i, double position_m, double stroke_m);

@@ -240,7 +240,7 @@ TEST(Axes, BallScrewTurnsDragAndThrustIntoHeat) {
 }
 
 TEST(Axes, BearingsOfAScrewTurnWithIt) {
-  // 1/3 m/s at a lead of 10 mm: 2000 rpm, at which this bearing gives 58.2828 W (Laws.BearingFrictionAddsBothTorquesTimesTheCount).
+  // 1/3 m/s at a lead of 10 mm: 2000 rpm, at which this bearing gives 58.2828 W (Laws.BearingFrictionAddsBothTorques...).
   const std::string bearing =
       "{type: bearing_friction, node: end, f0: 2, viscosity: 32 mm^2/s, mean_diameter: 9 cm, f1: 0.001, load: 0.5 kN";
   const Law power_W = balance_of(bearing + ", turned_by: y, lead: 10 mm}").heats[0].power_W;

@@ -1,4 +1,4 @@
-// The error of a feed axis as a scenario asks for it: at places of its travel, at the nut, by a linear scale; and what is refused.
+// The error of a feed axis as a scenario asks for it: at places of its travel, at the nut, by a linear scale; what is refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(FeedAxisError, AtTheNutIsThatOfThePlaceWhereItIs) {
 }
 
 TEST(FeedAxisError, GrowsByTheHeatThatIsInTheScrewAndMostWhereItIs) {
-  // Film off: half of 2 pi 1 N m 10 1/s = 62.832 W for 20 min makes alpha Q / (c A) = 120.07 um up to the free end, all of it
+  // Film off: half of 2 pi 1 N m 10 1/s = 62.832 W for 20 min makes alpha Q / (c A) = 120.07 um up to the free end, all
   // below 800 mm but for the nut's overhang: with the nut's strokes below 800 mm + 40 mm of it.
   const std::string insulated =
       kAxis.substr(0, kAxis.size() - 1) + ", film: 0 W/(m^2 K), film_growth: 0, conductivity: 0.1 W/(m K)}";

@@ -453,7 +453,7 @@ TEST(Merging, MakesMeansOfFeedAndPower) {
 // --- where the axes are -------------------------------------------------------------------------------------------
 
 TEST(NcPositions, AreRangesWithinRowsOfTheResolution) {
-  // A rapid of 100 mm in 0.4 s, 300 mm at 50 mm/s in three rows of 2 s, a dwell, and back; counted from 50 mm of the program.
+  // A rapid of 100 mm in 0.4 s, 300 mm at 50 mm/s in three rows of 2 s, a dwell, and back; counted from 50 mm.
   for (const std::string& back : {std::string("G1 X100\n"), std::string("G92 X0\nG1 X-300\n")}) {
     const auto columns =
         position_columns(read("G21 G90\nG0 X100\nG1 X400 F3000\nG4 P2\n" + back + "M2\n"), 2.0, {0.05, 0.0, 0.5});

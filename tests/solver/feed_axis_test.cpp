@@ -183,8 +183,8 @@ Cyclogram one_way() {
 }
 
 /// Growth [m] up to s of a rod of 1 m with insulated ends, whose moving source has given `power_W` over its length:
-/// instant sources on an infinite rod, superposed (Carslaw & Jaeger, Conduction of Heat in Solids, 10.3 and 10.7), with images
-/// at both ends. The source of one instant is even over the nut; its growth up to s is that of two integrals of erf.
+/// instant sources on an infinite rod, superposed (Carslaw & Jaeger, Conduction of Heat in Solids, 10.3 and 10.7), with
+/// images at both ends. The source of one instant is even over the nut; its growth up to s is that of two integrals of erf.
 double growth_by_sources_m(double power_W, double nut_m, double s_m) {
   const double area_m2 = 0.25 * std::numbers::pi * 0.036 * 0.036;
   constexpr int kSteps = 20000;
@@ -227,8 +227,8 @@ TEST(FeedAxis, FollowsAMovingSourceAsCarslawAndJaegerDo) {
 }
 
 TEST(FeedAxis, GrowsAsARodOfFiniteElements) {
-  // A square rod of 36 mm has the round one's ratios of section, surface and volume. One end is held 30 K warmer, its sides have
-  // a film of 10 W/(m^2 K); after half an hour.
+  // A square rod of 36 mm has the round one's ratios of section, surface and volume. One end is held 30 K warmer, its sides
+  // have a film of 10 W/(m^2 K); after half an hour.
   const double seconds = 1800.0;
   const Cyclogram rest{.name = "rest", .sections = {{seconds, {}}}};
   fixtures::Box box{.size_m = {1.0, 0.036, 0.036}, .n = {100, 1, 1}, .shape = mesh::CellShape::kHex20};
@@ -265,8 +265,8 @@ TEST(FeedAxis, GrowsAsARodOfFiniteElements) {
 }
 
 TEST(FeedAxis, SharesItsHeatWithTheNutAndCoolsItsBore) {
-  // 2 N m, 10 mm, 0.1 m/s: 2 pi 2 / 0.01 * 0.1 = 125.664 W; a quarter into the screw. 3 L/min of 3800 J/(L K) carry 190 W/K, a
-  // passage of 95 W/K: 190 (1 - exp(-1/2)) = 74.759 W/K.
+  // 2 N m, 10 mm, 0.1 m/s: 2 pi 2 / 0.01 * 0.1 = 125.664 W; a quarter into the screw. 3 L/min of 3800 J/(L K) carry 190 W/K,
+  // a passage of 95 W/K: 190 (1 - exp(-1/2)) = 74.759 W/K.
   const effects::HeatBalance b = fixtures::balance_of(
       {axis("torque: 2 N m, share: 0.25, mounting: fixed_free, bore: 12 mm, flow: 3 L/min, passage_conductance: 95 W/K")});
   const effects::Inputs moving{.drive = {.feed_m_s = {0.1, 0.0, 0.0}}};
@@ -289,7 +289,7 @@ TEST(FeedAxis, SharesItsHeatWithTheNutAndCoolsItsBore) {
   for (const auto& n : b.nodes) capacity_J_K += n.capacity_J_K;
   EXPECT_NEAR(coolant_W_K, 74.759, 1e-3);
   EXPECT_NEAR(still_W_K, 6.0 * std::numbers::pi * 0.036, 1e-9);
-  // 600 rpm: Re = pi 0.036^2 10 / 15.9e-6 = 2560.7; Nu = 0.133 * 187.17 * 0.8921 = 22.208; h = 22.208 * 0.026 / 0.036 = 16.04.
+  // 600 rpm: Re = pi 0.036^2 10 / 15.9e-6 = 2560.7; Nu = 0.133 * 187.2 * 0.8921 = 22.21; h = 22.21 * 0.026 / 0.036 = 16.04.
   EXPECT_NEAR(film_W_K - still_W_K, 16.04 * std::numbers::pi * 0.036, 0.003);
   EXPECT_NEAR(capacity_J_K, kCapacity * 0.25 * std::numbers::pi * (0.036 * 0.036 - 0.012 * 0.012), 1e-6);
 }
