@@ -7,6 +7,8 @@
 namespace driftwright {
 namespace {
 
+constexpr double kRoundingOfRows = 1e-9;  // of a row: durations are sums
+
 /// The range of the axes within a piece of time.
 struct AxesRange {
   double duration_s = 0.0;
@@ -71,8 +73,9 @@ std::vector<Cyclogram::Column> position_columns(const NcProgram& program, double
     }
     const bool is_straight = step.kind == NcStepKind::kLine || step.kind == NcStepKind::kRapid;
     const double duration_s = step.duration_s();
-    if (is_straight && resolution_s > 0.0 && duration_s > resolution_s) {
-      const int n = static_cast<int>(std::ceil(duration_s / resolution_s));
+    const double rows = resolution_s > 0.0 ? std::ceil(duration_s / resolution_s - kRoundingOfRows) : 1.0;
+    if (is_straight && rows > 1.0) {
+      const int n = static_cast<int>(rows);
       flush();
       for (int i = 0; i < n; ++i) {
         row.take(straight_piece(duration_s, at_m, to_m, static_cast<double>(i) / n, static_cast<double>(i + 1) / n));

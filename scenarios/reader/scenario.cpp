@@ -354,7 +354,8 @@ Scenario read_scenario(const ConfigMap& top) {
     const ConfigMap cyclograms = in.map("cyclograms");
     for (const std::string& name : cyclograms.keys()) {
       Cyclogram& read = scenario.cyclograms.emplace_back(read_cyclogram(cyclograms, name));
-      if (cyclograms.is_map(name) && cyclograms.map(name).has("nc_program")) keep_wanted_columns(*scenario.machine, read);
+      const bool is_program = cyclograms.is_map(name) && cyclograms.map(name).description().when_key == "nc_program";
+      if (is_program) keep_wanted_columns(*scenario.machine, read);
     }
     if (scenario.cyclograms.empty())
       in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");

@@ -1,4 +1,4 @@
-// The error of a feed axis as a scenario asks for it: at places of its travel, at the nut, by a linear scale; what is refused.
+// The error of a feed axis as a scenario asks for it: at places of its travel, at the nut, by a linear scale.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
