@@ -1,16 +1,10 @@
-#include <numbers>
-
 #include "effects/axis.hpp"
 
 namespace driftwright::effects::ball_screw {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double torque_Nm = e["torque"], lead_m = 1e-3 * e["lead"], thrust_N = e["thrust"], efficiency = e["efficiency"];
-  const double share = e["share"];
-  const std::size_t axis = axis_of(e);
-  const auto law = [=](const Inputs& u) {
-    const double v_m_s = u.drive.feed_m_s[axis];
-    return share * (2.0 * std::numbers::pi * torque_Nm * v_m_s / lead_m + thrust_N * v_m_s * (1.0 / efficiency - 1.0));
+  const auto law = [axis = axis_of(e), friction = screw_friction(e), share = e["share"]](const Inputs& u) {
+    return share * friction.power_W(u.drive.feed_m_s[axis]);
   };
   balance.heats.push_back({e.name(), e.body(), law});
 }
@@ -18,7 +12,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 EffectKind kind() {
   return {
       .key = "ball_screw",
-      .title = "friction of a ball screw and its nut",
+      .title = "friction of a ball screw and its nut, into one body; `feed_axis` knows where the nut is",
       .law =
           "P = share (2 pi torque v / lead + thrust v (1 / efficiency - 1)): drag of the preloaded nut times the screw's "
           "angular velocity, and what the drive loses on a thrust (drag torque and efficiency as in THK's or NSK's "

@@ -1,7 +1,18 @@
+#include "effects/axis.hpp"
 #include "effects/bearing_formulas.hpp"
-#include "effects/effect.hpp"
 
 namespace driftwright::effects::bearing_friction {
+
+constexpr const char* kSpindle = "spindle";
+
+/// Speed [rpm] of the inner rings.
+std::function<double(const Drive&)> speed_of(const Effect& e) {
+  const std::string& turned_by = e.words.at("turned_by");
+  if (turned_by == kSpindle) return [](const Drive& d) { return d.speed_rpm; };
+  return [axis = static_cast<std::size_t>(turned_by[0] - 'x'), lead_m = 1e-3 * e["lead"]](const Drive& d) {
+    return screw_speed_rpm(d.feed_m_s[axis], lead_m);
+  };
+}
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double f0 = e["f0"], f1 = e["f1"], preload_N = e["load"], d_mm = e["mean_diameter"], count = e["count"];
@@ -13,20 +24,23 @@ void contribute(const Effect& e, HeatBalance& balance) {
     probes.push_back(e.references.at("inner"));
     probes.push_back(e.references.at("outer"));
   }
-  const auto power_W = [=](const Inputs& u) {
-    if (u.drive.speed_rpm <= 0.0) return 0.0;
+  const auto power_W = [=, speed = speed_of(e)](const Inputs& u) {
+    const double speed_rpm = speed(u.drive);
+    if (speed_rpm <= 0.0) return 0.0;
     const double nu_now = thins ? walther_viscosity_mm2_s(nu_40, nu_100, u.probe_K.at(0)) : nu;
     const std::size_t inner = thins ? 1 : 0;
     const double load_N =
         tightens ? thermal_preload_N(preload_N, growth_N_K, u.probe_K.at(inner), u.probe_K.at(inner + 1)) : preload_N;
     const double torque_Nmm =
-        palmgren_viscous_torque_Nmm(f0, nu_now, u.drive.speed_rpm, d_mm) + palmgren_load_torque_Nmm(f1, load_N, d_mm);
-    return count * friction_power_W(torque_Nmm, u.drive.speed_rpm);
+        palmgren_viscous_torque_Nmm(f0, nu_now, speed_rpm, d_mm) + palmgren_load_torque_Nmm(f1, load_N, d_mm);
+    return count * friction_power_W(torque_Nmm, speed_rpm);
   };
   balance.heats.push_back({e.name(), e.body(), Law(power_W, probes)});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
+  if (e.has("lead") != (e.words.at("turned_by") != kSpindle))
+    in.fail("lead", "bearings of a screw require both: the axis that they are `turned_by`, and the screw's `lead`");
   const bool at_40 = e.has("viscosity_40"), at_100 = e.has("viscosity_100");
   if (e.has("viscosity") == (at_40 || at_100)) {
     in.fail("viscosity",
@@ -63,12 +77,15 @@ EffectKind kind() {
                      {"load", "N", 0.0, 1e6, 0.0, "load that decides friction: the preload at idle"},
                      {"preload_growth", "N/K", 0.0, 1e5, kNotGiven, "load gained where `inner` is warmer than `outer`", 0.1,
                       "friction_law"},
-                     {"count", "1", 1.0, 20.0, 1.0, "equal bearings in this place"}},
+                     {"count", "1", 1.0, 20.0, 1.0, "equal bearings in this place"},
+                     {"lead", "mm", 0.1, 1000.0, kNotGiven, "of the screw that turns them: travel per turn"}},
       .timing = Timing::kInTime,
       .contribute = contribute,
       .references = {{"oil", {BodyKind::kNode, BodyKind::kRegion}, "", "body as warm as the oil; else the bearing's place"},
                      {"inner", {BodyKind::kRegion, BodyKind::kNode}, "", "body of the inner rings"},
                      {"outer", {BodyKind::kRegion, BodyKind::kNode}, "", "body of the outer rings"}},
+      .choices =
+          {{"turned_by", {kSpindle, "x", "y", "z"}, kSpindle, "the spindle, or the screw of an axis, by its mean feed"}},
       .check = check};
 }
 

@@ -331,8 +331,23 @@ ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string
   return chain;
 }
 
+bool changes_readings(const Effect& effect) {
+  if (!effect.kind->change_readings) return false;
+  ReadingChain chain;
+  effect.kind->change_readings(effect, chain);
+  return !chain.empty();
+}
+
+std::vector<Body> bodies_read(const Effect& effect) {
+  if (!effect.kind->change_readings) return {};
+  if (effect.kind->reads) return effect.kind->reads(effect);
+  std::vector<Body> bodies;
+  for (const auto& [name, body] : effect.references) bodies.push_back(body);
+  return bodies;
+}
+
 bool has_reading_effects(const std::vector<Effect>& effects) {
-  return std::any_of(effects.begin(), effects.end(), [](const Effect& e) { return e.kind->change_readings != nullptr; });
+  return std::any_of(effects.begin(), effects.end(), changes_readings);
 }
 
 std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects) {

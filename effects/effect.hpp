@@ -75,8 +75,8 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor, displacement or recorded column that an effect refers to, a formula, a file, or a list of bodies or
-/// points; `Effect::words` holds its name or text, "" if left out.
+/// Another sensor, displacement or recorded column that an effect refers to, a formula, a file, a list of bodies or points,
+/// or a name that the effect gives; `Effect::words` holds its name or text, "" if left out.
 struct Mention {
   enum class Of {
     kSensor,
@@ -87,11 +87,13 @@ struct Mention {
     kPoints,   ///< a list of points [mm]; likewise
     kFile,     ///< a file; scenarios/reader/film_files reads it
     kText,     ///< a name in that file
+    kOwn,      ///< a name for what comes about here: the lumped nodes of a screw
   };
   std::string name;
   Of of = Of::kSensor;
   bool compulsory = false;
   std::string meaning;
+  std::string unit = {};  ///< that a column must have, as in a record; "": any
 };
 
 /// Whether an effect may be limited to a part of the time.
@@ -140,6 +142,8 @@ struct EffectKind {
   std::vector<Doubt> (*doubts)(const DoubtScene&) = nullptr;
   /// Key of the effect that a diagnosis reports for a factor on its exchanges; "": the factor is not searched for.
   std::string exchange_finding = {};
+  /// Lists the bodies whose mean temperatures change_readings uses. Null: all references.
+  std::vector<Body> (*reads)(const Effect&) = nullptr;
 
   /// Names of the numbers that a diagnosis calibrates.
   [[nodiscard]] std::vector<std::string> known_roughly() const;
@@ -219,6 +223,10 @@ struct Effect {
 [[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run);
 /// True if an effect changes the recorded drive or ambient.
 [[nodiscard]] bool changes_drive(const Effect& effect);
+/// True if an effect changes readings, in the cyclograms in which it acts.
+[[nodiscard]] bool changes_readings(const Effect& effect);
+/// The bodies whose mean temperatures the effect uses to change readings; with the ambient, if it is one of them.
+[[nodiscard]] std::vector<Body> bodies_read(const Effect& effect);
 /// True if some effect changes readings, in any cyclogram.
 [[nodiscard]] bool has_reading_effects(const std::vector<Effect>& effects);
 /// The changes that the effects make to materials.

@@ -29,7 +29,7 @@ void require_streamable(const MachineModel& machine) {
     };
     if (effects::changes_drive(e))
       refuse("changes what the record of the drive or of the ambient says, by what comes before or after a row");
-    if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
+    if (effects::changes_readings(e) && e.place_kind != effects::Place::kSensor)
       refuse("changes what instruments say of displacements, by all that came before");
     if (e.kind->key == "heat_source" && e.has("fades")) refuse("fades from the start of a record");
     if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));

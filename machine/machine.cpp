@@ -241,8 +241,7 @@ Machine build(const MachineModel& model, PlacedMachine placed, bool with_elastic
 std::vector<effects::Body> bodies_of_readings(const MachineModel& model) {
   std::vector<effects::Body> bodies;
   for (const effects::Effect& e : model.effects) {
-    if (!e.kind->change_readings) continue;
-    for (const auto& [name, body] : e.references) {
+    for (const effects::Body& body : effects::bodies_read(e)) {
       const bool is_new = std::find(bodies.begin(), bodies.end(), body) == bodies.end();
       if (is_new && !(body == effects::ambient_node())) bodies.push_back(body);
     }

@@ -111,7 +111,7 @@ void require_exportable(const Scenario& scenario) {
                      fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
   };
   for (const effects::Effect& e : machine.effects) {
-    if (e.kind->change_readings) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
+    if (effects::changes_readings(e)) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
     if (effects::changes_drive(e))
       refuse(e, e.kind->contribute ? "follows what the drive was before, and an FMU knows it as it is"
                                    : "says that drive or ambient were recorded wrongly, and an FMU is given the true ones");

@@ -78,7 +78,7 @@ TwinTimedLaw timed_law(const Scenario& scenario, const solver::BoundLaw& bound, 
 std::vector<std::string> notes_of(const MachineModel& machine) {
   std::vector<std::string> notes;
   for (const effects::Effect& e : machine.effects) {
-    if (e.kind->change_readings)
+    if (effects::changes_readings(e))
       notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
     if (effects::changes_drive(e))
       notes.push_back(fmt::format(

@@ -22,6 +22,8 @@ void must_be_one_of(const Where& where, const char* what, const std::string& nam
 
 /// Requires `tilt` for tilts, and any other amount for displacements.
 void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
+  if (is_tilt && effect.kind->key == "linear_scale")
+    throw InputError(effect.where, fmt::format("'{}' is a tilt; a linear_scale fits displacements alone", effect.place));
   const std::vector<effects::Parameter>& parameters = effect.kind->parameters;
   const auto knows = [&](const char* name) {
     return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
@@ -39,7 +41,7 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
                            : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
 }
 
-/// Calls work(effect, name) for each column that effects name and that is no channel of the drive.
+/// Calls work(effect, mention, name) for each column that effects name and that is no channel of the drive.
 template <class Work>
 void for_each_wanted_column(const MachineModel& model, const std::string& cyclogram, Work work) {
   for (const effects::Effect& e : model.effects) {
@@ -47,7 +49,7 @@ void for_each_wanted_column(const MachineModel& model, const std::string& cyclog
     for (const effects::Mention& mention : e.kind->mentions) {
       if (mention.of != effects::Mention::Of::kColumn) continue;
       if (const std::string& name = e.words.at(mention.name); !name.empty() && !effects::is_drive_channel(name))
-        work(e, name);
+        work(e, mention, name);
     }
   }
 }
@@ -65,12 +67,13 @@ bool has_ambient_channel(const MachineModel& model) {
 
 std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram) {
   std::vector<std::string> names;
-  for_each_wanted_column(model, cyclogram, [&](const effects::Effect&, const std::string& name) { names.push_back(name); });
+  for_each_wanted_column(model, cyclogram,
+                         [&](const auto&, const auto&, const std::string& name) { names.push_back(name); });
   return names;
 }
 
 void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
-  for_each_wanted_column(model, cyclogram.name, [&](const effects::Effect& effect, const std::string& name) {
+  const auto require = [&](const effects::Effect& effect, const effects::Mention& mention, const std::string& name) {
     const Cyclogram::Column* column = cyclogram.column(name);
     if (!column) {
       std::vector<std::string> known;
@@ -83,13 +86,17 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
                       known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
                       name));
     }
-    const bool wants_temperature = effect.place_kind == effects::Place::kDisplacement && !effect.has("gain");
+    if (!mention.unit.empty() && column->unit != mention.unit)
+      throw InputError(effect.where, fmt::format("the `{}` of {} must be in {}; the column '{}' is in {}", mention.name,
+                                                 effect.name(), mention.unit, column->name, column->unit));
+    const bool wants_temperature = effect.kind->key == "displacement_path" && !effect.has("gain");
     if (wants_temperature && column->unit != "degC")
       throw InputError(effect.where,
                        fmt::format("{} follows temperatures in degC by its `sensitivity`; the column '{}' is in "
                                    "{}, which `gain` (um per {}) is for",
                                    effect.name(), column->name, column->unit, column->unit));
-  });
+  };
+  for_each_wanted_column(model, cyclogram.name, require);
 }
 
 MachineRun felt_run(const MachineModel& model, const Cyclogram& recorded) {

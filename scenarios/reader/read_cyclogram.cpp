@@ -11,6 +11,7 @@
 #include "base/delimited_text.hpp"
 #include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
+#include "nc/positions.hpp"
 #include "nc/sections.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/recorded_run.hpp"
@@ -56,8 +57,9 @@ struct FurtherColumn {
 std::optional<FurtherColumn> further_column(const std::string& header) {
   for (const std::string& unit : known_units()) {  // longest first
     const std::string end = "_" + unit;
-    if (header.size() > end.size() && header.ends_with(end) && is_of_column(unit))
-      return FurtherColumn{header.substr(0, header.size() - end.size()), unit};
+    if (!(header.size() > end.size() && header.ends_with(end))) continue;
+    const std::string name = header.substr(0, header.size() - end.size());
+    if (is_of_column(name, unit)) return FurtherColumn{name, unit};
   }
   return std::nullopt;
 }
@@ -139,11 +141,13 @@ RowColumns row_columns(const ConfigMap& in) {
 }
 
 void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
-  const NcProgram program = read_nc_program(beside(in, "nc_program"), read_nc_settings(in));
+  const NcSettings settings = read_nc_settings(in);
+  const NcProgram program = read_nc_program(beside(in, "nc_program"), settings);
   const double resolution_s = in.quantity("resolution");
   const double cutting_power_W = in.quantity("cutting_power");
   try {
-    cyclogram = cyclogram_of(program, cyclogram.name, resolution_s, cutting_power_W);
+    cyclogram = cyclogram_of(program, cyclogram.name, resolution_s, cutting_power_W,
+                             settings.machine_zero_m.value_or(std::array{0.0, 0.0, 0.0}));
   } catch (const InputError& e) {
     in.fail("nc_program", e.what());
   }
@@ -396,8 +400,10 @@ NcSettings read_nc_settings(const ConfigMap& in) {
   return settings;
 }
 
-Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s, double cutting_power_W) {
+Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s, double cutting_power_W,
+                       const std::array<double, 3>& origin_m) {
   Cyclogram cyclogram{.name = name, .sections = merged_sections(program.moves, resolution_s, cutting_power_W)};
+  cyclogram.columns = position_columns(program, resolution_s, origin_m);
   cyclogram.remarks = {fmt::format("machining time {:.1f} s, {} moves", program.duration_s(), program.moves.size())};
   cyclogram.remarks.insert(cyclogram.remarks.end(), program.notes.begin(), program.notes.end());
   for (const Cyclogram::Section& section : cyclogram.sections) {

@@ -23,9 +23,11 @@ namespace driftwright::scenarios {
 /// Reads the keys dialect, rapid, tool_change, dwell_unit, machine_zero and ignore of an NC program. @throws InputError
 [[nodiscard]] NcSettings read_nc_settings(const ConfigMap& in);
 
-/// The cyclogram of an NC program (nc_sections.hpp), with its remarks.
+/// The cyclogram of an NC program (nc_sections.hpp), with its remarks and the places of its axes as columns
+/// (nc/positions.hpp).
+/// @param origin_m  from which these count, in the coordinates of the program: the machine's zero where it is known
 /// @throws InputError  for a program without duration, or with a spindle speed beyond any machine
 [[nodiscard]] Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s,
-                                     double cutting_power_W);
+                                     double cutting_power_W, const std::array<double, 3>& origin_m = {0.0, 0.0, 0.0});
 
 }  // namespace driftwright::scenarios

@@ -45,6 +45,16 @@ BySensitivity read_sensitivities(const ConfigMap& in) {
   return by;
 }
 
+/// The name of an output at a position. @throws InputError  if another output has it
+std::string name_at(const ConfigMap& in, const std::string& name, double position_m,
+                    const std::vector<DisplacementOutput>& others) {
+  std::string full = fmt::format("{}{:.0f}", name, 1e3 * position_m);
+  for (const DisplacementOutput& other : others) {
+    if (other.name == full) in.fail("at", fmt::format("two positions make the name '{}'; they must differ by 1 mm", full));
+  }
+  return full;
+}
+
 /// `positions: {axis: x, at: [-200 mm, 0 mm, 200 mm]}`: the positions that the table travels to.
 std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const DisplacementOutput& base) {
   const int axis = read_axis(in, "axis");
@@ -52,14 +62,26 @@ std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const Displace
   for (double travel_m : in.quantities("at")) {
     DisplacementOutput output = base;
     output.points->travel_m = travel_m * Eigen::Vector3d::Unit(axis);
-    output.name = fmt::format("{}_{}{:.0f}", base.name, "xyz"[axis], 1e3 * travel_m);
-    for (const DisplacementOutput& other : outputs) {
-      if (other.name == output.name)
-        in.fail("at", fmt::format("two positions make the name '{}'; they must differ by 1 mm", output.name));
-    }
+    output.name = name_at(in, fmt::format("{}_{}", base.name, "xyz"[axis]), travel_m, outputs);
     outputs.push_back(std::move(output));
   }
   in.reject_unknown_keys();
+  return outputs;
+}
+
+/// `screw: x_screw, at: [0 mm, 400 mm, 800 mm]`: places of the axis; without `at` the place of the nut.
+std::vector<DisplacementOutput> on_screw(const ConfigMap& in, DisplacementOutput base) {
+  base.on_screw = OnScrew{in.text("screw"), std::nullopt, in.where("screw")};
+  if (!base.by_sensitivity) base.by_sensitivity = BySensitivity{.terms = {}, .where = in.where("screw")};
+  if (!in.has("at")) return {base};
+  std::vector<DisplacementOutput> outputs;
+  for (const double position_m : in.quantities("at")) {
+    DisplacementOutput output = base;
+    output.name = name_at(in, base.name + "_", position_m, outputs);
+    output.on_screw->at_m = position_m;
+    output.on_screw->where = in.where("at");
+    outputs.push_back(std::move(output));
+  }
   return outputs;
 }
 
@@ -97,11 +119,15 @@ schema::Map displacement_schema() {
                "positions", schema::map(positions),
                "one output for each place that the table has travelled to: the indicator then rests on another spot of it"),
            schema::optional("sensitivities", schema::maps(term),
-                            "summed over T - T_reference, alone or beside what the points do (below)")},
+                            "summed over T - T_reference, alone or beside what the points do (below)"),
+           schema::optional("screw", text(),
+                            "name that an effect `feed_axis` gives: the error of its axis, alone or beside the others"),
+           schema::optional("at", list(quantity("m"), 1), Said{"where the nut is"},
+                            "beside `screw`: positions of the axis, one output each")},
       .groups = {{Group::Rule::kAllOrNone, {"along", "tool"}, "both are required"},
                  {Group::Rule::kAtLeastOne,
-                  {"along", "sensitivities"},
-                  "points (`along`, `tool`) or `sensitivities` are required"}},
+                  {"along", "sensitivities", "screw"},
+                  "points (`along`, `tool`), `sensitivities` or a `screw` are required"}},
       .about = "Displacements of the tool against the table: actual - commanded."};
 }
 
@@ -130,10 +156,13 @@ std::vector<DisplacementOutput> read_displacements(const ConfigMap& in) {
   DisplacementOutput base{.name = in.name("name")};
   if (in.has("sensitivities")) base.by_sensitivity = read_sensitivities(in);
   const auto table = in.optional_map("table"), positions = in.optional_map("positions");
-  const bool has_points = in.has("along") || in.has("tool") || table || positions;
-  if (base.by_sensitivity && !has_points) {
+  const bool has_points = in.has("along") || in.has("tool") || table || positions, has_screw = in.has("screw");
+  if (in.has("at") && !has_screw) in.fail("at", "these are positions of the axis of a `screw`, which is missing");
+  if (has_screw && positions)
+    in.fail("positions", "a displacement may have positions of the table, or a `screw`; write two displacements");
+  if ((base.by_sensitivity || has_screw) && !has_points) {
     in.reject_unknown_keys();
-    return {base};
+    return has_screw ? on_screw(in, base) : std::vector{base};
   }
   base.points = ToolAgainstTable{.axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = {}};
   if (table) base.points->table = read_point(*table);
@@ -141,6 +170,7 @@ std::vector<DisplacementOutput> read_displacements(const ConfigMap& in) {
     in.fail("positions", "these are positions of the table; `table` says where it is in the mesh");
   in.reject_unknown_keys();
   if (positions) return at_positions(*positions, base);
+  if (has_screw) return on_screw(in, base);
   return {base};
 }
 

@@ -47,6 +47,13 @@ struct BySensitivity {
   Where where;
 };
 
+/// A place of a feed axis whose error is read (effects/feed_axis.hpp).
+struct OnScrew {
+  std::string screw;           ///< name that an effect `feed_axis` gives
+  std::optional<double> at_m;  ///< position of the axis; none: where the nut is
+  Where where;                 ///< of `screw`, or of `at`
+};
+
 /// Error of the tool against the table along an axis: actual - commanded. The indicator's stand is a rigid body that
 /// moves and turns with the table at its foot; without a table it is fixed to the ground. At least one of the two parts
 /// is required; with both the error is their sum, and a positive sensitivity moves the tool along the axis.
@@ -54,6 +61,7 @@ struct DisplacementOutput {
   std::string name;
   std::optional<ToolAgainstTable> points = {};
   std::optional<BySensitivity> by_sensitivity = {};
+  std::optional<OnScrew> on_screw = {};  ///< its terms are in by_sensitivity once the machine has been read
 };
 
 /// Change of the angle of the line from -> to about an axis, against the table (ISO 230-3); right-handed.
@@ -69,7 +77,8 @@ struct TiltOutput {
 [[nodiscard]] schema::Map tilt_schema();
 
 [[nodiscard]] Sensor read_sensor(const ConfigMap& in);
-/// One output, or with `positions` one per position of the table, named <name>_<axis><position in mm>.
+/// One output; or with `positions` one per position of the table, named <name>_<axis><position in mm>; or with `at` one per
+/// place of the screw, named <name>_<position in mm>.
 [[nodiscard]] std::vector<DisplacementOutput> read_displacements(const ConfigMap& in);
 [[nodiscard]] TiltOutput read_tilt(const ConfigMap& in);
 

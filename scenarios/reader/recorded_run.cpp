@@ -127,7 +127,7 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
   std::vector<Cyclogram::Column> columns;
   for (const Channel& c : record.channels) {
     const bool is_known = std::find(known.begin(), known.end(), c.name) != known.end();
-    if (is_known || !is_of_column(c.unit) || n_readings(c) == 0) continue;
+    if (is_known || !is_of_column(c.name, c.unit) || n_readings(c) == 0) continue;
     columns.push_back({c.name, c.unit, {.time_s = time_s, .value = {}}});
     double last = *std::find_if(c.values.begin(), c.values.end(), [](double v) { return !std::isnan(v); });
     for (double v : c.values) {
@@ -186,7 +186,9 @@ std::string name_of(const std::string& source) {
 
 }  // namespace
 
-bool is_of_column(const std::string& unit) {
+bool is_of_column(const std::string& name, const std::string& unit) {
+  constexpr const char* kPlaces[] = {"position_x", "position_y", "position_z", "stroke_x", "stroke_y", "stroke_z"};
+  if (unit == "mm" && std::find(std::begin(kPlaces), std::end(kPlaces), name) != std::end(kPlaces)) return true;
   constexpr const char* kOther[] = {"um", "mm", "urad", "s", "min", "h"};
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }

@@ -16,8 +16,9 @@ enum class Reading {
   kPlan,     ///< a planned drive: from time 0, without gaps, each value used as it is
 };
 
-/// Whether a channel of this unit may drive a machine: all units except those of lengths, angles and times.
-[[nodiscard]] bool is_of_column(const std::string& unit);
+/// Whether a channel may drive a machine: all units except those of lengths, angles and times; and in mm the places of the
+/// axes, `position_x`, `stroke_x` and so on.
+[[nodiscard]] bool is_of_column(const std::string& name, const std::string& unit);
 
 /// A record as a run of the machine.
 /// - readings: the record, unchanged, with its time from 0

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "effects/effect_schema.hpp"
+#include "effects/feed_axis.hpp"
 #include "effects/former_words.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/film_files.hpp"
@@ -38,6 +39,44 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   names.insert(kAmbient);
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
+}
+
+/// Drops the places of an NC program's axes that no effect asks for.
+void keep_wanted_columns(const MachineModel& machine, Cyclogram& cyclogram) {
+  const std::vector<std::string> wanted = wanted_columns(machine, cyclogram.name);
+  std::erase_if(cyclogram.columns, [&](const Cyclogram::Column& c) {
+    return std::none_of(wanted.begin(), wanted.end(),
+                        [&](const auto& name) { return name == c.name || name == c.header(); });
+  });
+}
+
+/// Gives displacements with a `screw` what the effects `feed_axis` say of it.
+void find_screws(MachineModel& m) {
+  for (DisplacementOutput& d : m.displacements) {
+    if (!d.on_screw) continue;
+    const OnScrew& on = *d.on_screw;
+    effects::Effect* axis = effects::feed_axis_of(m.effects, on.screw);
+    if (!axis) {
+      const std::vector<std::string> known = effects::screw_names(m.effects);
+      throw InputError(on.where, known.empty()
+                                     ? fmt::format("there is no screw '{}'; an effect `feed_axis` makes one", on.screw)
+                                     : fmt::format("there is no screw '{}'; there are {}.{}", on.screw,
+                                                   fmt::join(known, ", "), did_you_mean(on.screw, known)));
+    }
+    try {
+      if (!on.at_m) {
+        effects::read_out_at_nut(*axis, d.name);
+        m.written += fmt::format("at the nut of {}: {}\n", on.screw, d.name);
+        continue;
+      }
+      for (const auto& [body, sensitivity_m_K] : effects::axis_error_at(*axis, *on.at_m)) {
+        d.by_sensitivity->terms.push_back({body, sensitivity_m_K});
+        m.written += fmt::format("{}: {} {:.17g}\n", d.name, body.name, sensitivity_m_K);
+      }
+    } catch (const RangeError& e) {
+      throw InputError(on.where, e.what());
+    }
+  }
 }
 
 /// `start: reference | ambient | steady`, or a temperature.
@@ -79,6 +118,7 @@ MachineModel read_machine(const ConfigMap& in) {
                           "tilts", "start"}) {
     m.written += fmt::format("{}: {}\n", key, in.written(key));
   }
+  find_screws(m);
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
   if (has_mesh && m.supports.empty()) in.fail("supports", "there is no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
@@ -315,7 +355,11 @@ Scenario read_scenario(const ConfigMap& top) {
   if (has_machine) {
     scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");
-    for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
+    for (const std::string& name : cyclograms.keys()) {
+      Cyclogram& read = scenario.cyclograms.emplace_back(read_cyclogram(cyclograms, name));
+      const bool is_program = cyclograms.is_map(name) && cyclograms.map(name).description().when_key == "nc_program";
+      if (is_program) keep_wanted_columns(*scenario.machine, read);
+    }
     if (scenario.cyclograms.empty())
       in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);

@@ -49,6 +49,20 @@ TEST(LumpedSpindle, WhatFlowsInMakesWhatIsStoredInEachRow) {
   }
 }
 
+TEST(BallScrew, GrowsWhereItsNutIsAndReadsLittleByAScale) {
+  // Its header's values.
+  const Record full = read_record_csv((simulate("ball_screw", "full_strokes") / "record.csv").string());
+  EXPECT_NEAR(full.at("x_800").values[30], 115.0, 1.0);
+  EXPECT_NEAR(full.at("x_400").values[30], 62.0, 1.0);
+  EXPECT_NEAR(full.at("x_0").values[30], 9.0, 0.5);
+  EXPECT_NEAR(full.at("x_at_nut").values[30], full.at("x_400").values[30], 1e-3);
+  EXPECT_NEAR(full.at("x_800").values[50], 60.0, 1.0);
+  const Record brief = read_record_csv((simulate("ball_screw", "short_strokes") / "record.csv").string());
+  EXPECT_NEAR(brief.at("x_800").values[30], 57.0, 1.0);
+  EXPECT_NEAR(brief.at("x_400").values[30], 6.0, 1.0);
+  for (const double um : brief.at("x_by_scale").values) EXPECT_LT(std::abs(um), 1.0);
+}
+
 TEST(CFrame, FromADrawingToFieldsWithStresses) {
   std::string output;
   const std::filesystem::path folder = simulate("c_frame", "warm_up", &output);

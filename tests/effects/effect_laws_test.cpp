@@ -240,6 +240,18 @@ TEST(Axes, BallScrewTurnsDragAndThrustIntoHeat) {
   EXPECT_EQ(balance_of(screw + "}").heats[0].power_W(moving(1, 1, 0)), 0.0);
 }
 
+TEST(Axes, BearingsOfAScrewTurnWithIt) {
+  // 1/3 m/s at a lead of 10 mm: 2000 rpm, at which this bearing gives 58.2828 W (Laws.BearingFrictionAddsBothTorques...).
+  const std::string bearing =
+      "{type: bearing_friction, node: end, f0: 2, viscosity: 32 mm^2/s, mean_diameter: 9 cm, f1: 0.001, load: 0.5 kN";
+  const Law power_W = balance_of(bearing + ", turned_by: y, lead: 10 mm}").heats[0].power_W;
+  EXPECT_NEAR(power_W(moving(0, 1.0 / 3.0, 0)), 58.2828, 1e-4);
+  EXPECT_EQ(power_W(moving(1, 0, 1)), 0.0);
+  EXPECT_EQ(power_W({.drive = {.speed_rpm = 2000.0}}), 0.0);
+  for (const char* half : {", turned_by: y}", ", lead: 10 mm}"})
+    EXPECT_THAT([&] { read(bearing + half); }, ThrowsMessage<InputError>(HasSubstr("require both"))) << half;
+}
+
 TEST(Axes, GuidewayRubsByLoadAndByVelocity) {
   // 0.05 * 8 kN = 400 N, and 100 N s/m * 0.25 m/s = 25 N: 425 N * 0.25 m/s = 106.25 W, half of it here.
   const std::string way =

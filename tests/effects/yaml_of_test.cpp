@@ -83,7 +83,7 @@ TEST(YamlOf, ComesBackForEveryKindAtEveryPlace) {
     if (has_formula(kind)) continue;  // its entries declare the names that they have: formula_test
     int n_read = 0;
     for (const Place place : kind.places) {
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < 200; ++i) {
         const Effect e = drawn(kind, place, random);
         const std::string text = yaml_of(e);
         std::optional<Effect> back;

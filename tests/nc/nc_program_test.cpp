@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "nc/arc.hpp"
+#include "nc/positions.hpp"
 #include "nc/program.hpp"
 #include "nc/sections.hpp"
 #include "tests/nc/program_sums.hpp"
@@ -442,6 +443,31 @@ TEST(Merging, MakesMeansOfFeedAndPower) {
   EXPECT_NEAR(sections[0].drive.cutting_power_W, 100.0, 1e-9);
   EXPECT_NEAR(sections[1].drive.feed_m_s[1], 0.010, 1e-12);
   EXPECT_EQ(sections[1].drive.cutting_power_W, 110.0);
+}
+
+// --- where the axes are -------------------------------------------------------------------------------------------
+
+TEST(NcPositions, AreRangesWithinRowsOfTheResolution) {
+  // A rapid of 100 mm in 0.4 s, 300 mm at 50 mm/s in three rows of 2 s, a dwell, and back; counted from 50 mm.
+  for (const std::string& back : {std::string("G1 X100\n"), std::string("G92 X0\nG1 X-300\n")}) {
+    const auto columns =
+        position_columns(read("G21 G90\nG0 X100\nG1 X400 F3000\nG4 P2\n" + back + "M2\n"), 2.0, {0.05, 0.0, 0.5});
+    ASSERT_EQ(columns.size(), 6u);
+    EXPECT_EQ(columns[0].header(), "position_x_mm");
+    EXPECT_EQ(columns[1].header(), "stroke_x_mm");
+    const auto near = [](double x) { return DoubleNear(x, 1e-9); };
+    EXPECT_THAT(columns[0].rows.time_s,
+                ElementsAre(near(0), near(0.4), near(2.4), near(4.4), near(6.4), near(8.4), near(10.4), near(12.4)));
+    EXPECT_THAT(columns[0].rows.value,
+                ElementsAre(near(0), near(100), near(200), near(300), near(350), near(300), near(200), near(100)));
+    EXPECT_THAT(columns[1].rows.value,
+                ElementsAre(near(100), near(100), near(100), near(100), near(0), near(100), near(100), near(100)));
+    EXPECT_THAT(columns[4].rows.value.back(), near(-500));  // Z has not moved
+  }
+  // A full circle of 40 mm about X20: 0 to 40 mm, in one row.
+  const auto circle = position_columns(read("G21 G90 G17\nG2 X0 Y0 I20 J0 F600\nM2\n"), 2.0, {0.0, 0.0, 0.0});
+  EXPECT_THAT(circle[0].rows.value, ElementsAre(DoubleNear(20.0, 1e-9)));
+  EXPECT_THAT(circle[1].rows.value, ElementsAre(DoubleNear(40.0, 1e-9)));
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+#pragma once
+// What others need to know of the effect `feed_axis`: its sections, and the axis' error as sums over their temperatures.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "effects/effect.hpp"
+#include "effects/screw_rod.hpp"
+
+namespace driftwright::effects {
+
+/// The screw of an effect `feed_axis`.
+[[nodiscard]] ScrewRod screw_rod(const Effect& feed_axis);
+/// The lumped nodes of its sections, from the fixed bearing on: NAME_1, NAME_2, ...
+[[nodiscard]] std::vector<Body> screw_sections(const Effect& feed_axis);
+
+/// The effect `feed_axis` whose screw has that name, or nullptr.
+[[nodiscard]] Effect* feed_axis_of(std::vector<Effect>& effects, const std::string& screw);
+/// Names of all screws of a machine.
+[[nodiscard]] std::vector<std::string> screw_names(const std::vector<Effect>& effects);
+
+/// The error of the axis at a place of its travel, as sensitivities [m/K] to its sections (axis_error_m_K()).
+/// @throws RangeError  with the allowed range, for a place outside the travel
+[[nodiscard]] std::vector<std::pair<Body, double>> axis_error_at(const Effect& feed_axis, double position_m);
+
+/// Makes the effect add the error at the nut's present place to a displacement. One displacement a screw.
+/// @throws RangeError  without a recorded position, for a second displacement
+void read_out_at_nut(Effect& feed_axis, const std::string& displacement);
+
+}  // namespace driftwright::effects
