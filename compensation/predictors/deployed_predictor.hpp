@@ -35,8 +35,8 @@ struct DeployedPredictor {
   /// What it leaves on parts of the training runs that were left out, for probings; none if no part could be left out.
   std::optional<ResidualProcess> residual = {};
   Probe probe = {};  ///< that the axis is probed with
-  /// Largest residual on the training runs, to which it is fitted, with one of its sensors failed [um]; none: not tried. Not
-  /// stored in files.
+  /// Largest residual on parts of the training runs that were left out, with one of its sensors failed [um]; none: not tried.
+  /// Not stored in files.
   std::optional<double> failed_um = {};
   std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
 };
