@@ -76,11 +76,12 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
     if (!model || d.failed_um.value_or(0.0) < model->failed_um.value_or(0.0)) model = &d;
   }
   if (model)
-    return because(
-        *model, rest(*model) + "; it was preferred because a model of the machine also holds outside the training runs" +
-                    (model->failed_um
-                         ? fmt::format(", and with a failed sensor it leaves at most {:.3g} µm on them", *model->failed_um)
-                         : ""));
+    return because(*model,
+                   rest(*model) + "; it was preferred because a model of the machine also holds outside the training runs" +
+                       (model->failed_um
+                            ? fmt::format(", and with a failed sensor it leaves at most {:.3g} µm on left-out parts of them",
+                                          *model->failed_um)
+                            : ""));
   if (mean && (is_alike(*mean) || standard_errors_above(*mean, *best) < kTellsApart)) return because(*mean, rest(*mean));
   const DeployedPredictor& simplest = simplest_near(strategies, *best, is_alike);
   return because(simplest, (&simplest == best ? "the least of all"

@@ -25,9 +25,9 @@ struct Choice {
 };
 
 /// Chooses in this order:
-/// - of the models of the machine that leave at most kAlike times the smallest error of all the one that leaves least on the
-///   training runs with a failed sensor (`failed_um`), or the simplest: the laws of a model apply beyond the training data,
-///   and alike models differ in the sensors that they depend on;
+/// - of the models of the machine that leave at most kAlike times the smallest error of all the one that leaves least on
+///   left-out parts of the training runs with a failed sensor (`failed_um`), or the simplest: the laws of a model apply
+///   beyond the training data, and alike models differ in the sensors that they depend on;
 /// - else the blend, unless another strategy leaves less than 1 / kAlike of the blend's error and the difference is
 ///   significant: two standard errors of the mean square, fold by fold;
 /// - else the simplest strategy whose mean square is within one standard error of the best one's.

@@ -185,6 +185,14 @@ FoldedRuns folded(std::span<const MachineRun> training, const FoldSettings& s) {
   return f;
 }
 
+std::vector<std::size_t> folds_for_failures(const FoldedRuns& folds) {
+  std::vector<std::size_t> list;
+  for (std::size_t k = 0; k < folds.folds.size(); ++k) {
+    if (folds.folds[k].kind == (folds.runs.size() > 1 ? "run" : "end")) list.push_back(k);
+  }
+  return list;
+}
+
 std::vector<double> FoldedRuns::predicted_um(const Predictor& predictor, std::size_t fold) const {
   std::vector<double> result;
   for (std::size_t r = 0; r < runs.size(); ++r) {

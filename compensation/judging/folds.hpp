@@ -53,4 +53,8 @@ struct FoldedRuns {
 };
 [[nodiscard]] FoldedRuns folded(std::span<const MachineRun> training, const FoldSettings& settings);
 
+/// The folds on which failed sensors are tried: each run as a whole, or the last third of a single run. Each failure then
+/// takes one pass over the rows.
+[[nodiscard]] std::vector<std::size_t> folds_for_failures(const FoldedRuns& folds);
+
 }  // namespace driftwright::compensation

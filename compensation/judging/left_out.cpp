@@ -131,6 +131,13 @@ std::vector<FailSafe> fail_safes_of(const Seen& seen, const std::vector<std::str
   return list;
 }
 
+FailSafe learned(const Seen& seen, const Predictor& predictor, const LeftOutSettings& s, double room) {
+  FailSafe safe =
+      learn_fail_safe(seen.readings, names_of(guarded_inputs(predictor)), seen.predicted_um, s.from_start, true, room);
+  limit(safe, s.limits);
+  return safe;
+}
+
 /// The runs of a fold that have hidden rows, as a predictor follows them.
 std::vector<std::pair<std::size_t, PredictedDrift>> followed(const Predictor& predictor, const FailSafe& safe,
                                                              const FoldedRuns& folds, std::size_t fold) {
@@ -211,11 +218,12 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
 
 FailSafe fail_safe_of(const Predictor& predictor, std::span<const MachineRun> training, const LeftOutSettings& s,
                       double room) {
-  const Seen seen = seen_in(predictor, training, s.from_start);
-  FailSafe safe =
-      learn_fail_safe(seen.readings, names_of(guarded_inputs(predictor)), seen.predicted_um, s.from_start, true, room);
-  limit(safe, s.limits);
-  return safe;
+  return learned(seen_in(predictor, training, s.from_start), predictor, s, room);
+}
+
+FailSafe fail_safe_in_fold(const Predictor& predictor, const FoldedRuns& folds, std::size_t fold, const LeftOutSettings& s,
+                           double room) {
+  return learned(seen_in(predictor, folds, fold, s), predictor, s, room);
 }
 
 }  // namespace driftwright::compensation

@@ -36,6 +36,10 @@ struct LeftOutSettings {
 double set_left_out(DeployedPredictor& strategy, const FoldPredictors& predictors, const FoldedRuns& folds,
                     const LeftOutSettings& settings);
 
+/// The fail-safe of a predictor that was fitted to what a fold leaves, learned from the same rows.
+[[nodiscard]] FailSafe fail_safe_in_fold(const Predictor& predictor, const FoldedRuns& folds, std::size_t fold,
+                                         const LeftOutSettings& settings, double room);
+
 /// The fail-safe of a fitted strategy. @param training  runs whose lead-in is followed but sets no limits
 [[nodiscard]] FailSafe fail_safe_of(const Predictor& predictor, std::span<const MachineRun> training,
                                     const LeftOutSettings& settings, double room);

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/errors.hpp"
+#include "base/lists.hpp"
 #include "base/median.hpp"
 #include "base/parallel.hpp"
 #include "compensation/judging/choice.hpp"
@@ -62,6 +63,14 @@ std::vector<std::string> thermometers_of(const StrategySettings& s) {
   return names;
 }
 
+/// The thermometers that a predictor depends on: those that it reads, and that of the ambient for a model of the machine.
+std::vector<std::string> sensors_of(const Predictor& predictor, const StrategySettings& s) {
+  std::vector<std::string> sensors = names_of(predictor.inputs());
+  std::erase(sensors, s.speed);
+  if (predictor.is_driven() && !s.ambient.empty() && !is_in(sensors, s.ambient)) sensors.push_back(s.ambient);
+  return sensors;
+}
+
 DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor, const StrategySettings& s) {
   DeployedPredictor d;
   d.target = s.target;
@@ -85,10 +94,8 @@ Strategy baseline(const std::string& name, const StrategySettings& s,
 DeployedPredictor of_formula(DriftModel model, std::string reason, const StrategySettings& s,
                              std::vector<DriftModel> members = {}) {
   model.from_start = s.count_from_start;
-  std::vector<std::string> sensors = model.inputs();
-  std::erase(sensors, s.speed);
   DeployedPredictor d = deployed(std::make_shared<FormulaPredictor>(std::move(model), std::move(members)), s);
-  d.sensors = std::move(sensors);
+  d.sensors = sensors_of(*d.predictor, s);
   d.reason = std::move(reason);
   return d;
 }
@@ -179,9 +186,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
             f.target = s.target;
             f.from_start = true;
             f.predictor = std::make_shared<Observer>(std::move(observer));
-            f.sensors = selection.sensors;
-            if (!s.ambient.empty() && std::find(f.sensors.begin(), f.sensors.end(), s.ambient) == f.sensors.end())
-              f.sensors.push_back(s.ambient);
+            f.sensors = sensors_of(*f.predictor, s);
             return f;
           }};
 }
@@ -288,6 +293,20 @@ std::vector<DoubtedThermometer> doubted_in(std::span<const MachineRun> training,
   return doubted_thermometers(records, thermometers, beside, s.reading_K);
 }
 
+/// A strategy in each of the folds on which failed sensors are tried.
+std::vector<FittedInFold> fitted_in_folds(const DeployedPredictor& fitted, const FoldPredictors& in_folds,
+                                          const FoldedRuns& folds, const StrategySettings& s, double room) {
+  std::vector<FittedInFold> list;
+  if (in_folds.empty()) return list;
+  for (std::size_t k : folds_for_failures(folds)) {
+    DeployedPredictor& d = list.emplace_back(FittedInFold{k, fitted}).fitted;
+    d.predictor = in_folds[k];
+    d.sensors = sensors_of(*d.predictor, s);
+    d.fail_safe = fail_safe_in_fold(*d.predictor, folds, k, left_out_settings(s), room);
+  }
+  return list;
+}
+
 /// A member of a blend.
 struct Member {
   DeployedPredictor deployed;
@@ -345,12 +364,14 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const M
     if (d.is_alone) std::erase(settings.candidates, d.name);
   }
   const std::vector<Strategy> list = strategies(settings);
-  const FoldedRuns folds = folded(training, {.target = settings.target,
-                                             .from_start = settings.count_from_start,
-                                             .thermometers = thermometers_of(settings),
-                                             .speed = settings.speed});
+  result.folds = folded(training, {.target = settings.target,
+                                   .from_start = settings.count_from_start,
+                                   .thermometers = thermometers_of(settings),
+                                   .speed = settings.speed});
+  const FoldedRuns& folds = result.folds;
   std::vector<std::optional<DeployedPredictor>> fitted(list.size());
   std::vector<FoldPredictors> in_folds(list.size());
+  std::vector<std::vector<FittedInFold>> models_in_folds(list.size());
   std::vector<std::string> why(list.size());
   parallel_for(list.size(), [&](std::size_t i) {
     try {
@@ -359,6 +380,8 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const M
       const double room = set_left_out(*fitted[i], in_folds[i], folds, left_out_settings(settings));
       if (!fitted[i]->is_baseline)
         fitted[i]->fail_safe = fail_safe_of(*fitted[i]->predictor, training, left_out_settings(settings), room);
+      if (fitted[i]->predictor->is_driven())
+        models_in_folds[i] = fitted_in_folds(*fitted[i], in_folds[i], folds, settings, room);
     } catch (const InputError& e) {
       why[i] = e.what();
     } catch (const SolveError& e) {  // the model has no solution there
@@ -373,10 +396,13 @@ FittedStrategies fit_strategies(const StrategySettings& given, std::span<const M
     }
     if (list[i].is_blended && !in_folds[i].empty()) members.push_back({*fitted[i], in_folds[i]});
     result.strategies.push_back(std::move(*fitted[i]));
+    result.in_folds.push_back(std::move(models_in_folds[i]));
   }
   try {
-    if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training))
+    if (std::optional<DeployedPredictor> mean = blend(members, folds, settings, training)) {
       result.strategies.push_back(std::move(*mean));
+      result.in_folds.emplace_back();
+    }
   } catch (const InputError& e) {  // no row has the inputs of all members
     result.left_out.push_back({kBlend, e.what()});
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "compensation/judging/left_out.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "compensation/sensors/grey_relational.hpp"
@@ -58,10 +59,20 @@ struct LeftOut {
   std::string name, why;
 };
 
+/// A strategy as fitted to what a fold leaves, with a fail-safe learned from the same rows.
+struct FittedInFold {
+  std::size_t fold = 0;
+  DeployedPredictor fitted;
+};
+
 struct FittedStrategies {
   std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first, the blend last
   std::vector<LeftOut> left_out;
   std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads those that are alone
+  FoldedRuns folds = {};                    ///< what was left out of the training runs in turn
+  /// Of each strategy that is a model of the machine, in the order of `strategies`: in each of folds_for_failures(). Empty for
+  /// other strategies, and if a fold leaves too little for a fit.
+  std::vector<std::vector<FittedInFold>> in_folds = {};
 };
 
 /// Fits all of them. @param training  with the target among the readings

@@ -95,12 +95,12 @@ std::string least_alike(const MachineRun& run, const std::string& sensor, const 
 }
 
 /// The conditions of one strategy: the run unchanged, and with each of its sensors failed in each way.
+/// @param start_s  with end_s, times of the first and the last row that count: a sensor fails at `fails_at` between them
 std::vector<std::pair<std::string, MachineRun>> conditions(const MatrixSettings& settings, const DeployedPredictor& strategy,
-                                                           const JudgedRunOfMachine& judged) {
+                                                           const JudgedRunOfMachine& judged, double start_s, double end_s) {
   std::vector<std::pair<std::string, MachineRun>> list = {{"", judged.run}};
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
-  const std::vector<double>& t = judged.run.readings.time_s;
-  const double start_s = t[judged.run.n_before], from_s = start_s + *settings.fails_at * (t.back() - start_s);
+  const double from_s = start_s + *settings.fails_at * (end_s - start_s);
   const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
                        const std::string& elsewhere) {
     MachineRun run = judged.run;
@@ -434,31 +434,56 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
   });
 }
 
-/// Sets what models of the machine leave on the training runs with failed sensors; the choice among them depends on it.
-void try_failures(const MatrixSettings& settings, const std::vector<MachineRun>& training,
-                  std::vector<DeployedPredictor>& strategies) {
-  if (!settings.fails_at) return;
-  std::vector<DeployedPredictor*> models;
-  for (DeployedPredictor& d : strategies) {
-    if (d.predictor->is_driven() && !d.is_baseline && !d.sensors.empty()) models.push_back(&d);
+/// What is left of one run of a fold with each of the strategy's sensors failed in turn.
+/// @return the largest residual in the hidden rows [um]; none without a sensor or a hidden row
+std::optional<double> failed_in_fold_um(const MatrixSettings& settings, const FoldedRuns& folds, std::size_t fold,
+                                        std::size_t r, const DeployedPredictor& strategy) {
+  const StrategySettings& how = settings.strategies;
+  const std::vector<bool>& hidden = folds.folds[fold].hidden[r];
+  const auto first = std::find(hidden.begin(), hidden.end(), true);
+  if (first == hidden.end()) return std::nullopt;
+  const JudgedRunOfMachine part{"", settings.fails_in, "", folds.runs[r]};
+  std::vector<double> drift_um = scored_readings(part.run, how.target, how.count_from_start).at(how.target).values;
+  const auto last = std::find(hidden.rbegin(), hidden.rend(), true).base() - 1;
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    if (!hidden[i]) drift_um[i] = std::numeric_limits<double>::quiet_NaN();
   }
-  const std::string& target = settings.strategies.target;
-  std::vector<double> most_um(models.size() * training.size());
-  parallel_for(most_um.size(), [&](std::size_t job) {
-    const JudgedRunOfMachine run{"", settings.fails_in, "", training[job % training.size()]};
-    const std::vector<double> drift_um =
-        scored_readings(run.run, target, settings.strategies.count_from_start).at(target).values;
-    const DeployedPredictor& model = *models[job / training.size()];
-    for (const auto& [failed, with_failure] : conditions(settings, model, run))
-      if (!failed.empty()) most_um[job] = std::max(most_um[job], judge(model, with_failure, drift_um).scores.after.peak_abs);
-  });
-  for (std::size_t job = 0; job < most_um.size(); ++job) {
-    DeployedPredictor& model = *models[job / training.size()];
-    model.failed_um = std::max(model.failed_um.value_or(0.0), most_um[job]);
+  const std::vector<double>& t_s = part.run.readings.time_s;
+  const auto time_of = [&](auto row) { return t_s[static_cast<std::size_t>(row - hidden.begin())]; };
+  auto failed_runs = conditions(settings, strategy, part, time_of(first), time_of(last));
+  failed_runs.erase(failed_runs.begin());  // all sensors intact
+  if (failed_runs.empty()) return std::nullopt;
+  std::vector<double> peak_um(failed_runs.size());
+  parallel_for(peak_um.size(),
+               [&](std::size_t c) { peak_um[c] = judge(strategy, failed_runs[c].second, drift_um).scores.after.peak_abs; });
+  return *std::max_element(peak_um.begin(), peak_um.end());
+}
+
+/// Sets what models of the machine leave on left-out parts with failed sensors; the choice among them depends on it.
+void try_failures(const MatrixSettings& settings, FittedStrategies& fitted) {
+  for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
+    if (!fitted.in_folds[s].empty())
+      fitted.strategies[s].failed_um = failed_left_out_um(settings, fitted.folds, fitted.in_folds[s]);
   }
 }
 
 }  // namespace
+
+std::optional<double> failed_left_out_um(const MatrixSettings& settings, const FoldedRuns& folds,
+                                         std::span<const FittedInFold> in_folds) {
+  if (!settings.fails_at) return std::nullopt;
+  const std::size_t n_runs = folds.runs.size();
+  std::vector<std::optional<double>> most_um(in_folds.size() * n_runs);
+  parallel_for(most_um.size(), [&](std::size_t job) {
+    const FittedInFold& in = in_folds[job / n_runs];
+    most_um[job] = failed_in_fold_um(settings, folds, in.fold, job % n_runs, in.fitted);
+  });
+  std::optional<double> result;
+  for (const std::optional<double>& um : most_um) {
+    if (um) result = std::max(result.value_or(0.0), *um);
+  }
+  return result;
+}
 
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<MachineRun> training,
                                 std::vector<JudgedRunOfMachine> runs) {
@@ -466,7 +491,9 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Mach
       .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
   FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
   matrix.left_out = std::move(fitted.left_out);
-  try_failures(settings, matrix.training, fitted.strategies);
+  try_failures(settings, fitted);
+  fitted.in_folds.clear();
+  fitted.folds = {};
   matrix.choice = choose(fitted.strategies);
   for (const DoubtedThermometer& d : fitted.doubted) {
     matrix.findings.push_back(fmt::format(
@@ -503,7 +530,9 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Mach
   parallel_for(n_jobs, [&](std::size_t job) {
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
-    for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
+    const MachineRun& whole = matrix.runs[r].run;
+    for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r], whole.readings.time_s[whole.n_before],
+                                                whole.readings.time_s.back())) {
       Judgement judged = judge(strategy, run, drift_um[r]);
       cases[job].push_back(judged.scores);
       cases[job].back().run = r;

@@ -99,6 +99,11 @@ struct StrategyMatrix {
   Choice choice = {};                      ///< of the strategy to deploy, from training runs alone
 };
 
+/// The largest residual of a strategy in the hidden rows of folds with one of its sensors failed [um]. The sensor fails at the
+/// share `fails_at` of a fold's hidden part of a run. None without failures, a fold or a sensor.
+[[nodiscard]] std::optional<double> failed_left_out_um(const MatrixSettings& settings, const FoldedRuns& folds,
+                                                       std::span<const FittedInFold> in_folds);
+
 /// A case with its values over time, per row of the run's readings.
 struct Judgement {
   Case scores;                        ///< without `run` and `failed`, which the matrix sets

@@ -38,8 +38,8 @@ struct DeployedPredictor {
   /// Of a mean of formulas, what each leaves, in the order of Predictor::members(): with probings, weights among the mean
   /// itself and its members move with their losses. Empty: the mean stays as it is.
   std::vector<MemberResidual> member_residuals = {};
-  /// Largest residual on the training runs, to which it is fitted, with one of its sensors failed [um]; none: not tried. Not
-  /// stored in files.
+  /// Largest residual on parts of the training runs that were left out, with one of its sensors failed [um]; none: not tried.
+  /// Not stored in files.
   std::optional<double> failed_um = {};
   std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
 };

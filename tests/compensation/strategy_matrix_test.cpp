@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "compensation/predictors/formula_predictor.hpp"
+
 namespace driftwright::compensation::strategy_matrix_test {
 namespace {
 
@@ -85,6 +89,78 @@ TEST(StrategyMatrix, CellsOfASafeStrategyAreAllKept) {
   compensation::give_verdict(m, s);
   EXPECT_EQ(s.cells.n_kept(), 2);
   EXPECT_EQ(words_of(s.cells, 10.0), "keeps 10 µm in 2 of 2 cells");
+}
+
+/// Two runs, or one: a bed that warms by 40 K in 400 min, and a drift of 1 um/K.
+FoldedRuns warming(int n_runs) {
+  std::vector<MachineRun> runs;
+  for (int r = 0; r < n_runs; ++r) {
+    MachineRun run{
+        .cyclogram = {}, .ambient = {}, .readings = {.source = r == 0 ? "one" : "two", .time_s = {}, .channels = {}}};
+    run.readings.channels = {{"bed", "degC", {}}, {"tip_z", "um", {}}};
+    for (int i = 0; i <= 400; ++i) {
+      run.readings.time_s.push_back(60.0 * i);
+      run.readings.channels[0].values.push_back(20.0 + 0.1 * i);
+      run.readings.channels[1].values.push_back(0.1 * i);
+    }
+    runs.push_back(std::move(run));
+  }
+  return folded(runs, {.target = "tip_z", .from_start = false, .thermometers = {"bed"}, .speed = ""});
+}
+
+/// A drift of `slope_um_K` times the rise of the bed above 20 degC, whatever it was fitted to.
+DeployedPredictor sloping(double slope_um_K) {
+  DeployedPredictor d;
+  d.target = "tip_z";
+  d.sensors = {"bed"};
+  d.predictor =
+      std::make_shared<FormulaPredictor>(DriftModel{.kind = "line",
+                                                    .target = "tip_z",
+                                                    .target_unit = "um",
+                                                    .intercept = -20.0 * slope_um_K,
+                                                    .terms = {{.input = "bed", .unit = "degC", .coefficient = slope_um_K}}});
+  return d;
+}
+
+MatrixSettings failing() {
+  MatrixSettings s;
+  s.strategies.target = "tip_z";
+  s.strategies.candidates = {"bed"};
+  s.fails_at = 0.5;
+  return s;
+}
+
+// A model that was fitted to the run itself would leave 40 um at most, of an open thermometer.
+TEST(FailedSensors, AreTriedOnRunsThatTheModelWasNotFittedTo) {
+  const FoldedRuns folds = warming(2);
+  std::vector<FittedInFold> in_folds;
+  for (std::size_t k : folds_for_failures(folds)) in_folds.push_back({k, sloping(folds.folds[k].name == "one" ? 3.0 : 1.5)});
+  ASSERT_EQ(in_folds.size(), 2u);
+  // drifting up by 2 K/h over the second half of 400 min, on the run that the model with 3 um/K did not see
+  EXPECT_NEAR(failed_left_out_um(failing(), folds, in_folds).value(), 3.0 * (40.0 + 2.0 * 200.0 / 60.0) - 40.0, 1e-6);
+}
+
+TEST(FailedSensors, OfASingleRunAreTriedOnItsLastThird) {
+  const FoldedRuns folds = warming(1);
+  const std::vector<std::size_t> tried = folds_for_failures(folds);
+  ASSERT_EQ(tried.size(), 1u);
+  EXPECT_EQ(folds.folds[tried.front()].kind, "end");
+  const std::vector<FittedInFold> in_folds = {{tried.front(), sloping(3.0)}};
+  const std::vector<bool>& hidden = folds.folds[tried.front()].hidden.front();
+  const auto first_min = static_cast<double>(std::find(hidden.begin(), hidden.end(), true) - hidden.begin());
+  EXPECT_NEAR(failed_left_out_um(failing(), folds, in_folds).value(),
+              3.0 * (40.0 + 2.0 * 0.5 * (400.0 - first_min) / 60.0) - 40.0, 1e-6);
+}
+
+TEST(FailedSensors, AreNotTriedWithoutASensorOrAFold) {
+  const FoldedRuns folds = warming(2);
+  std::vector<FittedInFold> in_folds = {{folds_for_failures(folds).front(), sloping(1.0)}};
+  MatrixSettings intact = failing();
+  intact.fails_at.reset();
+  EXPECT_FALSE(failed_left_out_um(intact, folds, in_folds).has_value());
+  EXPECT_FALSE(failed_left_out_um(failing(), folds, {}).has_value());
+  in_folds.front().fitted.sensors.clear();
+  EXPECT_FALSE(failed_left_out_um(failing(), folds, in_folds).has_value());
 }
 
 }  // namespace
