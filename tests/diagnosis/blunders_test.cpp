@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
                set_grid(r);
              },
              {"speed and drives seem to be recorded 1 h earlier than the readings"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(SoundRecords, SayNothing) {
   EXPECT_EQ(said_of(read_by(Machine(kSpindle))), "");
