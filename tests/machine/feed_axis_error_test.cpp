@@ -140,6 +140,11 @@ TEST(FeedAxisError, WhatCannotBeReadIsRefused) {
               "{columns: [duration, feed_x, position_x_mm, stroke_x_mm], rows: [[10 min, 6 m/min, 400 mm, 800 mm], [10 min, "
               "6 m/min, 750 mm, 200 mm]]}"),
       AllOf(HasSubstr("row 2 of column 'position_x', at 10 min"), HasSubstr("0 mm to 800 mm")));
+  const std::string scale =
+      "  - {type: linear_scale, displacement: e_400, body: nut, expansion: 8e-6 1/K, fixed_at: 0 mm, position: "
+      "position_x}\n";
+  refuses(machine("  - {name: e, screw: s, at: [0 mm, 400 mm]}\n", kAxis, kRows, scale),
+          HasSubstr("'e_400' reads screw 's' in a loop that the motor's encoder closes"));
   const std::string by_degC = kAxis.substr(0, kAxis.find("position_x, stroke")) + "oil}";
   refuses(machine("  - {name: e, screw: s, at: [0 mm]}\n", by_degC,
                   "{columns: [duration, feed_x, oil_degC], rows: [[10 min, 6 m/min, 400 degC]]}"),
