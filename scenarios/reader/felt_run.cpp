@@ -89,6 +89,8 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
   const auto require = [&](const effects::Effect& effect, const effects::Mention& mention, const std::string& name) {
     const Cyclogram::Column* column = cyclogram.column(name);
     if (!column) {
+      const std::string unit = mention.unit.empty() ? "" : "_" + mention.unit,
+                        column_header = name.ends_with(unit) ? name : name + unit;  // as `columns` requires it
       std::vector<std::string> known;
       for (const Cyclogram::Column& c : cyclogram.columns) known.push_back(c.header());
       throw InputError(
@@ -97,7 +99,7 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
                       "it (`{{csv: FILE}}`), or give it in rows (`columns: [duration, speed, {}]`)",
                       effect.name(), name, cyclogram.name,
                       known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
-                      name));
+                      column_header));
     }
     if (!mention.unit.empty() && column->unit != mention.unit)
       throw InputError(effect.where, fmt::format("the `{}` of {} must be in {}; the column '{}' is in {}", mention.name,

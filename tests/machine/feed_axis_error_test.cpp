@@ -10,6 +10,7 @@
 #include "machine/reduced_machine.hpp"
 #include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/shared/temporary_file.hpp"
 
@@ -77,6 +78,10 @@ TEST(FeedAxisError, AtTheNutIsThatOfThePlaceWhereItIs) {
   EXPECT_EQ(record.at("position_x").values[12], 700.0);
 }
 
+TEST(FeedAxisError, PlacesOfTheAxisAreNoUnusualDrift) {
+  EXPECT_TRUE(unusual_values(record_of(machine(kPlaces)), true).empty());  // stroke_x reaches 800 mm
+}
+
 TEST(FeedAxisError, GrowsByTheHeatThatIsInTheScrewAndMostWhereItIs) {
   // Film off: half of 2 pi 1 N m 10 1/s = 62.832 W for 20 min makes alpha Q / (c A) = 120.07 um up to the free end, all
   // below 800 mm but for the nut's overhang: with the nut's strokes below 800 mm + 40 mm of it.
@@ -134,7 +139,8 @@ TEST(FeedAxisError, WhatCannotBeReadIsRefused) {
   refuses(machine("  - {name: e, screw: s}\n", still), HasSubstr("Name the recorded `position`"));
   const std::string stretched = still.substr(0, still.find("fixed_free")) + "stretched, stretch: 30 um}";
   refuses(machine("  - {name: e, screw: s, at: [0 mm]}\n", stretched), HasSubstr("grows freely once it is used up"));
-  refuses(machine(kPlaces, kAxis, "[[10 min, 0 rpm]]"), HasSubstr("requires the column 'position_x'"));
+  refuses(machine(kPlaces, kAxis, "[[10 min, 0 rpm]]"),
+          AllOf(HasSubstr("requires the column 'position_x'"), HasSubstr("[duration, speed, position_x_mm]")));
   refuses(
       machine(kPlaces, kAxis,
               "{columns: [duration, feed_x, position_x_mm, stroke_x_mm], rows: [[10 min, 6 m/min, 400 mm, 800 mm], [10 min, "
