@@ -53,6 +53,7 @@ PickedMachine scenario_to_pick(const std::string& path) {
   page.carried = carried_by(machine.effects);
   for (const scenarios::Sensor& sensor : machine.sensors) page.channels.push_back(sensor.name);
   for (const scenarios::DisplacementOutput& displacement : machine.displacements) page.channels.push_back(displacement.name);
+  for (const scenarios::TiltOutput& tilt : machine.tilts) page.channels.push_back(tilt.name);
   page.marks = findings::marks_of(machine);
   return picked;
 }

@@ -20,6 +20,19 @@ void must_be_one_of(const Where& where, const char* what, const std::string& nam
                                       near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
+/// A loop is closed by the motor's encoder or by a scale: a displacement has the error of one of them.
+void require_one_loop(const effects::Effect& effect, const std::vector<DisplacementOutput>& displacements) {
+  if (effect.kind->key != "linear_scale") return;
+  for (const DisplacementOutput& d : displacements) {
+    if (d.name != effect.place || !d.on_screw) continue;
+    throw InputError(
+        effect.where,
+        fmt::format("'{}' reads screw '{}' in a loop that the motor's encoder closes; a scale that closes the loop "
+                    "leaves nothing of the screw's growth. Write another displacement without `screw` for the scale",
+                    d.name, d.on_screw->screw));
+  }
+}
+
 /// Requires `tilt` for tilts, and any other amount for displacements.
 void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
   if (is_tilt && effect.kind->key == "linear_scale")
@@ -76,6 +89,8 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
   const auto require = [&](const effects::Effect& effect, const effects::Mention& mention, const std::string& name) {
     const Cyclogram::Column* column = cyclogram.column(name);
     if (!column) {
+      const std::string unit = mention.unit.empty() ? "" : "_" + mention.unit,
+                        column_header = name.ends_with(unit) ? name : name + unit;  // as `columns` requires it
       std::vector<std::string> known;
       for (const Cyclogram::Column& c : cyclogram.columns) known.push_back(c.header());
       throw InputError(
@@ -84,7 +99,7 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
                       "it (`{{csv: FILE}}`), or give it in rows (`columns: [duration, speed, {}]`)",
                       effect.name(), name, cyclogram.name,
                       known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
-                      name));
+                      column_header));
     }
     if (!mention.unit.empty() && column->unit != mention.unit)
       throw InputError(effect.where, fmt::format("the `{}` of {} must be in {}; the column '{}' is in {}", mention.name,
@@ -168,6 +183,7 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
     if (e.place_kind == effects::Place::kDisplacement) {
       must_be_one_of(e.where, "displacement", e.place, displacements);
       require_fitting_amount(e, std::find(tilts.begin(), tilts.end(), e.place) != tilts.end());
+      require_one_loop(e, model.displacements);
     }
     for (const effects::Mention& mention : e.kind->mentions) {
       const std::string& name = e.words.at(mention.name);

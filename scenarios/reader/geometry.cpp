@@ -20,6 +20,7 @@ const schema::Map& geometry_schema() {
                schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
                schema::optional("displacements", schema::maps(displacement_schema()),
                                 "errors of the tool against the table"),
+               schema::optional("tilts", schema::maps(tilt_schema()), "changes of angles"),
                schema::optional("effects", list(one_of(effects::effect_schemas())), "what heats, cools and connects")},
       .others = {schema::optional("key", schema::anything(), "of the whole scenario")}};
   return description;
@@ -50,6 +51,9 @@ Geometry read_geometry(const std::string& path, bool with_effects) {
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
   for (const ConfigMap& entry : in.maps("displacements")) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
+  }
+  if (with_effects) {
+    for (const ConfigMap& entry : in.maps("tilts")) m.tilts.push_back(read_tilt(entry));
   }
   m.effects = with_effects ? effects::read_effects(in.maps("effects")) : read_films(in);
   return geometry;

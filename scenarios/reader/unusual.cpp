@@ -9,6 +9,7 @@
 #include "base/quantity.hpp"
 #include "base/usual_ranges.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -199,6 +200,7 @@ std::vector<std::string> unusual_values(const Record& record, bool with_temperat
                       {Usual::kDrift, "mm", 1e-3},
                       {Usual::kTilt, "urad", 1e-6}};
   for (const Channel& channel : record.channels) {
+    if (channel.unit == "mm" && is_of_column(channel.name, channel.unit)) continue;  // the place of an axis is no drift
     for (Farthest& f : kinds) {
       if (channel.unit != f.unit || (f.kind == Usual::kTemperature && !with_temperatures)) continue;
       const UsualRange& range = usual_range(f.kind);

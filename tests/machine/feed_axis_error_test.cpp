@@ -10,6 +10,7 @@
 #include "machine/reduced_machine.hpp"
 #include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/unusual.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/shared/temporary_file.hpp"
 
@@ -77,6 +78,10 @@ TEST(FeedAxisError, AtTheNutIsThatOfThePlaceWhereItIs) {
   EXPECT_EQ(record.at("position_x").values[12], 700.0);
 }
 
+TEST(FeedAxisError, PlacesOfTheAxisAreNoUnusualDrift) {
+  EXPECT_TRUE(unusual_values(record_of(machine(kPlaces)), true).empty());  // stroke_x reaches 800 mm
+}
+
 TEST(FeedAxisError, GrowsByTheHeatThatIsInTheScrewAndMostWhereItIs) {
   // Film off: half of 2 pi 1 N m 10 1/s = 62.832 W for 20 min makes alpha Q / (c A) = 120.07 um up to the free end, all
   // below 800 mm but for the nut's overhang: with the nut's strokes below 800 mm + 40 mm of it.
@@ -134,12 +139,18 @@ TEST(FeedAxisError, WhatCannotBeReadIsRefused) {
   refuses(machine("  - {name: e, screw: s}\n", still), HasSubstr("Name the recorded `position`"));
   const std::string stretched = still.substr(0, still.find("fixed_free")) + "stretched, stretch: 30 um}";
   refuses(machine("  - {name: e, screw: s, at: [0 mm]}\n", stretched), HasSubstr("grows freely once it is used up"));
-  refuses(machine(kPlaces, kAxis, "[[10 min, 0 rpm]]"), HasSubstr("requires the column 'position_x'"));
+  refuses(machine(kPlaces, kAxis, "[[10 min, 0 rpm]]"),
+          AllOf(HasSubstr("requires the column 'position_x'"), HasSubstr("[duration, speed, position_x_mm]")));
   refuses(
       machine(kPlaces, kAxis,
               "{columns: [duration, feed_x, position_x_mm, stroke_x_mm], rows: [[10 min, 6 m/min, 400 mm, 800 mm], [10 min, "
               "6 m/min, 750 mm, 200 mm]]}"),
       AllOf(HasSubstr("row 2 of column 'position_x', at 10 min"), HasSubstr("0 mm to 800 mm")));
+  const std::string scale =
+      "  - {type: linear_scale, displacement: e_400, body: nut, expansion: 8e-6 1/K, fixed_at: 0 mm, position: "
+      "position_x}\n";
+  refuses(machine("  - {name: e, screw: s, at: [0 mm, 400 mm]}\n", kAxis, kRows, scale),
+          HasSubstr("'e_400' reads screw 's' in a loop that the motor's encoder closes"));
   const std::string by_degC = kAxis.substr(0, kAxis.find("position_x, stroke")) + "oil}";
   refuses(machine("  - {name: e, screw: s, at: [0 mm]}\n", by_degC,
                   "{columns: [duration, feed_x, oil_degC], rows: [[10 min, 6 m/min, 400 degC]]}"),

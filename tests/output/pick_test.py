@@ -195,6 +195,7 @@ def pick_scenario(browser, folder, call, area_m2):
     kinds = page.value("pick.data.patches.map((p, i) => [p.surfaces.map(s => pick.data.surfaces[s].name).join(), pick.kindOf(i)])")
     expect(all(kind == (1 if names == "feet" else 2 if names else 3) for names, kind in kinds), f"colours of surfaces: {[k for k in kinds if k[1] == 0][:5]}")
 
+    expect(page.value("pick.taken.has('tilt_x')"), "the name of a tilt is taken, too")
     top = page.click([200, -200, 320])
     carries = page.value("byId('facts').textContent")
     expect("table_top (cutting_heat, natural_convection, radiation)" in carries, f"what the table's top carries: {carries}")
