@@ -6,13 +6,44 @@
 namespace driftwright::scenarios {
 namespace {
 
+void add_row(TimeSeries& rows, double time_s, double value) {
+  rows.time_s.push_back(time_s);
+  rows.value.push_back(value);
+}
+
 /// Appends stretches of time one after the other.
 class SeriesWriter {
  public:
   SeriesWriter(JobSeries& series, double interval_s) : series_(series), interval_s_(interval_s) {}
 
+  /// @param stretch  has at least the columns of the series
   /// @returns its rows
-  PartRows add(const std::vector<Cyclogram::Section>& sections) {
+  PartRows add(const Cyclogram& stretch) {
+    const double start_s = end_s_;
+    for (Cyclogram::Column& column : series_.cyclogram.columns) {
+      const Cyclogram::Column& of_stretch = *stretch.column(column.name);
+      add_row(column.rows, start_s, of_stretch.at(0.0));
+      const TimeSeries& rows = of_stretch.rows;
+      for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
+        if (rows.time_s[i] > 0.0 && rows.time_s[i] < stretch.duration_s())
+          add_row(column.rows, start_s + rows.time_s[i], rows.value[i]);
+      }
+    }
+    return add_sections(stretch.sections);
+  }
+
+  /// The axes stay where they are; all else that drives the machine is 0.
+  void add_rest(double duration_s) {
+    if (!(duration_s > 0.0)) return;
+    for (Cyclogram::Column& column : series_.cyclogram.columns) {
+      const double last = column.rows.value.empty() ? 0.0 : column.rows.value.back();
+      add_row(column.rows, end_s_, column.unit == "mm" ? last : 0.0);
+    }
+    (void)add_sections({{duration_s, Drive{}}});
+  }
+
+ private:
+  PartRows add_sections(const std::vector<Cyclogram::Section>& sections) {
     const double start_s = end_s_;
     const std::vector<double> local_s = output_times_s({.name = "", .sections = sections}, interval_s_);
     for (const Cyclogram::Section& section : sections) {
@@ -31,11 +62,6 @@ class SeriesWriter {
     return rows;
   }
 
-  void add_rest(double duration_s) {
-    if (duration_s > 0.0) (void)add({{duration_s, Drive{}}});
-  }
-
- private:
   JobSeries& series_;
   double interval_s_;
   double end_s_ = 0.0;
@@ -62,16 +88,20 @@ TimeSeries continued(const TimeSeries& run, double end_s, const TimeSeries& scen
 
 JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeries& scenario_ambient, double interval_s) {
   JobSeries series{.cyclogram = {.name = job.name, .sections = {}}, .ambient = scenario_ambient, .time_s = {}, .parts = {}};
+  for (const Cyclogram::Column& column : job.columns) {
+    if (!order.start || order.start->cyclogram.column(column.name))
+      series.cyclogram.columns.push_back({column.name, column.unit, {}});
+  }
   SeriesWriter writer(series, interval_s);
   if (order.start) {
-    (void)writer.add(order.start->cyclogram.sections);
+    (void)writer.add(order.start->cyclogram);
     if (order.start->has_recorded_ambient())
       series.ambient = continued(order.start->ambient, series.time_s.back(), scenario_ambient);
   }
   writer.add_rest(order.pause_s);
   for (int part = 0; part < order.n_parts; ++part) {
     if (part > 0) writer.add_rest(order.between_s);
-    series.parts.push_back(writer.add(job.sections));
+    series.parts.push_back(writer.add(job));
   }
   return series;
 }
