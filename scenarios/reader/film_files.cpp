@@ -406,6 +406,8 @@ void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
     } else {
       fail_at_file(e, fmt::format("'{}' is no format of films; .csv, .raw, .xy, .vtp, .vtu and .vtk are", extension));
     }
+    if (field.air_K.size() > 0 && e.has("air"))
+      throw InputError(e.where, "the file has air temperatures; leave `air` out, or remove them from the file");
     field.hash = hash_of(field);
     effects::set_means(field);
     e.field = std::make_shared<const SurfaceField>(std::move(field));
