@@ -29,7 +29,7 @@ struct SurfaceField {
   Eigen::MatrixXd film_W_m2K;    ///< values x states, >= 0
   Eigen::MatrixXd air_K;         ///< values x states, absolute; empty without air temperatures
   FieldStates states;
-  std::string hash;  ///< of the files
+  std::string hash;  ///< of these values
 
   [[nodiscard]] int n_values() const { return static_cast<int>(point_m.cols()); }
   [[nodiscard]] bool has_cells() const { return !corner_from.empty(); }

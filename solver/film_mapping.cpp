@@ -17,10 +17,11 @@ namespace {
 using effects::SurfaceField;
 using Eigen::Vector3d;
 
-constexpr double kLeastCosine = 0.5;   // of the angle between a face and a cell that may lie on it: 60 degrees
-constexpr int kSidesOfReach = 8;       // of the polygon about the circle of the reach
-constexpr double kLeastPiece = 1e-12;  // of a face: a smaller piece is rounding
-constexpr double kOpenShare = 1e-9;    // of a face: a larger part without a piece is not rounding
+constexpr double kLeastCosine = 0.5;    // of the angle between a face and a cell that may lie on it: 60 degrees
+constexpr int kSidesOfReach = 8;        // of the polygon about the circle of the reach
+constexpr double kLeastPiece = 1e-12;   // of a face: a smaller piece is rounding
+constexpr double kSameDistance = 1e-6;  // of the reach: closer distances from a face are those of one side
+constexpr double kOpenShare = 1e-9;     // of a face: a larger part without a piece is not rounding
 
 /// A plane convex polygon in space.
 using Polygon = std::vector<Vector3d>;
@@ -90,6 +91,22 @@ std::vector<mesh::QuadraturePoint> rule_for(mesh::CellShape shape) {
   for (const auto& q : mesh::quadrature(mesh::CellShape::kQuad4, 7))
     rule.push_back({{q.xi[0], q.xi[1] * (1.0 - q.xi[0]), 0.0}, q.weight * (1.0 - q.xi[0])});
   return rule;
+}
+
+/// Unit normal of a plane polygon.
+Vector3d normal_of(const Polygon& p) {
+  Vector3d twice = Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) twice += Vector3d(p[i] - p[0]).cross(p[i + 1] - p[0]);
+  return twice.normalized();
+}
+
+/// The part of a polygon that is within a cell, seen along a unit normal. @param cosine  between this and the cell's normal
+void clip_to_cell(Polygon& polygon, const Polygon& cell, const Vector3d& normal, double cosine) {
+  for (std::size_t i = 0; i < cell.size() && polygon.size() >= 3; ++i) {
+    const Vector3d edge = cell[(i + 1) % cell.size()] - cell[i];
+    const Vector3d outward = cosine > 0.0 ? edge.cross(normal) : normal.cross(edge);
+    clip(polygon, outward, outward.dot(cell[i]));
+  }
 }
 
 /// A piece of a triangle that belongs to one value.
@@ -222,23 +239,37 @@ class Mapper {
     if (area_m2 > kLeastPiece * t.area_m2) pieces.push_back({&t, std::move(polygon), value, area_m2});
   }
 
+  /// A cell that may lie on a triangle.
+  struct CellOnFace {
+    Polygon corners;
+    int value;
+    double cosine, distance_m;  ///< between the normals; of its middle from the plane
+    Polygon piece;
+  };
+
   void add_cells(const Triangle& t, std::vector<Piece>& pieces) const {
+    std::vector<CellOnFace> found;
     for (const int v : near(t)) {
-      const Polygon of_cell = cell(v);
-      Vector3d twice = Vector3d::Zero();
-      for (std::size_t i = 1; i + 1 < of_cell.size(); ++i)
-        twice += Vector3d(of_cell[i] - of_cell[0]).cross(of_cell[i + 1] - of_cell[0]);
-      const double cosine = twice.normalized().dot(t.normal);
-      if (!(std::abs(cosine) >= kLeastCosine)) continue;
-      if (std::abs(t.normal.dot(field_.point_m.col(v) - t.x[0])) > reach_m_) continue;
-      Polygon piece(t.x.begin(), t.x.end());
-      for (std::size_t i = 0; i < of_cell.size() && piece.size() >= 3; ++i) {
-        const Vector3d edge = of_cell[(i + 1) % of_cell.size()] - of_cell[i];
-        const Vector3d outward = cosine > 0.0 ? edge.cross(t.normal) : t.normal.cross(edge);
-        clip(piece, outward, outward.dot(of_cell[i]));
-      }
-      keep(t, std::move(piece), v, pieces);
+      CellOnFace on{.corners = cell(v), .value = v, .cosine = 0.0, .distance_m = 0.0, .piece = {t.x.begin(), t.x.end()}};
+      on.cosine = normal_of(on.corners).dot(t.normal);
+      on.distance_m = std::abs(t.normal.dot(field_.point_m.col(v) - t.x[0]));
+      if (!(std::abs(on.cosine) >= kLeastCosine) || on.distance_m > reach_m_) continue;
+      clip_to_cell(on.piece, on.corners, t.normal, on.cosine);
+      if (on.piece.size() >= 3 && area_of(on.piece) > kLeastPiece * t.area_m2) found.push_back(std::move(on));
     }
+    for (const CellOnFace& on : found) {
+      if (!is_other_side(on, found, t)) keep(t, on.piece, on.value, pieces);
+    }
+  }
+
+  /// True for a cell of the other side of a thin wall: one that faces the other way lies before the same place, and nearer.
+  [[nodiscard]] bool is_other_side(const CellOnFace& on, const std::vector<CellOnFace>& all, const Triangle& t) const {
+    return std::any_of(all.begin(), all.end(), [&](const CellOnFace& other) {
+      if (on.cosine * other.cosine > 0.0 || !(other.distance_m < on.distance_m - kSameDistance * reach_m_)) return false;
+      Polygon common = on.piece;
+      clip_to_cell(common, other.corners, t.normal, other.cosine);
+      return common.size() >= 3 && area_of(common) > kLeastPiece * t.area_m2;
+    });
   }
 
   void add_points(const Triangle& t, std::vector<Piece>& pieces) const {
@@ -279,15 +310,17 @@ class Mapper {
     }
   }
 
-  /// The cell nearest to a facet without pieces, if it is within reach; -1 for none.
+  /// The cell nearest to a facet without pieces, if it is within reach and faces it; -1 for none.
   [[nodiscard]] int nearest_cell(const std::vector<Triangle>& triangles) const {
     int best = -1;
     double nearest_m = reach_m_;
     for (const Triangle& t : triangles) {
       const Vector3d middle = (t.x[0] + t.x[1] + t.x[2]) / 3.0;
       for (const int v : near(t)) {
+        const Polygon corners = cell(v);
+        if (!(std::abs(normal_of(corners).dot(t.normal)) >= kLeastCosine)) continue;
         double distance_m = (field_.point_m.col(v) - middle).norm();
-        for (const Vector3d& x : cell(v)) distance_m = std::min(distance_m, (x - middle).norm());
+        for (const Vector3d& x : corners) distance_m = std::min(distance_m, (x - middle).norm());
         if (distance_m <= nearest_m) {
           nearest_m = distance_m;
           best = v;

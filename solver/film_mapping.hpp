@@ -31,16 +31,18 @@ struct FilmMapping {
 };
 
 /// Cuts each face of a surface into convex pieces, one a value of the file, and places quadrature points in each; they
-/// integrate N_i N_j exactly on plane faces with straight edges. So ∫ h N_i N_j dA holds the file's resolution even in faces
-/// that are much larger than its cells (Farrell et al., Comput. Methods Appl. Mech. Engrg. 198 (2009) 2632: integration on
-/// the intersections of both meshes).
+/// integrate N_i N_j exactly over each piece of a plane face with straight edges. So ∫ h N_i N_j dA holds the file's
+/// resolution even in faces that are much larger than its cells (Farrell et al., Comput. Methods Appl. Mech. Engrg. 198
+/// (2009) 2632: integration on the intersections of both meshes).
 ///
 /// Cells: a piece is the intersection of the face with a cell, projected along the face's normal. Where both lie in one
-/// plane, ∫ h dA = Σ_c h_c A_c, exactly, cell by cell. Cells that make an angle of more than 60° with the face, or whose
-/// middle is further than `reach` from its plane, do not count. A part of a face at the edge of the file that is no wider
-/// than `reach` (its area over the side of a square, or half a square, as large as the face) is covered by the face's other
-/// pieces, which count for the whole face; a face without any piece takes the nearest cell within `reach`. Where cells
-/// overlap, the mean counts.
+/// plane, ∫ h dA = Σ_c h_c A_c, exactly, cell by cell, on triangles and parallelograms. Another face of four corners is cut
+/// in reference coordinates, where straight lines are curved: its whole area is exact, and borders between cells within it
+/// are shifted. Cells that make an angle of more than 60° with the face, or whose middle is further than `reach` from its
+/// plane, do not count. A part of a face at the edge of the file that is no wider than `reach` (its area over the side of a
+/// square, or half a square, as large as the face) is covered by the face's other pieces, which count for the whole face; a
+/// face without any piece takes the nearest cell within `reach`, and within 60°. Where a cell that faces the other way is
+/// nearer to the face, as at a thin wall, the farther one does not count; where other cells overlap, the mean counts.
 ///
 /// Points: a piece is the part of the face that is nearer to a point than to any other and within `reach` of it (in the plane
 /// of the face, within the octagon about that circle). ∫ h dA = Σ_p h_p A_p with A_p the area of the faces' parts that are

@@ -368,6 +368,21 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
   return field;
 }
 
+/// Of the values as they were read, so that other `units` or another column give another one.
+std::string hash_of(const SurfaceField& field) {
+  std::string bytes;
+  const auto add = [&](const auto& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()),
+                 static_cast<std::size_t>(values.size()) * sizeof(*values.data()));
+  };
+  add(field.point_m);
+  add(field.corner_from);
+  add(field.corner_m);
+  add(field.film_W_m2K);
+  add(field.air_K);
+  return content_hash(bytes);
+}
+
 }  // namespace
 
 void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
@@ -391,9 +406,9 @@ void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
     } else {
       fail_at_file(e, fmt::format("'{}' is no format of films; .csv, .raw, .xy, .vtp, .vtu and .vtk are", extension));
     }
-    std::string bytes;
-    for (const FilmFile& file : files) bytes += read_bytes(file.path);
-    field.hash = content_hash(bytes);
+    if (field.air_K.size() > 0 && e.has("air"))
+      throw InputError(e.where, "the file has air temperatures; leave `air` out, or remove them from the file");
+    field.hash = hash_of(field);
     effects::set_means(field);
     e.field = std::make_shared<const SurfaceField>(std::move(field));
   }

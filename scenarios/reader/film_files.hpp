@@ -13,7 +13,7 @@ namespace driftwright::scenarios {
 /// @param folder  of the scenario file; relative paths start there
 /// @throws InputError  for a file that is missing or damaged, with line and column of a text file: a column that is
 ///                     missing, a cell that is no number, a negative film, an air temperature outside of 150 to 1000 K
-///                     (another unit), states on different points
+///                     (another unit), states on different points, and for `air` beside air temperatures in the file
 void read_film_files(std::vector<effects::Effect>& effects, const std::string& folder);
 
 }  // namespace driftwright::scenarios

@@ -180,6 +180,16 @@ INSTANTIATE_TEST_SUITE_P(Each, BadFilms,
                                                    "the speed or the time"}),
                          [](const auto& bad) { return bad.param.name; });
 
+TEST(Films, TakeTheirAirFromOnePlace) {
+  const auto folder = fresh_folder("films_two_airs");
+  std::ofstream(folder / "front.csv") << csv("x_mm,y_mm,z_mm,h_W_m2K,T_air_degC",
+                                             [](double, double) { return std::string("12,24"); });
+  const CommandOutcome outcome =
+      run_program("check " + scenario_with(folder, "{type: film_field, surface: front, file: front.csv, air: 22 degC}"));
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("the file has air temperatures; leave `air` out"));
+}
+
 TEST(Films, OfAMissingOrForeignFileAreRefused) {
   const auto folder = fresh_folder("films_missing");
   std::ofstream(folder / "front.txt") << "x";

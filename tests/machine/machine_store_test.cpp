@@ -113,6 +113,17 @@ Change node(const char* capacity) {
 Change film_from_the_start(const char* film) {
   return effect(fmt::format("{{type: convection, surface: front, film: {}, from: 0 s, until: 10 min}}", film));
 }
+/// A film whose file has lengths without a unit and two airs of the same mean.
+Change film_of_a_file(const char* units, const char* air_column) {
+  return [=](ColumnAndHead& m) {
+    const std::string file =
+        write_file("film_of_a_key.raw", "# x y z h air_a air_b\n0.02 0.2 0.32 10 290 300\n0.08 0.2 0.38 10 300 290\n");
+    m.effects.push_back(fmt::format(
+        "{{type: film_field, surface: front, file: {}, units: {}, film_column: h, air_column: {}, reach: 200 mm, "
+        "elsewhere: 5 W/(m^2 K)}}",
+        file, units, air_column));
+  };
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Of, OtherKeys,
@@ -152,6 +163,8 @@ INSTANTIATE_TEST_SUITE_P(
                 }},
         KeyCase{"HeldTemperature", effect("{type: fixed_temperature, surface: front, temperature: 24 degC}"),
                 effect("{type: fixed_temperature, surface: front, temperature: 25 degC}")},
+        KeyCase{"UnitsOfAFilmOfAFile", film_of_a_file("m", "air_a"), film_of_a_file("mm", "air_a")},
+        KeyCase{"AirOfAFilmOfAFile", film_of_a_file("m", "air_a"), film_of_a_file("m", "air_b")},
         KeyCase{"Gradient", effect("{type: stratification, gradient: 1 K/m, level: 0 m}"),
                 effect("{type: stratification, gradient: 1.1 K/m, level: 0 m}")},
         // What modal predictors are made at: the films at standstill, the ambient that laws are frozen in.

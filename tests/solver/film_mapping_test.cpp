@@ -167,7 +167,29 @@ TEST(FilmMapping, CellsOfAnotherSideDoNotCount) {
   const mesh::Mesh m = box(mesh::CellShape::kTet10);
   const SurfaceField field = cells_on_top(20, 10, uneven);
   EXPECT_NEAR(map_film(m, m.surface("x0"), field, 1e-3).uncovered_m2, 0.1 * 0.05, 1e-15);  // at 90 degrees
+  EXPECT_NEAR(map_film(m, m.surface("x0"), field, 0.02).uncovered_m2, 0.1 * 0.05, 1e-15);  // though near its edge
   EXPECT_NEAR(map_film(m, m.surface("z0"), field).uncovered_m2, 0.02, 1e-15);              // 50 mm away
+}
+
+TEST(FilmMapping, EachSideOfAThinWallHasItsOwnCells) {
+  // 4 mm thick, in cells of 20 x 20 mm: either side is within reach of the cells of the other one, which face away.
+  const mesh::Mesh m = fixtures::box_mesh({{0, 0, 0.046}, {0.2, 0.1, 0.004}, {3, 2, 1}, mesh::CellShape::kHex8});
+  const SurfaceField above = cells_on_top(10, 5, uneven);
+  SurfaceField both = above;
+  both.film_W_m2K.conservativeResize(100, 1);
+  both.point_m.conservativeResize(3, 100);
+  both.corner_m.conservativeResize(3, 400);
+  for (int c = 0; c < 50; ++c) {
+    both.film_W_m2K(50 + c, 0) = 3.0 * above.film_W_m2K(c, 0);
+    both.point_m.col(50 + c) = above.point_m.col(c) - Eigen::Vector3d(0, 0, 0.004);
+    for (int i = 0; i < 4; ++i)
+      both.corner_m.col(200 + 4 * c + i) = above.corner_m.col(4 * c + 3 - i) - Eigen::Vector3d(0, 0, 0.004);
+    both.corner_from.push_back(204 + 4 * c);
+  }
+  const FieldPart part = pattern(both);
+  const double above_W_K = 0.02 * uneven({0.1, 0.05, 0.05});
+  EXPECT_NEAR(map_film(m, m.surface("z1"), both).film_W_K(part), above_W_K, 1e-13);
+  EXPECT_NEAR(map_film(m, m.surface("z0"), both).film_W_K(part), 3.0 * above_W_K, 1e-13);
 }
 
 TEST(FilmMapping, HeatFromTheAirOfTheFileIsKept) {
