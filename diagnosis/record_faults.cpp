@@ -83,7 +83,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
 Record without_spikes(Record record, std::vector<DataFinding>& findings) {
   for (Channel& c : record.channels) {
     // A switched quantity may be on for a single row.
-    const bool is_reading = is_temperature_unit(c.unit) || !scenarios::is_of_column(c.unit);
+    const bool is_reading = is_temperature_unit(c.unit) || !scenarios::is_of_column(c.name, c.unit);
     if (!is_reading) continue;
     std::vector<std::size_t> known;
     for (std::size_t i = 0; i < c.values.size(); ++i) {
