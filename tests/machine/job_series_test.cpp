@@ -78,5 +78,29 @@ TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
   }
 }
 
+/// The job with a place of an axis and a voltage, both stepping after 100 s.
+Cyclogram with_columns(Cyclogram cyclogram, double place_mm) {
+  cyclogram.columns = {{"position_x", "mm", {{0.0, 100.0}, {place_mm, place_mm + 50.0}}},
+                       {"heater", "V", {{0.0, 100.0}, {5.0, 9.0}}}};
+  return cyclogram;
+}
+
+TEST(JobSeries, RecordedColumnsContinue) {
+  MachineRun before = morning(6.0, true);
+  before.cyclogram = with_columns(before.cyclogram, 300.0);
+  const JobSeries series = job_series(with_columns(kJob, 10.0),
+                                      {.start = before, .pause_s = 30.0, .n_parts = 2, .between_s = 10.0}, kWarming, 60.0);
+  const Cyclogram::Column& place = *series.cyclogram.column("position_x");
+  const Cyclogram::Column& heater = *series.cyclogram.column("heater");
+  EXPECT_THAT(place.rows.time_s, ElementsAre(0, 100, 120, 150, 250, 300, 310, 410));
+  EXPECT_THAT(place.rows.value, ElementsAre(300, 350, 350, 10, 60, 60, 10, 60)) << "axes stay where they are";
+  EXPECT_THAT(heater.rows.value, ElementsAre(5, 9, 0, 5, 9, 0, 5, 9)) << "all else is off during a pause";
+}
+
+TEST(JobSeries, AColumnThatTheRunBeforeLacksIsMissing) {
+  const JobSeries series = job_series(with_columns(kJob, 10.0), {.start = morning(6.0, true)}, kWarming, 60.0);
+  EXPECT_EQ(series.cyclogram.column("position_x"), nullptr);  // whoever needs it says so
+}
+
 }  // namespace
 }  // namespace driftwright::scenarios::job_series_test
