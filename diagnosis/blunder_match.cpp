@@ -81,9 +81,9 @@ double beyond_scatter(const Match& m, const Eigen::ArrayXd& read, double least_c
                    course > 0.0 ? beyond_noise / (kOwnScatter * course) : 0.0});
 }
 
-double nats_of_unrelated(const Eigen::ArrayXd& read, double n_independent) {
-  const double noise = reading_noise(read);
-  return -0.5 * n_independent * std::log(variance_of(read) + noise * noise);
+double nats_of_unrelated(const ReadBeside& r, double n_independent) {
+  const double noise = reading_noise(r.read), off_K = r.is_temperature ? r.read.mean() - r.model.mean() : 0.0;
+  return -0.5 * n_independent * std::log(variance_of(r.read) + noise * noise) - 0.5 * std::pow(off_K / kOffset_K, 2);
 }
 
 }  // namespace driftwright::diagnosis

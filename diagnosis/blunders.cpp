@@ -105,7 +105,7 @@ bool few_met(const Beside& b) {
 
 /// The evidence of a channel without a blunder: a fault of the machine, or an instrument that reads something else.
 double nats_without(const ReadBeside& r, double n_independent) {
-  return std::max(match(r, {}, n_independent).nats, nats_of_unrelated(r.read, n_independent));
+  return std::max(match(r, {}, n_independent).nats, nats_of_unrelated(r, n_independent));
 }
 
 // --- readings ----------------------------------------------------------------------------------------------------------------
@@ -144,7 +144,7 @@ bool thermometers_follow(const Beside& b) {
     if (c.unit != "K" || !says_something(c)) continue;
     const ReadBeside r = read_beside(c, b.prediction, c.output);
     const double n = static_cast<double>(r.read.size());
-    ++(match(r, {}, n).nats > nats_of_unrelated(r.read, n) ? n_following : n_other);
+    ++(match(r, {}, n).nats > nats_of_unrelated(r, n) ? n_following : n_other);
   }
   return n_following > n_other;
 }
@@ -286,7 +286,7 @@ std::optional<double> gain_with(const Beside& b, const OtherDrive& o, const Eige
     if (apart < 2.0 * reading_noise(was.read)) continue;
     independent.push_back(std::min(independent_readings(was), independent_readings(is)));
     if (channel.name == o.ambient_from)
-      as_ambient = nats_of_unrelated(was.read, independent.back()) - nats_of_unrelated(is.read, independent.back());
+      as_ambient = nats_of_unrelated(was, independent.back()) - nats_of_unrelated(is, independent.back());
     before.push_back(std::move(was));
     after.push_back(std::move(is));
   }
@@ -317,7 +317,7 @@ std::optional<BodyAtAmbient> body_at_ambient(const Twin& twin, const MeasuredRun
     const ReadBeside r = read_beside(ambient, prediction.row(static_cast<Eigen::Index>(o)).transpose(), true);
     const double n = independent_readings(r);
     const Match m = match(r, {}, n);
-    const double nats = m.nats - nats_of_unrelated(r.read, n);
+    const double nats = m.nats - nats_of_unrelated(r, n);
     if (m.is_met() && nats > body.nats) body = {twin.outputs().name[o], nats};
   }
   return body.name.empty() ? std::nullopt : std::optional(body);
@@ -419,7 +419,7 @@ std::optional<Renaming> renaming_of(const MeasuredRun& run, const MeasuredChanne
     const ReadBeside r = read_beside(c, prediction, static_cast<int>(o));
     const double n = independent_readings(r);
     const Match m = match(r, {}, n);
-    const double nats = m.is_met() ? m.nats - nats_of_unrelated(r.read, n) : 0.0;
+    const double nats = m.is_met() ? m.nats - nats_of_unrelated(r, n) : 0.0;
     second = std::max(second, std::min(nats, most));
     if (nats <= most) continue;
     most = nats;

@@ -292,5 +292,17 @@ TEST(Match, FindsGainAndOffset) {
   EXPECT_GT(foreign.nats - match(r, {}, 1000.0).nats, 12.0);
 }
 
+// The same course 50 K off: (50 / 8.33)^2 / 2 = 18 nats for a thermometer, nothing for a displacement, whose zero is arbitrary.
+TEST(Match, AThermometerThatHasComeOffIsNotFarOff) {
+  ReadBeside near;
+  near.model = Eigen::ArrayXd::LinSpaced(50, 0.0, 20.0);
+  near.read = near.model.reverse();
+  ReadBeside far = near;
+  far.read += 50.0;
+  EXPECT_NEAR(nats_of_unrelated(near, 10.0) - nats_of_unrelated(far, 10.0), 18.0, 1e-9);
+  near.is_temperature = far.is_temperature = false;
+  EXPECT_NEAR(nats_of_unrelated(near, 10.0), nats_of_unrelated(far, 10.0), 1e-9);
+}
+
 }  // namespace
 }  // namespace driftwright::diagnosis::blunders_test
