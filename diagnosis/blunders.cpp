@@ -174,6 +174,14 @@ struct OfReadings {
   std::vector<std::size_t> channels;
 };
 
+/// Whether no machine reads such temperatures, but it may if they are shown so: then a fault may be there, too, and the scenario
+/// need not meet them.
+bool is_impossible_but_for(const ReadBeside& r, const Showing& shown) {
+  if (!r.is_temperature) return false;
+  const double read_K = r.read.mean(), model_K = r.model.mean();
+  return std::abs(read_K - model_K) > kFarBeside_K && std::abs((read_K - shown.shift) / shown.scale - model_K) <= kFarBeside_K;
+}
+
 void try_headers(const Beside& b, std::size_t at, double reference_C, bool may_be_turned, std::vector<OfReadings>& tried,
                  std::size_t& n_tried) {
   const MeasuredChannel& c = b.run.channels[at];
@@ -181,7 +189,7 @@ void try_headers(const Beside& b, std::size_t at, double reference_C, bool may_b
   for (const ForeignHeader& h : foreign_headers(c, reference_C, may_be_turned)) {
     ++n_tried;
     const Match mended = match(r, h.shown, b.independent[at]);
-    if (b.is_met[at] || !mended.is_met()) continue;
+    if (b.is_met[at] || !(mended.is_met() || is_impossible_but_for(r, h.shown))) continue;
     const double nats = mended.nats - nats_without(r, b.independent[at]);
     tried.push_back({header_blunder(b, at, h, reference_C, nats), {at}});
   }

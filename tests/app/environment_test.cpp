@@ -72,7 +72,7 @@ TEST(Environment, TooLittleMemoryForTheLibrariesEndsInTime) {
                           (temporary_folder() / "tight").string();
   ASSERT_EQ(run_program("--version >/dev/null; " + run).exit_code, 0);
   int n_refused = 0;
-  for (const int limit_MB : {300, 350, 400, 450}) {  // OpenBLAS alone needs 128
+  for (const int limit_MB : {200, 250, 300, 350}) {  // OpenBLAS alone needs 128
     const CommandOutcome outcome =
         run_program(fmt::format("--version >/dev/null; ulimit -v {}; timeout -s KILL 60 {}", limit_MB * 1024, run));
     EXPECT_THAT(outcome.exit_code, AnyOf(0, 2)) << limit_MB << " MB: " << outcome.output;

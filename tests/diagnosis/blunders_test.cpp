@@ -195,6 +195,15 @@ INSTANTIATE_TEST_SUITE_P(
              {"speed and drives seem to be recorded 1 h earlier than the readings"}}),
     [](const auto& tested) { return tested.param.name; });
 
+// Of a machine whose heat is twice that of the scenario: no gain within its scatter, but no machine is 48 K off.
+TEST(FaultyMachine, ThatIsReadInFahrenheitIsNamed) {
+  const Machine truth(spindle_with("power: 150 W", "power: 300 W"));
+  MeasuredRun run = read_by(truth);
+  EXPECT_EQ(said_of(run), "");
+  run.channels[0].value = (1.8 * run.channels[0].value.array() + 48.0).matrix();
+  EXPECT_THAT(said_of(run), HasSubstr("t_shaft_degC looks like degF"));
+}
+
 TEST(SoundRecords, SayNothing) {
   EXPECT_EQ(said_of(read_by(Machine(kSpindle))), "");
   const Machine doubled(spindle_with("power: 150 W", "power: 300 W")),
