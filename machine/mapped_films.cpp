@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,6 +28,27 @@ void require_covered(const effects::Effect& e, const solver::FilmMapping& mappin
           "{:.1f} mm]; values count up to {:.3g} mm from their point or cell. Give these faces a film with "
           "`elsewhere: ... W/(m^2 K)`, let values count further with `reach`, or check `units`",
           1e4 * mapping.uncovered_m2, 100.0 * share, e.place, x_mm[0], x_mm[1], x_mm[2], 1e3 * mapping.reach_m));
+}
+
+/// How much larger than its surface a file may be. Metres read as millimetres, or the other way, are a factor of 1000; a file
+/// of a whole machine or its room for one of its surfaces is seldom beyond 30.
+constexpr double kLargestFile = 100.0;
+
+/// Points that are far apart count far away, so that a file in another unit would cover everything.
+void require_size(const effects::Effect& e, const mesh::Mesh& mesh) {
+  if (e.has("reach")) return;
+  Eigen::AlignedBox3d of_surface;
+  for (const int facet : mesh.facets_on(mesh.surface(e.place))) {
+    for (const int node : mesh.facets.nodes(facet)) of_surface.extend(Eigen::Vector3d(mesh.coords.col(node)));
+  }
+  const Eigen::Matrix3Xd& point_m = e.field->point_m;
+  const double file_m = (point_m.rowwise().maxCoeff() - point_m.rowwise().minCoeff()).norm();
+  const double surface_m = of_surface.diagonal().norm();
+  if (file_m <= kLargestFile * surface_m) return;
+  throw InputError(e.where,
+                   fmt::format("the file is {:.4g} mm large, and surface '{}' {:.4g} mm; check the unit of its "
+                               "lengths (`units`, or the header of a CSV), or say with `reach` how far a value counts",
+                               1e3 * file_m, e.place, 1e3 * surface_m));
 }
 
 MappedState state_of(const effects::Effect& e, const mesh::Mesh& mesh, const solver::FilmMapping& mapping, int state) {
@@ -74,6 +96,7 @@ std::vector<MappedFilm> mapped_films(const std::vector<effects::Effect>& effects
   for (const effects::Effect& e : effects) {
     if (!e.field) continue;
     must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh));
+    require_size(e, mesh);
     const solver::FilmMapping mapping = solver::map_film(mesh, mesh.surface(e.place), *e.field, e["reach"]);
     require_covered(e, mapping);
     films.push_back({.name = e.name(),

@@ -30,7 +30,8 @@ struct MappedFilm {
 };
 
 /// Maps the films of all effects that have read a file.
-/// @throws InputError  for a surface that does not exist, and for faces that the file does not cover, unless the effect has
+/// @throws InputError  for a surface that does not exist, for a file more than 100 times as large as its surface without a
+///                     `reach` (another unit of lengths), and for faces that the file does not cover, unless the effect has
 ///                     a film for them (`elsewhere`)
 [[nodiscard]] std::vector<MappedFilm> mapped_films(const std::vector<effects::Effect>& effects, const mesh::Mesh& mesh);
 

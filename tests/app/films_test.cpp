@@ -190,6 +190,15 @@ TEST(Films, TakeTheirAirFromOnePlace) {
   EXPECT_THAT(outcome.output, HasSubstr("the file has air temperatures; leave `air` out"));
 }
 
+TEST(Films, InAnotherUnitAreRefused) {
+  const auto folder = fresh_folder("films_unit_of_lengths");
+  std::ofstream(folder / "front.csv") << csv("x_m,y_m,z_m,h_W_m2K", [](double, double) { return std::string("12"); });
+  const CommandOutcome outcome =
+      run_program("check " + scenario_with(folder, "{type: film_field, surface: front, file: front.csv}"));
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("check the unit of its lengths"), HasSubstr("'front'")));
+}
+
 TEST(Films, OfAMissingOrForeignFileAreRefused) {
   const auto folder = fresh_folder("films_missing");
   std::ofstream(folder / "front.txt") << "x";
