@@ -179,7 +179,8 @@ struct OfReadings {
 bool is_impossible_but_for(const ReadBeside& r, const Showing& shown) {
   if (!r.is_temperature) return false;
   const double read_K = r.read.mean(), model_K = r.model.mean();
-  return std::abs(read_K - model_K) > kFarBeside_K && std::abs((read_K - shown.shift) / shown.scale - model_K) <= kFarBeside_K;
+  return std::abs(read_K - model_K) > kFarBeside_K &&
+         std::abs((read_K - shown.shift) / shown.scale - model_K) <= kFarBeside_K;
 }
 
 void try_headers(const Beside& b, std::size_t at, double reference_C, bool may_be_turned, std::vector<OfReadings>& tried,

@@ -42,7 +42,7 @@ cyclograms:
   second: [[60 min, 1000 rpm]]
 )";
 
-/// Only the drive, the ambient and the rows' times count: nothing is fitted.
+/// Only the drive, the ambient and the times of the rows count: nothing is fitted, and what the record lacks is not refused (as recorded).
 std::string record(const std::string& name, double rpm) {
   std::string text = "time_s,speed_rpm,ambient_degC,t_spindle_degC,t_column_degC,tip_z_um\n";
   for (int i = 0; i <= 90; ++i)
@@ -54,7 +54,7 @@ std::string record(const std::string& name, double rpm) {
 TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
   const studies::MeasuredTwin m =
       studies::open_measured_twin(scenarios::read_scenario(write_file("two_bodies.yaml", kScenario)), "diagnose",
-                                  {record("first", 3000), record("second", 1000)}, {});
+                                  {record("first", 3000), record("second", 1000)}, {}, true);
   const std::vector<Knob> knobs = scatter(*m.twin);
   ASSERT_GE(knobs.size(), 9u);
   Fitter fitter(*m.twin, m.runs, knobs, {});
@@ -89,7 +89,7 @@ TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
 TEST(ScatterSlopes, ANumberAtTheEndOfItsRangeStopsNoFit) {
   const studies::MeasuredTwin m =
       studies::open_measured_twin(scenarios::read_scenario(write_file("bounded.yaml", kScenario)), "diagnose",
-                                  {record("first", 3000), record("second", 1000)}, {});
+                                  {record("first", 3000), record("second", 1000)}, {}, true);
   const std::vector<Knob> knobs = scatter(*m.twin);
   const auto capacity = std::find_if(knobs.begin(), knobs.end(), [](const Knob& k) { return k.effect == "heat_capacity"; });
   ASSERT_NE(capacity, knobs.end());
@@ -117,7 +117,7 @@ TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
                "at_temperature: 20 degC");
   const studies::MeasuredTwin m =
       studies::open_measured_twin(scenarios::read_scenario(write_file("scaled.yaml", text)), "diagnose",
-                                  {record("first", 3000), record("second", 1000)}, {});
+                                  {record("first", 3000), record("second", 1000)}, {}, true);
   const std::vector<Knob> knobs = scatter(*m.twin);
   Fitter fitter(*m.twin, m.runs, knobs, {});
   fitter.set_noise({{"t_spindle", {0.1, 0.0, 0.0}}, {"t_column", {0.1, 0.0, 0.0}}, {"tip_z", {0.5e-6, 0.0, 0.0}}});
