@@ -27,7 +27,7 @@ struct SearchUnderWay {
 
   /// Settles the numbers of the best hypothesis: the next steps start from here.
   void settle();
-  /// Exchanges each claim for a better one, until there is none. @return whether something changed
+  /// Replaces claims by better ones until no replacement is better. @return whether something changed
   bool exchange();
   /// Adds the best name of what is still missing. @param former  compared with the first name; null, or with its fit
   /// @return whether there was one that is worth its price

@@ -60,7 +60,7 @@ struct FieldPart {
   double even_air_K = std::numeric_limits<double>::quiet_NaN();  ///< air temperature of all values if the file has none
 
   [[nodiscard]] bool is_even() const { return id.empty(); }
-  /// The pattern at a value of the file [W/(m^2 K)]; `value` -1: where there is none.
+  /// The pattern at a value of the file [W/(m^2 K)]; `value` -1 means faces without a value.
   [[nodiscard]] double film_W_m2K(int value) const;
   /// The same of h T_air [W/m^2], T_air absolute; 0 without air temperatures.
   [[nodiscard]] double film_times_air_W_m2(int value) const;

@@ -48,7 +48,7 @@ constexpr Placeholder kPlaceholders[] = {
   throw InputError(e.reference_where.at("file"), message);
 }
 
-/// The files that a name stands for, by rising operating point or time; `over` is what its placeholder says.
+/// All files of a pattern, by rising operating point or time. `over`: what its placeholder says, speed or time.
 std::vector<FilmFile> files_of(const Effect& e, FieldOver& over) {
   const fs::path path = e.words.at("file");
   const Placeholder* holder = nullptr;
