@@ -9,7 +9,7 @@
 namespace driftwright::config_map_test {
 namespace {
 
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
+using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 using namespace schema;
 
@@ -87,11 +87,8 @@ TEST(ConfigMap, WhatIsDescribedAndWhatIsReadAreTheSame) {
 
 TEST(ConfigMap, UnknownKeyIsNamedWithItsPlaceAndTheNearestKnownOne) {
   const ConfigMap in = read("name: a\npart:\n  film: 5 W/(m^2 K)\n  ambeint: 24 degC\n").described_by(all_kinds());
-  EXPECT_THAT(
-      [&] { in.map("part").reject_unknown_keys(); },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("config_map_test.yaml:4:3: unknown key 'ambeint'"),
-                                      HasSubstr("film, ambient"), HasSubstr("Did you mean 'ambient'?"),
-                                      HasSubstr("[part.ambeint]"), HasSubstr("\n    4 |   ambeint: 24 degC\n      |   ^"))));
+  EXPECT_REFUSED(in.map("part").reject_unknown_keys(), "config_map_test.yaml:4:3: unknown key 'ambeint'", "film, ambient",
+                 "Did you mean 'ambient'?", "[part.ambeint]", "\n    4 |   ambeint: 24 degC\n      |   ^");
 }
 
 TEST(ConfigMap, AKeyFarFromAllOthersGetsNoSuggestion) {

@@ -12,8 +12,6 @@
 namespace driftwright::config_tree_test {
 namespace {
 
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::ThrowsMessage;
-
 std::string line_of(const std::string& yaml) {
   return written(*read_config_tree(write_file("tree.yaml", yaml)));
 }
@@ -35,11 +33,9 @@ TEST(ConfigTree, AliasesThatStandForBillionsAreRefusedWithTheNumber) {
   for (int i = 1; i < 12; ++i)
     bomb += fmt::format("a{0}: &a{0} [*a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}]\n", i, i - 1);
   for (int i = 1; i < 5000; ++i) chain += fmt::format("a{0}: &a{0} [*a{1}]\n", i, i - 1);
-  EXPECT_THAT([&] { (void)line_of(bomb); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("tree.yaml:7:"), HasSubstr("1000000 values"))));
+  EXPECT_REFUSED(line_of(bomb), "tree.yaml:7:", "1000000 values");
   EXPECT_REFUSED(line_of(chain), "more than 200 deep");
-  EXPECT_THAT([&] { (void)line_of(std::string(100000, '[')); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("tree.yaml"), HasSubstr("more than 200 deep"))));
+  EXPECT_REFUSED(line_of(std::string(100000, '[')), "tree.yaml", "more than 200 deep");
 }
 
 TEST(ConfigTree, IsReadFromTheEncodingsOfRecords) {

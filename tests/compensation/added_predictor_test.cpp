@@ -298,8 +298,7 @@ TEST_P(AnAddedPredictor, IsNeitherWrittenNorReadUnguarded) {
   none["fail_safe"]["guards"] = Json::array();
   for (const Json& unguarded : {null, none}) {
     const std::string path = driftwright::write_file("unguarded.json", unguarded.dump());
-    EXPECT_THAT([&] { (void)output::read_predictor(path); },
-                ThrowsMessage<InputError>(AllOf(HasSubstr("unguarded.json"), HasSubstr("'head' in degC has no guard"))));
+    EXPECT_REFUSED(output::read_predictor(path), "unguarded.json", "'head' in degC has no guard");
   }
 }
 

@@ -15,6 +15,7 @@
 #include "machine/machine_key.hpp"
 #include "scenarios/reader/scenario.hpp"
 #include "scenarios/reader/sweep_plan.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::scenarios::former_words_test {
@@ -27,7 +28,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
 
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -128,9 +128,7 @@ TEST(FormerWords, AreToldOnceWithWhatToWrite) {
 
 TEST(FormerWords, BesideThePresentOneAreRefused) {
   const std::string both = write_file("both.yaml", kMachine + "hall: 20 degC\n");
-  EXPECT_THAT([&] { (void)read_scenario(both); },
-              ThrowsMessage<InputError>(
-                  AllOf(HasSubstr("both.yaml:15"), HasSubstr("former name of `ambient`"), HasSubstr("leave out one"))));
+  EXPECT_REFUSED(read_scenario(both), "both.yaml:15", "former name of `ambient`", "leave out one");
 }
 
 TEST(FormerWords, OfSweepsAreReadToo) {

@@ -26,7 +26,6 @@ using namespace compensation;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 output::PredictorFile formula(bool from_start) {
   output::DeployedModel model = fixtures::deployed(from_start, 60.0);
@@ -82,10 +81,7 @@ TEST(FollowSession, DoesNotFollowWhatValidateCallsUnsafe) {
   output::PredictorFile file = formula(true);
   file.judged = {{"verdict", "unsafe"}, {"why", "a sensor that drifts leaves 40 um"}};
   const std::string path = path_of(file, "unsafe.json");
-  EXPECT_THAT([&] { (void)followed_predictor(path, {}); },
-              ::testing::ThrowsMessage<InputError>(
-                  ::testing::AllOf(::testing::HasSubstr(path), ::testing::HasSubstr("a sensor that drifts leaves 40 um"),
-                                   ::testing::HasSubstr("--despite-verdict"))));
+  EXPECT_REFUSED(followed_predictor(path, {}), path, "a sensor that drifts leaves 40 um", "--despite-verdict");
   EXPECT_NO_THROW((void)followed_predictor(path, {.despite_verdict = true}));
 }
 
@@ -124,8 +120,7 @@ TEST(FollowSession, AStateOfAnotherModelOrADamagedOneIsRefused) {
   std::string text = read_bytes(state);
   text.replace(text.find("\"run_s\""), 7, "\"run_t\"");
   driftwright::write_file("axis.state", text);
-  EXPECT_THAT([&] { (void)resume_from(state, narrow); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("axis.state"), HasSubstr("damaged"))));
+  EXPECT_REFUSED(resume_from(state, narrow), "axis.state", "damaged");
 }
 
 TEST(FollowSession, SaysThatItIsHeldOrOffAndWhy) {
@@ -430,20 +425,12 @@ TEST(FollowProbing, WhatCannotBeTakenIsRefused) {
     Session session(std::move(models));
     session.begin(channels);
   };
-  EXPECT_THAT(
-      [&] {
-        begun({{"probe_drift_z", "um", {}}}, two_um_per_K());
-      },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_z_um'"), HasSubstr("Corrected here: drift_y"))));
+  EXPECT_REFUSED(begun({{"probe_drift_z", "um", {}}}, two_um_per_K()), "'probe_drift_z_um'", "Corrected here: drift_y");
   EXPECT_REFUSED(begun({{"probe_drift_y", "um", {}}, {"probe_left_drift_y", "um", {}}}, two_um_per_K()),
                  "only one of them is allowed");
   output::PredictorFile file = two_um_per_K();
   file.predictor.residual.reset();
-  EXPECT_THAT(
-      [&] {
-        begun({{"probe_drift_y", "um", {}}}, file);
-      },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("'probe_drift_y_um'"), HasSubstr("key `probing`"))));
+  EXPECT_REFUSED(begun({{"probe_drift_y", "um", {}}}, file), "'probe_drift_y_um'", "key `probing`");
   EXPECT_NO_THROW(begun({{"probe_1", "degC", {}}}, file));  // a thermometer
 }
 

@@ -33,7 +33,6 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 using ::testing::UnorderedElementsAre;
 
 std::string written(const std::string& name, const std::string& text) {
@@ -141,14 +140,13 @@ TEST(DeckOfAnotherProgram, NodesInCylindricalCoordinatesAreUnderstood) {
   const double area_mm2 = kSteps * 0.5 * std::sin(15.0 * std::numbers::pi / 180.0) * (60.0 * 60.0 - 40.0 * 40.0);
   EXPECT_NEAR(litres(mesh_of_deck(nodes + cells), "ring"), 1e-6 * area_mm2 * 30.0, 1e-12);
   nodes.replace(nodes.find("SYSTEM=C"), 8, "SYSTEM=S");
-  EXPECT_THAT([&] { (void)mesh_of_deck(nodes + cells); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr(":1:"), HasSubstr("SYSTEM=s"), HasSubstr("C (radius"))));
+  EXPECT_REFUSED(mesh_of_deck(nodes + cells), ":1:", "SYSTEM=s", "C (radius");
 }
 
 TEST(DeckOfAnotherProgram, KeywordsThatMakeNodesOrElementsAreRefusedAtTheirLine) {
   for (const std::string keyword : {"*NGEN", "*NFILL", "*NCOPY, CHANGE NUMBER=5, OLD SET=a", "*ELGEN", "*SYSTEM"}) {
-    EXPECT_THAT([&] { (void)mesh_of_deck(std::string(kNodes) + keyword + "\n1,11,1\n" + kCells); },
-                ThrowsMessage<InputError>(AllOf(HasSubstr(":14:"), HasSubstr(keyword.substr(0, keyword.find(','))))));
+    EXPECT_REFUSED(mesh_of_deck(std::string(kNodes) + keyword + "\n1,11,1\n" + kCells),
+                   ":14:", keyword.substr(0, keyword.find(',')));
   }
   EXPECT_REFUSED(mesh_of_deck("*NODE, INPUT=nodes.inp\n" + std::string(kCells)), ":1: INPUT= is not followed");
 }

@@ -11,13 +11,14 @@
 #include "nc/program.hpp"
 #include "nc/sections.hpp"
 #include "tests/nc/program_sums.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::nc_program_test {
 namespace {
 
 using fixtures::revolutions, fixtures::travel_mm;
-using ::testing::AllOf, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
+using ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // relative: sums of a few dozen terms of one sign in double precision
@@ -388,8 +389,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& wrong) { return std::string(wrong.param.name); });
 
 TEST(NcProgram, AMissingFileIsNamed) {
-  EXPECT_THAT([] { (void)read_nc_program("/nowhere/a.ngc", kSettings); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("/nowhere/a.ngc"), HasSubstr("cannot be opened"))));
+  EXPECT_REFUSED(read_nc_program("/nowhere/a.ngc", kSettings), "/nowhere/a.ngc", "cannot be opened");
 }
 
 class Merging : public ::testing::TestWithParam<double> {};

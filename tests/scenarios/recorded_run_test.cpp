@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::scenarios::recorded_run_test {
 namespace {
 
-using ::testing::AllOf, ::testing::DoubleNear, ::testing::Each, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using ::testing::DoubleNear, ::testing::Each, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::SizeIs;
 
 /// Rows a minute apart, from 300 s on: two minutes of 1000 rpm, one of a jitter about it, rest.
 Record record() {
@@ -131,8 +131,7 @@ TEST(MachineRun, RefusesStrictlyWhatItSaysLeniently) {
                                                   {empty, "speed_rpm is empty"},      {in_percent, "it must be in rpm"},
                                                   {kelvin, "looks like kelvin"},      {volts, "it must be in degC"}};
   for (const auto& [bad, words] : cases) {
-    EXPECT_THAT([&] { (void)run_of(bad, &machine, {}, Reading::kStrict); },
-                ThrowsMessage<InputError>(AllOf(HasSubstr("monday.csv"), HasSubstr(words))));
+    EXPECT_REFUSED(run_of(bad, &machine, {}, Reading::kStrict), "monday.csv", words);
     const MachineRun run = run_of(bad, &machine, {}, Reading::kLenient);
     ASSERT_FALSE(run.findings.empty()) << words;
     EXPECT_THAT(run.findings[0].what, HasSubstr(words));
