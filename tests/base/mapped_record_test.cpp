@@ -27,7 +27,7 @@ namespace driftwright::mapped_record_test {
 namespace {
 
 using ::testing::AllOf, ::testing::Contains, ::testing::DoubleNear, ::testing::ElementsAre, ::testing::HasSubstr;
-using ::testing::IsEmpty, ::testing::NanSensitiveDoubleEq, ::testing::Pointwise;
+using ::testing::IsEmpty, ::testing::Pointwise;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 

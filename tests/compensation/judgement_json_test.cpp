@@ -15,7 +15,6 @@
 namespace driftwright::compensation::judgement_json_test {
 namespace {
 
-using ::testing::ElementsAre;
 using Json = nlohmann::ordered_json;
 
 Case case_of(std::size_t run, double before_um, double after_um, const std::string& failed = "") {

@@ -15,7 +15,6 @@
 namespace driftwright::compensation::sensor_selection_test {
 namespace {
 
-using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -19,7 +19,6 @@ namespace driftwright::diagnosis::calibration_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 /// A run of one channel that the prediction misses by e.
 MeasuredRun run_missed_by(const Eigen::VectorXd& e) {

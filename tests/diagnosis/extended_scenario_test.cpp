@@ -23,7 +23,6 @@ namespace driftwright::diagnosis::extended_scenario_test {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 

@@ -15,7 +15,6 @@
 namespace driftwright::effects::effects_test {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 

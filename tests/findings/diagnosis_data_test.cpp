@@ -24,7 +24,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
@@ -251,8 +250,9 @@ TEST(Reports, SayFirstWhatWasComparedAndWhatLooksWrong) {
   found.measured.renamings = {{.path = "monday.csv", .column = "T3_degC", .header = "t_housing_degC"}};
   const Compared compared = compared_of(found.measured.runs);
   const std::string first = said_first_text(found.measured, compared);
-  EXPECT_THAT(first, StartsWith("monday.csv: nose_um looks like mm. Call the column nose_mm. T3_degC reads what the scenario "
-                                "simulates for t_housing_degC: call"));
+  EXPECT_THAT(first,
+              StartsWith("monday.csv: nose_um looks like mm. Call the column nose_mm. T3_degC reads what the scenario "
+                         "simulates for t_housing_degC: call"));
   found.d.verdict = diagnosis::Verdict::kConsistent;
   const output::Verdict answer = answer_of(found.d, compared, first);
   EXPECT_EQ(answer.kind, output::Verdict::Kind::kNeutral);

@@ -18,7 +18,7 @@ namespace driftwright::follow::bounded_server_test {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::Pair;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair;
 using ::testing::StartsWith;
 using Clock = std::chrono::steady_clock;
 

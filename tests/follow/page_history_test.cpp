@@ -15,8 +15,6 @@
 namespace driftwright::follow::page_history_test {
 namespace {
 
-using ::testing::HasSubstr;
-
 PageRow row_at(double run_s, double um = 0.0) {
   PageRow row{.run_s = run_s, .line = {}, .values = {run_s}, .state = {}};
   row.line.run_s = row.line.time_s = run_s;

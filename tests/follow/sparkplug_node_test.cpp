@@ -10,7 +10,7 @@
 namespace driftwright::follow::sparkplug_node_test {
 namespace {
 
-using ::testing::Contains, ::testing::Each, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::Pair;
+using ::testing::Contains, ::testing::Each, ::testing::HasSubstr, ::testing::Pair;
 
 constexpr std::uint64_t kAlias = 5;
 

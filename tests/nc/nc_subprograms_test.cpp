@@ -16,7 +16,7 @@
 namespace driftwright::nc_subprograms_test {
 namespace {
 
-using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::Pair;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr;
 
 NcSettings settings() {
   return {.rapid_m_s = 0.25,

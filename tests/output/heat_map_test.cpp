@@ -12,7 +12,7 @@
 namespace driftwright::output::heat_map_test {
 namespace {
 
-using ::testing::ElementsAre, ::testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Colour and number of each cell in the order of the drawing, followed by the five of the scale.
 std::vector<std::pair<std::string, std::string>> cells(const std::string& svg) {

@@ -18,7 +18,7 @@ namespace driftwright::output::results_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::ThrowsMessage;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 std::string read(const fs::path& file) {
   std::ostringstream text;

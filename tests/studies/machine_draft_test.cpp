@@ -15,7 +15,7 @@
 namespace driftwright::machine_draft_test {
 namespace {
 
-using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::UnorderedElementsAre;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::UnorderedElementsAre;
 
 /// Two boxes as an input file of Abaqus, in mm, of one hexahedron each: a plate of 200 x 100 x 20 mm on the ground, a
 /// block of 100 x 100 x 50 mm on one half of it, with separate nodes; and a third box 300 mm away.
