@@ -42,6 +42,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
     law.probes.push_back(body);
     law.probes.push_back(*other);
   }
+  law.steps = nullptr;
   law.value = [=, value = law.value](const Inputs& u) {
     Inputs own;
     const Inputs* inputs = &u;
@@ -81,6 +82,7 @@ std::string of_medium(const std::string& exchange) {
 /// The additional heat that a warmer medium brings with the same exchange.
 HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
   Law heat = x.coefficient;
+  heat.steps = nullptr;
   heat.value = [coefficient = x.coefficient.value, warmer_K = e["warmer"], e](const Inputs& u) {
     return acts(e, u) ? warmer_K * coefficient(u) : 0.0;
   };
