@@ -22,12 +22,12 @@ double churchill_chu(double at_rest, double prandtl_scale, double rayleigh, doub
 
 constexpr double kStillAirNusselt = 0.96, kGravity_m_s2 = 9.80665;
 
-/// The properties of air every kStep_K from kFirst_K to kLast_K.
-struct Row {
+/// The properties of air every kAirStep_K from kFirstAir_K to kLastAir_K.
+struct AirRow {
   double conductivity_mW_mK, viscosity_mm2_s, diffusivity_mm2_s;
 };
-constexpr double kFirst_K = 200.0, kStep_K = 50.0, kLast_K = 500.0;
-constexpr std::array<Row, 7> kRows = {{{18.1, 7.590, 10.3},
+constexpr double kFirstAir_K = 200.0, kAirStep_K = 50.0, kLastAir_K = 500.0;
+constexpr std::array<AirRow, 7> kAirRows = {{{18.1, 7.590, 10.3},
                                        {22.3, 11.44, 15.9},
                                        {26.3, 15.89, 22.5},
                                        {30.0, 20.92, 29.9},
@@ -36,12 +36,12 @@ constexpr std::array<Row, 7> kRows = {{{18.1, 7.590, 10.3},
                                        {40.7, 38.79, 56.7}}};
 
 /// A property over the temperature by a formula: a line, and a bend at each row.
-std::string column_formula(double Row::*column, double scale, const std::string& temperature) {
-  std::string text = fmt::format("{}*({}", scale, kRows[0].*column);
+std::string column_formula(double AirRow::*column, double scale, const std::string& temperature) {
+  std::string text = fmt::format("{}*({}", scale, kAirRows[0].*column);
   double slope = 0.0;
-  for (std::size_t i = 0; i + 1 < kRows.size(); ++i) {
-    const double next = (kRows[i + 1].*column - kRows[i].*column) / kStep_K;
-    text += fmt::format(" + ({})*max(0, {} - {})", next - slope, temperature, kFirst_K + kStep_K * static_cast<double>(i));
+  for (std::size_t i = 0; i + 1 < kAirRows.size(); ++i) {
+    const double next = (kAirRows[i + 1].*column - kAirRows[i].*column) / kAirStep_K;
+    text += fmt::format(" + ({})*max(0, {} - {})", next - slope, temperature, kFirstAir_K + kAirStep_K * static_cast<double>(i));
     slope = next;
   }
   return text + ")";
@@ -50,15 +50,15 @@ std::string column_formula(double Row::*column, double scale, const std::string&
 }  // namespace
 
 Air air_at(double temperature_K) {
-  require(temperature_K >= kFirst_K && temperature_K <= kLast_K, "air temperature [K]", temperature_K);
-  const double position = (temperature_K - kFirst_K) / kStep_K;
-  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), kRows.size() - 2);
+  require(temperature_K >= kFirstAir_K && temperature_K <= kLastAir_K, "air temperature [K]", temperature_K);
+  const double position = (temperature_K - kFirstAir_K) / kAirStep_K;
+  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), kAirRows.size() - 2);
   const double share = position - static_cast<double>(i);
-  const auto between = [&](double Row::*column) {
-    return kRows[i].*column + share * (kRows[i + 1].*column - kRows[i].*column);
+  const auto between = [&](double AirRow::*column) {
+    return kAirRows[i].*column + share * (kAirRows[i + 1].*column - kAirRows[i].*column);
   };
-  return {1e-3 * between(&Row::conductivity_mW_mK), 1e-6 * between(&Row::viscosity_mm2_s),
-          1e-6 * between(&Row::diffusivity_mm2_s)};
+  return {1e-3 * between(&AirRow::conductivity_mW_mK), 1e-6 * between(&AirRow::viscosity_mm2_s),
+          1e-6 * between(&AirRow::diffusivity_mm2_s)};
 }
 
 double nusselt_vertical_plate(double rayleigh, double prandtl) {
@@ -103,8 +103,8 @@ double natural_convection_htc_W_m2K(Orientation looks, double length_m, double s
 
 std::string natural_convection_formula(Orientation looks, double length_m, double factor) {
   const std::string film = "(0.5*(T0 + T1))";
-  const std::string viscosity = column_formula(&Row::viscosity_mm2_s, 1e-6, film),
-                    diffusivity = column_formula(&Row::diffusivity_mm2_s, 1e-6, film);
+  const std::string viscosity = column_formula(&AirRow::viscosity_mm2_s, 1e-6, film),
+                    diffusivity = column_formula(&AirRow::diffusivity_mm2_s, 1e-6, film);
   const std::string rayleigh =
       fmt::format("({}*abs(T0 - T1)/({}*({})*({})))", kGravity_m_s2 * std::pow(length_m, 3), film, viscosity, diffusivity);
   const auto churchill_chu_formula = [&](double at_rest, double scale) {
@@ -127,9 +127,9 @@ std::string natural_convection_formula(Orientation looks, double length_m, doubl
     }
     throw std::logic_error("natural_convection_formula: no such orientation");
   };
-  return fmt::format("if(abs({0} - {1}) > {2}, 0/0, {3}*({4})*({5}))", film, 0.5 * (kFirst_K + kLast_K),
-                     0.5 * (kLast_K - kFirst_K), factor / length_m, nusselt(),
-                     column_formula(&Row::conductivity_mW_mK, 1e-3, film));
+  return fmt::format("if(abs({0} - {1}) > {2}, 0/0, {3}*({4})*({5}))", film, 0.5 * (kFirstAir_K + kLastAir_K),
+                     0.5 * (kLastAir_K - kFirstAir_K), factor / length_m, nusselt(),
+                     column_formula(&AirRow::conductivity_mW_mK, 1e-3, film));
 }
 
 double rotating_cylinder_htc_W_m2K(double diameter_m, double speed_rpm) {
