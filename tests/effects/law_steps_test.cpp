@@ -28,6 +28,24 @@ void expect_same(const std::string& name, const Law& law) {
   }
 }
 
+TEST(LawStepsOfAChangedLaw, AreThoseOfTheLawTimesTheChange) {
+  for (const char* change : {"factor: 1.2, exponent: 0.3, at_speed: 3000 rpm, growth: 0.1", "factor: 0.9, decay: 0.01 1/K",
+                             "decay: 0.01 1/K, over: ambient, below: 800 rpm, factor_below: 1.5"}) {
+    const HeatBalance balance =
+        heat_balance({read("{type: friction_law, node: a, power: 200 W, at_speed: 2000 rpm, decay: 0.02 1/K}"),
+                      read(std::string("{type: changed_law, law: friction_law a, ") + change + "}")});
+    expect_same(change, balance.heats.at(0).power_W);
+  }
+  const HeatBalance film =
+      heat_balance({read("{type: natural_convection, surface: s, orientation: vertical, length: 710 mm}"),
+                    read("{type: changed_law, law: natural_convection s, factor: 1.2, difference_exponent: 0.1}")});
+  expect_same("film", film.exchanges.at(0).coefficient);
+  const HeatBalance bent =
+      heat_balance({read("{type: friction_law, node: a, power: 200 W, at_speed: 2000 rpm, decay: 0.02 1/K}"),
+                    read("{type: changed_law, law: friction_law a, growth_beyond: 0, beyond: 2000 rpm}")});
+  EXPECT_FALSE(bent.heats.at(0).power_W.steps);
+}
+
 class LawSteps : public ::testing::TestWithParam<const char*> {};
 TEST_P(LawSteps, AreTheLaw) {
   HeatBalance balance = with_radiation_as_films(heat_balance({read(GetParam())}));

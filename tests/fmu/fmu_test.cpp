@@ -2,6 +2,7 @@
 // both versions, in co-simulation at any step and in model exchange with the importer's own integrator. One file: one
 // importer runs all units.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <minizip/unzip.h>
@@ -703,7 +704,7 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
   refused(replaced(kHead, "exponent: 1}", "exponent: 1, from: 1 h, until: 2 h}"), "--fmu " + target, "acts for a time");
   refused(replaced(kHead, "effects:\n",
                    "effects:\n  - {type: friction_law, node: head, power: 9 W, decay: 0.02 1/K}\n  - {type: changed_law, law: "
-                   "friction_law head, factor: 1.1}\n"),
+                   "friction_law head, growth_beyond: 0, beyond: 1000 rpm}\n"),
           "--fmu " + target, "follows temperatures of the machine, and has no formula");
   refused(replaced(kHead, "effects:\n",
                    "effects:\n  - {type: coolant, node: head, tank: cooler, flow: 6 L/min, passage_conductance: 50 W/K, volume: "
