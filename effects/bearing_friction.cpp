@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "effects/axis.hpp"
 #include "effects/bearing_formulas.hpp"
 #include "effects/law_steps.hpp"
@@ -21,14 +23,12 @@ std::function<double(const Drive&)> speed_of(const Effect& e) {
 std::string formula_of(const Effect& e) {
   const bool thins = !e.has("viscosity"), tightens = e.has("preload_growth");
   const std::string& turned_by = e.words.at("turned_by");
-  const std::string speed = turned_by == kSpindle
-                                ? "n"
-                                : fmt::format("(v_{}*{})", turned_by, written(screw_speed_rpm(1.0, 1e-3 * e["lead"])));
+  const std::string speed =
+      turned_by == kSpindle ? "n" : fmt::format("(v_{}*{})", turned_by, written(screw_speed_rpm(1.0, 1e-3 * e["lead"])));
   const std::string nu = thins ? walther_formula(e["viscosity_40"], e["viscosity_100"], "T0") : written(e["viscosity"]);
-  const std::string load =
-      tightens ? fmt::format("max(0, {} + {}*(T{} - T{}))", written(e["load"]), written(e["preload_growth"]), thins ? 1 : 0,
-                             thins ? 2 : 1)
-               : written(e["load"]);
+  const std::string load = tightens ? fmt::format("max(0, {} + {}*(T{} - T{}))", written(e["load"]),
+                                                  written(e["preload_growth"]), thins ? 1 : 0, thins ? 2 : 1)
+                                    : written(e["load"]);
   return fmt::format("if({0} > 0, {1}*({2} + {3}*{4})*{0}, 0)", speed, written(e["count"] * friction_power_W(1.0, 1.0)),
                      palmgren_viscous_formula(e["f0"], fmt::format("({}*{})", nu, speed), e["mean_diameter"]),
                      written(e["f1"] * e["mean_diameter"]), load);
@@ -56,7 +56,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
     return count * friction_power_W(torque_Nmm, speed_rpm);
   };
   Law power(power_W, probes);
-  if (thins || tightens) power.steps = [e, n = probes.size()] { return law_steps(formula_of(e), n); };
+  if (thins || tightens)
+    power.steps = [e = std::make_shared<const Effect>(e), n = probes.size()] { return law_steps(formula_of(*e), n); };
   balance.heats.push_back({e.name(), e.body(), std::move(power)});
 }
 

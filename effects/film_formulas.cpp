@@ -28,12 +28,12 @@ struct AirRow {
 };
 constexpr double kFirstAir_K = 200.0, kAirStep_K = 50.0, kLastAir_K = 500.0;
 constexpr std::array<AirRow, 7> kAirRows = {{{18.1, 7.590, 10.3},
-                                       {22.3, 11.44, 15.9},
-                                       {26.3, 15.89, 22.5},
-                                       {30.0, 20.92, 29.9},
-                                       {33.8, 26.41, 38.3},
-                                       {37.3, 32.39, 47.2},
-                                       {40.7, 38.79, 56.7}}};
+                                             {22.3, 11.44, 15.9},
+                                             {26.3, 15.89, 22.5},
+                                             {30.0, 20.92, 29.9},
+                                             {33.8, 26.41, 38.3},
+                                             {37.3, 32.39, 47.2},
+                                             {40.7, 38.79, 56.7}}};
 
 /// A property over the temperature by a formula: a line, and a bend at each row.
 std::string column_formula(double AirRow::*column, double scale, const std::string& temperature) {
@@ -41,7 +41,8 @@ std::string column_formula(double AirRow::*column, double scale, const std::stri
   double slope = 0.0;
   for (std::size_t i = 0; i + 1 < kAirRows.size(); ++i) {
     const double next = (kAirRows[i + 1].*column - kAirRows[i].*column) / kAirStep_K;
-    text += fmt::format(" + ({})*max(0, {} - {})", next - slope, temperature, kFirstAir_K + kAirStep_K * static_cast<double>(i));
+    text +=
+        fmt::format(" + ({})*max(0, {} - {})", next - slope, temperature, kFirstAir_K + kAirStep_K * static_cast<double>(i));
     slope = next;
   }
   return text + ")";

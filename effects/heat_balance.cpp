@@ -48,10 +48,8 @@ HeatBalance with_radiation_as_films(HeatBalance balance) {
     film.steps = [emissivity = r.emissivity] {
       return law_steps(fmt::format("{}*(T0^2 + T1^2)*(T0 + T1)", written(kStefanBoltzmann_W_m2K4 * emissivity)), 2);
     };
-    films.exchanges.push_back({.name = r.name,
-                               .body = surface(r.surface),
-                               .coefficient = std::move(film),
-                               .surrounding = r.surrounding});
+    films.exchanges.push_back(
+        {.name = r.name, .body = surface(r.surface), .coefficient = std::move(film), .surrounding = r.surrounding});
   }
   balance.radiations.clear();
   balance.append(std::move(films));

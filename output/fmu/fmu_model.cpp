@@ -88,7 +88,8 @@ void require_same(const solver::BoundLaw& law, const std::string& name, const st
 FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& system, const solver::BoundLaw& law,
                        const std::string& name, const std::vector<DriveRange>& ranges) {
   if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
-  if (!law.law.steps) refuse_law(scenario, name, "follows temperatures of the machine, and has no formula that a unit can hold");
+  if (!law.law.steps)
+    refuse_law(scenario, name, "follows temperatures of the machine, and has no formula that a unit can hold");
   const std::vector<effects::Expression::Step> steps = law.law.steps();
   require_same(law, name, steps, ranges);
   FmuLiveLaw live;
@@ -103,7 +104,8 @@ FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& sy
       add(s.op, static_cast<double>(ranges.size() + s.name - effects::kDriveNames));
     } else {
       const FormulaDrive& drive = kFormulaDrive[s.name];
-      const auto at = std::find_if(ranges.begin(), ranges.end(), [&](const auto& r) { return r.variable == drive.variable; });
+      const auto at =
+          std::find_if(ranges.begin(), ranges.end(), [&](const auto& r) { return r.variable == drive.variable; });
       if (at == ranges.end()) {
         add(effects::Op::kNumber, 0.0);
         continue;
@@ -171,7 +173,8 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
   model.constant_load = model.ambient_load = Eigen::VectorXd::Zero(n);
   const auto is_live = [&](const solver::BoundLaw& law, const std::string& name) {
     if (law.looks_at_state() && !start)
-      refuse_law(scenario, name, "follows temperatures of the machine, and an observer as an FMU holds laws of the drive alone");
+      refuse_law(scenario, name,
+                 "follows temperatures of the machine, and an observer as an FMU holds laws of the drive alone");
     return law.looks_at_state();
   };
   for (const solver::HeatSource& s : system.sources) {
@@ -182,11 +185,10 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
     }
   }
   for (const auto& e : system.exchanges) {
-    FmuExchange exchange{
-        .matrix = e.matrix,
-        .to_ambient = e.reaches_ambient() ? e.to_ambient : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
-        .offset = e.offset.size() > 0 ? e.offset : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
-        .coefficient = {}};
+    FmuExchange exchange{.matrix = e.matrix,
+                         .to_ambient = e.reaches_ambient() ? e.to_ambient : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
+                         .offset = e.offset.size() > 0 ? e.offset : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
+                         .coefficient = {}};
     if (is_live(e.coefficient, e.name)) {
       exchange.live = live_law_of(scenario, system, e.coefficient, e.name, model.drive);
       exchange.coefficient =

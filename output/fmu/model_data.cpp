@@ -205,7 +205,8 @@ std::string model_data_c(const FmuModel& model, const std::string& guid, const s
           array("outputs_ambient", lists.outputs_ambient) + array("output_factor", lists.factor) +
           array("output_offset", lists.offset) + array("start", lists.start) + array("ones", lists.ones) +
           array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
-          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) + live_laws(lists.live);
+          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
+          live_laws(lists.live);
   text += fmt::format(
       "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "

@@ -20,7 +20,8 @@ void expect_same(const std::string& name, const Law& law) {
   std::uniform_real_distribution<double> share(0.0, 1.0), temperature_K(278.0, 338.0);
   for (int trial = 0; trial < 400; ++trial) {
     Inputs at;
-    if (trial > 0) at.drive = {.speed_rpm = 6000.0 * share(random), .feed_m_s = {share(random), share(random), share(random)}};
+    if (trial > 0)
+      at.drive = {.speed_rpm = 6000.0 * share(random), .feed_m_s = {share(random), share(random), share(random)}};
     for (std::size_t p = 0; p < law.probes.size(); ++p) at.probe_K.push_back(temperature_K(random));
     const double value = law(at);
     // 1e-11: differences of temperatures lose four digits
@@ -59,24 +60,29 @@ TEST_P(LawSteps, AreTheLaw) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Each, LawSteps,
-    ::testing::Values(
-        "{type: natural_convection, surface: s, orientation: vertical, length: 710 mm}",
-        "{type: natural_convection, surface: s, orientation: up, length: 300 mm, factor: 1.2}",
-        "{type: natural_convection, surface: s, orientation: down, length: 300 mm}",
-        "{type: natural_convection, surface: s, orientation: horizontal_cylinder, length: 100 mm}",
-        "{type: radiation, surface: s, emissivity: 0.9}",
-        "{type: bearing_friction, node: a, f0: 1.7, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, mean_diameter: 60 mm}",
-        "{type: bearing_friction, node: a, count: 2, f0: 0.4, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, mean_diameter: "
-        "90 mm, f1: 0.0006, load: 300 N, preload_growth: 15 N/K, inner: {node: b}, outer: {node: c}}",
-        "{type: bearing_friction, node: a, turned_by: y, lead: 10 mm, f0: 2, viscosity: 30 mm^2/s, mean_diameter: 46 mm, f1: "
-        "0.001, load: 400 N, preload_growth: 20 N/K, inner: {node: b}, outer: {node: c}}",
-        "{type: friction_law, node: a, power: 200 W, at_speed: 2000 rpm, exponent: 0.8, decay: 0.02 1/K}",
-        "{type: formula, node: a, power: \"P*(n/6000)^1.5*(1 + k*(T_a - T_b))*v_y*s\", P: 150 W, k: 0.01 1/K, s: 2 s/m, T_a: a, "
-        "T_b: b}",
-        "{type: coolant_channel, node: a, then: [b, c, d], medium: glycol_30, flow: 3 L/min, diameter: 8.9 mm, length: 3600 mm, "
-        "set_point: 18 degC}",
-        "{type: coolant_channel, node: a, then: [b, c], medium: water, flow: 2 L/min, diameter: 8 mm, length: 900 mm, tank: t, "
-        "runs: while_spindle_turns}"));
+    ::testing::Values("{type: natural_convection, surface: s, orientation: vertical, length: 710 mm}",
+                      "{type: natural_convection, surface: s, orientation: up, length: 300 mm, factor: 1.2}",
+                      "{type: natural_convection, surface: s, orientation: down, length: 300 mm}",
+                      "{type: natural_convection, surface: s, orientation: horizontal_cylinder, length: 100 mm}",
+                      "{type: radiation, surface: s, emissivity: 0.9}",
+                      "{type: bearing_friction, node: a, f0: 1.7, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 mm^2/s, "
+                      "mean_diameter: 60 mm}",
+                      "{type: bearing_friction, node: a, count: 2, f0: 0.4, viscosity_40: 25 mm^2/s, viscosity_100: 5.4 "
+                      "mm^2/s, mean_diameter: "
+                      "90 mm, f1: 0.0006, load: 300 N, preload_growth: 15 N/K, inner: {node: b}, outer: {node: c}}",
+                      "{type: bearing_friction, node: a, turned_by: y, lead: 10 mm, f0: 2, viscosity: 30 mm^2/s, "
+                      "mean_diameter: 46 mm, f1: "
+                      "0.001, load: 400 N, preload_growth: 20 N/K, inner: {node: b}, outer: {node: c}}",
+                      "{type: friction_law, node: a, power: 200 W, at_speed: 2000 rpm, exponent: 0.8, decay: 0.02 1/K}",
+                      "{type: formula, node: a, power: \"P*(n/6000)^1.5*(1 + k*(T_a - T_b))*v_y*s\", P: 150 W, k: 0.01 1/K, "
+                      "s: 2 s/m, T_a: a, "
+                      "T_b: b}",
+                      "{type: coolant_channel, node: a, then: [b, c, d], medium: glycol_30, flow: 3 L/min, diameter: 8.9 "
+                      "mm, length: 3600 mm, "
+                      "set_point: 18 degC}",
+                      "{type: coolant_channel, node: a, then: [b, c], medium: water, flow: 2 L/min, diameter: 8 mm, length: "
+                      "900 mm, tank: t, "
+                      "runs: while_spindle_turns}"));
 
 TEST(LawStepsSum, HasTheProbesOfItsLawsOneAfterTheOther) {
   const Law first = heat_balance({read("{type: friction_law, node: a, power: 200 W, at_speed: 2000 rpm, decay: 0.02 1/K}")})

@@ -702,14 +702,16 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
   refused(replaced(kHead, "effects:\n", "effects:\n  - {type: sensor_bias, sensor: t_head, bias: 1 K}\n"), "--fmu " + target,
           "sensor_bias t_head");
   refused(replaced(kHead, "exponent: 1}", "exponent: 1, from: 1 h, until: 2 h}"), "--fmu " + target, "acts for a time");
-  refused(replaced(kHead, "effects:\n",
-                   "effects:\n  - {type: friction_law, node: head, power: 9 W, decay: 0.02 1/K}\n  - {type: changed_law, law: "
-                   "friction_law head, growth_beyond: 0, beyond: 1000 rpm}\n"),
-          "--fmu " + target, "follows temperatures of the machine, and has no formula");
-  refused(replaced(kHead, "effects:\n",
-                   "effects:\n  - {type: coolant, node: head, tank: cooler, flow: 6 L/min, passage_conductance: 50 W/K, volume: "
-                   "12 L, cooling_power: 900 W, set_point: 21 degC, hysteresis: 1 K}\n"),
-          "--fmu " + target, "thermostat");
+  refused(
+      replaced(kHead, "effects:\n",
+               "effects:\n  - {type: friction_law, node: head, power: 9 W, decay: 0.02 1/K}\n  - {type: changed_law, law: "
+               "friction_law head, growth_beyond: 0, beyond: 1000 rpm}\n"),
+      "--fmu " + target, "follows temperatures of the machine, and has no formula");
+  refused(
+      replaced(kHead, "effects:\n",
+               "effects:\n  - {type: coolant, node: head, tank: cooler, flow: 6 L/min, passage_conductance: 50 W/K, volume: "
+               "12 L, cooling_power: 900 W, set_point: 21 degC, hysteresis: 1 K}\n"),
+      "--fmu " + target, "thermostat");
   refused(replaced(kHead, "name: t_head", "name: spindle_speed"), "--fmu " + target, "rename");
   EXPECT_FALSE(std::filesystem::exists(fresh_folder("refused") / "x.fmu"));
 }

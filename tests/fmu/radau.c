@@ -62,7 +62,8 @@ int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, do
   const int counts[] = {100, 100, 1000000};
   const size_t wide = 3 * n;
   double *const jacobian = malloc(n * n * sizeof *jacobian), *const matrix = malloc(wide * wide * sizeof *matrix),
-                *const k = malloc(wide * sizeof *k), *const off = malloc((wide + n) * sizeof *off), *const stage = off + wide;
+                *const k = malloc(wide * sizeof *k), *const off = malloc((wide + n) * sizeof *off),
+                *const stage = off + wide;
   size_t* const pivot = malloc(wide * sizeof *pivot);
   double t_s = from_s;
   int level, failed = 0;

@@ -16,10 +16,10 @@ static const double kTolerance = 1e-6, kShareIterated = 0.1;
 static const double kShortest_s = 1e-3;
 
 struct live_room {
-  double *x, *dx;                    /* of a formula */
-  double *out;                       /* of an exchange: its heat per coefficient */
+  double *x, *dx; /* of a formula */
+  double* out;    /* of an exchange: its heat per coefficient */
   double *modes, *rate, *z[kNodes], *last[2];
-  double *load[1 + kNodes];          /* N at the beginning and at kAt */
+  double* load[1 + kNodes]; /* N at the beginning and at kAt */
   double *error, *error_z;
   /* What a mode keeps up to kAt, and what it has there of N at the beginning, the middle and the end; of a constant load at the end. Of the
    * system and step met last. */
@@ -85,13 +85,15 @@ static void look(const live_law* law, const double* drive, const double* z, doub
 /* out = G z - ambient g - o of an exchange. */
 static void heat_out(int exchange, const double* z, double ambient_K, double* out) {
   const int n = thermal.n;
-  const double *const g = thermal.to_ambient + (size_t)exchange * (size_t)n, *const o = thermal.offsets + (size_t)exchange * (size_t)n;
+  const double *const g = thermal.to_ambient + (size_t)exchange * (size_t)n, *const o = thermal.offsets +
+                                                                                        (size_t)exchange * (size_t)n;
   int i;
   multiply(n, n, thermal.exchanges + (size_t)exchange * (size_t)n * (size_t)n, z, out);
   for (i = 0; i < n; ++i) out[i] -= ambient_K * g[i] + o[i];
 }
 
-int live_add_rate(live_room* r, const double* drive, const double* coefficient, const double* z, double ambient_K, double* rate) {
+int live_add_rate(live_room* r, const double* drive, const double* coefficient, const double* z, double ambient_K,
+                  double* rate) {
   const int n = thermal.n;
   int k, i;
   for (k = 0; k < thermal.n_live; ++k) {
@@ -171,7 +173,8 @@ static void take_step_length(live_room* r, const live_system* s, double h_s) {
       double t[3];
       integrals(kAt[c], x, t);
       r->kept[c][i] = exp(-kAt[c] * x);
-      r->of[c][0][i] = h_s * (t[0] - 3.0 * t[1] + 2.0 * t[2]); /* the parabolas that are 1 at the beginning, the middle, the end */
+      r->of[c][0][i] =
+          h_s * (t[0] - 3.0 * t[1] + 2.0 * t[2]); /* the parabolas that are 1 at the beginning, the middle, the end */
       r->of[c][1][i] = h_s * (4.0 * t[1] - 4.0 * t[2]);
       r->of[c][2][i] = h_s * (2.0 * t[2] - t[1]);
       if (c == 1) r->of_constant[i] = h_s * t[0];
@@ -268,11 +271,13 @@ const char* live_advance(live_room* r, const live_system* s, double piece_s, dou
       continue;
     }
     if (error < 0.0) return "a law has no value at the temperatures that the machine gets to";
-    if (fits_s > *length_s || h_s > 0.999 * *length_s) *length_s = fmax(fits_s, kShortest_s); /* not if the end made it short */
+    if (fits_s > *length_s || h_s > 0.999 * *length_s)
+      *length_s = fmax(fits_s, kShortest_s); /* not if the end made it short */
     t_s += h_s;
     memcpy(z, r->z[1], (size_t)n * sizeof *z);
     multiply(n, n, s->vectors, z, r->modes);
-    if (load_at(r, s, z, ambient_K + t_s * ambient_K_s, r->load[0])) return "a law has no value at the temperatures of the machine";
+    if (load_at(r, s, z, ambient_K + t_s * ambient_K_s, r->load[0]))
+      return "a law has no value at the temperatures of the machine";
   }
   return 0;
 }

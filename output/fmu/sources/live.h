@@ -14,8 +14,8 @@
 /* The system that the laws are added to, under one drive. */
 typedef struct {
   const double* drive;
-  const double* coefficient;                 /* of each exchange, as K has it */
-  const double *lambda, *vectors;            /* K in its eigenvectors, by rows */
+  const double* coefficient;                  /* of each exchange, as K has it */
+  const double *lambda, *vectors;             /* K in its eigenvectors, by rows */
   const double *constant_W, *per_ambient_W_K; /* what loads each mode beside the laws, and per kelvin of the ambient */
 } live_system;
 
@@ -28,7 +28,8 @@ live_room* live_prepare(void* bytes);
 void live_forget(live_room* room);
 
 /* rate += what the laws add to dz/dt at z. Returns 0, or 1 where one has no value. */
-int live_add_rate(live_room* room, const double* drive, const double* coefficient, const double* z, double ambient_K, double* rate);
+int live_add_rate(live_room* room, const double* drive, const double* coefficient, const double* z, double ambient_K,
+                  double* rate);
 /* rate += how that changes along dz, d_ambient and, of one variable of the drive, seed; which < 0: of none. */
 void live_add_slope(live_room* room, const double* drive, const double* coefficient, const double* z, double ambient_K,
                     const double* dz, double d_ambient_K, int which, double seed, double* rate);

@@ -269,18 +269,20 @@ void model_derivatives(const double* saved, void* scratch, double* derivatives) 
   int i;
   multiply(thermal.n, thermal.n, matrix_of(m, saved), saved + kInputs + model_n_inputs(), derivatives);
   for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + ambient * m->per_ambient[i] - derivatives[i];
-  if (m->live && live_add_rate(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient, derivatives)) {
+  if (m->live &&
+      live_add_rate(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient, derivatives)) {
     for (i = 0; i < thermal.n; ++i) derivatives[i] = NAN;
   }
 }
 
 /* derivatives += how the laws that follow temperatures change along one state (< 0: none), the ambient, one variable of the drive (< 0: none). */
-static void add_live(machine* m, const double* saved, int state, double seed, double d_ambient_K, int which, double* derivatives) {
+static void add_live(machine* m, const double* saved, int state, double seed, double d_ambient_K, int which,
+                     double* derivatives) {
   if (!m->live) return;
   memset(m->along, 0, (size_t)thermal.n * sizeof *m->along);
   if (state >= 0) m->along[state] = seed;
-  live_add_slope(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient_K(saved, saved[kTime]), m->along,
-                 d_ambient_K, which, seed, derivatives);
+  live_add_slope(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient_K(saved, saved[kTime]),
+                 m->along, d_ambient_K, which, seed, derivatives);
 }
 
 static void add_ambient(double seed_K, const machine* m, double* outputs, double* derivatives) {
