@@ -25,8 +25,8 @@ bool acts(const Effect& e, const Inputs& u) {
   return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
 }
 
-/// What a law is multiplied by, as a formula of the speed and of the probes that change() adds after the first ones; "" for changes that
-/// depend on time or bend the law beyond a speed.
+/// What a law is multiplied by, as a formula of the speed and of the probes that change() adds after the first ones; ""
+/// for changes that depend on time or bend the law beyond a speed.
 std::string formula_of(const Effect& e, std::size_t n_first, bool is_over, bool follows_difference) {
   if (!e.in.empty() || e.from_s != 0.0 || e.until_s != kNever_s || e["growth_beyond"] != 1.0) return "";
   const std::string n = fmt::format("(n/{})", written(e["at_speed"]));

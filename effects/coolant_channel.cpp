@@ -119,8 +119,9 @@ double rise_K(const std::vector<Passage>& passages, std::size_t n_sections, cons
   return rise;
 }
 
-/// The heats of contribute() as formulas. They are linear in the temperatures of the sections before: what the liquid has taken up by section i
-/// is the sum over j < i of share_j (T_j - inlet), each less what the sections between took from it.
+/// The heats of contribute() as formulas. They are linear in the temperatures of the sections before: what the liquid has
+/// taken up by section i is the sum over j < i of share_j (T_j - inlet), each less what the sections between took from
+/// it.
 struct HeatFormula {
   std::shared_ptr<const Stream> stream;
   bool has_tank = false;

@@ -1,5 +1,6 @@
 #pragma once
-// A law of a heat balance as steps of a formula, beside the function that the program calls: for units, which hold laws as data.
+// A law of a heat balance as steps of a formula, beside the function that the program calls: for units, which hold laws
+// as data.
 
 #include <string>
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace driftwright::effects {
 
-/// Names of a law's formula, in the order of Expression::Step::name: n [rpm], v_x, v_y, v_z [m/s], P_cut [W], then the law's probes T0, T1, ...
-/// [K].
+/// Names of a law's formula, in the order of Expression::Step::name: n [rpm], v_x, v_y, v_z [m/s], P_cut [W], then the
+/// law's probes T0, T1, ... [K].
 [[nodiscard]] std::vector<std::string> law_names(std::size_t n_probes);
 inline constexpr std::size_t kDriveNames = 5;
 

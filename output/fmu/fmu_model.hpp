@@ -74,8 +74,8 @@ struct FmuModel {
 /// that follows a column
 void require_exportable(const scenarios::Scenario& scenario);
 
-/// @throws InputError  naming the law: a thermostat; two variables of the drive that act together; one that depends on temperatures and has no
-/// formula (effects::Law::steps)
+/// @throws InputError  naming the law: a thermostat; two variables of the drive that act together; one that depends on
+/// temperatures and has no formula (effects::Law::steps)
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
 /// @param probing  what the observer leaves and the probe, of a unit that takes probings
 /// @throws InputError  as machine_fmu(), and for each law that depends on temperatures

@@ -459,8 +459,8 @@ TEST_P(Fmu, OfAnObserverTakesProbings) {
 
 // --- laws that follow temperatures
 
-/// A spindle whose oil thins and whose preload grows, a housing cooled by a formula that has a cusp between equal temperatures, and a channel of
-/// three sections.
+/// A spindle whose oil thins and whose preload grows, a housing cooled by a formula that has a cusp between equal
+/// temperatures, and a channel of three sections.
 constexpr const char* kOiled = R"yaml(name: oiled
 reference_temperature: 20 degC
 machine: {generator: lumped}
@@ -486,7 +486,14 @@ effects:
   - {type: link, node: bearing, to: shaft, conductance: 15 W/K}
   - {type: link, node: bearing, to: housing, conductance: 30 W/K}
   - {type: link, node: housing, to: column, conductance: 20 W/K}
-  - {type: formula, node: column, conductance: "G*(1 + abs((T_c - T_a)/d)^0.25)", to: ambient, G: 4 W/K, d: 1 K, T_c: column, T_a: ambient}
+  - type: formula
+    node: column
+    conductance: "G*(1 + abs((T_c - T_a)/d)^0.25)"
+    to: ambient
+    G: 4 W/K
+    d: 1 K
+    T_c: column
+    T_a: ambient
   - type: coolant_channel
     node: housing
     then: [bearing, column]
@@ -499,7 +506,8 @@ effects:
 start: ambient
 ambient: [[0 h, 20 degC], [1 h, 23 degC], [9 h, 22 degC]]
 sensors: [{name: t_bearing, node: bearing}, {name: t_housing, node: housing}, {name: t_column, node: column}]
-displacements: [{name: nose_z, sensitivities: [{node: shaft, sensitivity: 2.9 um/K}, {node: housing, sensitivity: -1.2 um/K}]}]
+displacements:
+  - {name: nose_z, sensitivities: [{node: shaft, sensitivity: 2.9 um/K}, {node: housing, sensitivity: -1.2 um/K}]}
 cyclograms: {shift: [[70 min, 9000 rpm], [30 min, 0 rpm], [60 min, 4000 rpm]]}
 solver: {model: reduced, relative_tolerance: 1e-9, absolute_tolerance: 1e-8 K, output_interval: 60 s}
 )yaml";

@@ -1,4 +1,5 @@
-/* Hairer & Wanner, Solving Ordinary Differential Equations II, ch. IV.5 and IV.8: Radau IIA with three stages by simplified Newton steps. */
+/* Hairer & Wanner, Solving Ordinary Differential Equations II, ch. IV.5 and IV.8: Radau IIA with three stages by
+ * simplified Newton steps. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdlib.h>

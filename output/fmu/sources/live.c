@@ -21,8 +21,8 @@ struct live_room {
   double *modes, *rate, *z[kNodes], *last[2];
   double* load[1 + kNodes]; /* N at the beginning and at kAt */
   double *error, *error_z;
-  /* What a mode keeps up to kAt, and what it has there of N at the beginning, the middle and the end; of a constant load at the end. Of the
-   * system and step met last. */
+  /* What a mode keeps up to kAt, and what it has there of N at the beginning, the middle and the end; of a constant load
+   * at the end. Of the system and step met last. */
   double *kept[kNodes], *of[kNodes][3], *of_constant;
   const double* lambda;
   double step_s;
@@ -214,8 +214,8 @@ static double size_of(const double* d, const double* e) {
   return sum;
 }
 
-/* One step from r->modes with N at its beginning in r->load[0]; z[1] is the state at its end. Returns the estimated error over the
- * allowed one, or a negative number where N was not found. */
+/* One step from r->modes with N at its beginning in r->load[0]; z[1] is the state at its end. Returns the estimated error
+ * over the allowed one, or a negative number where N was not found. */
 static double try_step(live_room* r, const live_system* s, double h_s, double ambient_K, double ambient_K_s) {
   const int n = thermal.n;
   const size_t bytes = (size_t)n * sizeof(double);
@@ -240,7 +240,8 @@ static double try_step(live_room* r, const live_system* s, double h_s, double am
   state_at(r, s, 1);
   state_at(r, s, 2);
   if (load_at(r, s, r->z[2], ambient_K + kAt[2] * h_s * ambient_K_s, r->load[3])) return -1.0;
-  /* If N leaves the parabola by C t (t - 1/2) (t - 1), that is -3/64 C at three quarters, the magnitude's integral is C / 32. */
+  /* If N leaves the parabola by C t (t - 1/2) (t - 1), that is -3/64 C at three quarters, the magnitude's integral is C /
+   * 32. */
   for (i = 0; i < n; ++i)
     r->error[i] = 2.0 / 3.0 * r->of_constant[i] *
                   (r->load[3][i] + 0.125 * r->load[0][i] - 0.75 * r->load[1][i] - 0.375 * r->load[2][i]);

@@ -1,4 +1,5 @@
-/* The reduced machine: exact over each step of co-simulation where no law follows temperatures, its slopes for model exchange. */
+/* The reduced machine: exact over each step of co-simulation where no law follows temperatures, its slopes for model
+ * exchange. */
 #include <math.h>
 #include <string.h>
 
@@ -275,7 +276,8 @@ void model_derivatives(const double* saved, void* scratch, double* derivatives) 
   }
 }
 
-/* derivatives += how the laws that follow temperatures change along one state (< 0: none), the ambient, one variable of the drive (< 0: none). */
+/* derivatives += how the laws that follow temperatures change along one state (< 0: none), the ambient, one variable of
+ * the drive (< 0: none). */
 static void add_live(machine* m, const double* saved, int state, double seed, double d_ambient_K, int which,
                      double* derivatives) {
   if (!m->live) return;

@@ -24,9 +24,9 @@ typedef struct {
   const law_term* terms;
 } drive_law;
 
-/* A power or a coefficient that follows temperatures as well: a formula (formula.h) of the drive and of its probes, which are mean
- * temperatures in K: weights' z + ambient_share ambient + offset_K. Of a source it is the power, whose drive_law is 0; of an exchange it is
- * the coefficient, whose drive_law is what the formula gives at the temperatures of the start. */
+/* A power or a coefficient that follows temperatures as well: a formula (formula.h) of the drive and of its probes, which
+ * are mean temperatures in K: weights' z + ambient_share ambient + offset_K. Of a source it is the power, whose drive_law
+ * is 0; of an exchange it is the coefficient, whose drive_law is what the formula gives at the temperatures of the start. */
 typedef struct {
   int source, exchange; /* index of the one that it belongs to; the other is -1 */
   int n_steps;
