@@ -508,7 +508,7 @@ ambient: [[0 h, 20 degC], [1 h, 23 degC], [9 h, 22 degC]]
 sensors: [{name: t_bearing, node: bearing}, {name: t_housing, node: housing}, {name: t_column, node: column}]
 displacements:
   - {name: nose_z, sensitivities: [{node: shaft, sensitivity: 2.9 um/K}, {node: housing, sensitivity: -1.2 um/K}]}
-cyclograms: {shift: [[70 min, 9000 rpm], [30 min, 0 rpm], [60 min, 4000 rpm]]}
+cyclograms: {shift: [[70 min, 9000 rpm], [30 min, 0 rpm], [60 min, 4000 rpm]], fast: [[9 min, 9999 rpm]]}
 solver: {model: reduced, relative_tolerance: 1e-9, absolute_tolerance: 1e-8 K, output_interval: 60 s}
 )yaml";
 
