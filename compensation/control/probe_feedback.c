@@ -105,6 +105,20 @@ static double probe_off_um(const probe_process* process, const probe_estimate* b
   return read_um - probe_mean_um(bank);
 }
 
+/* See probe_state. */
+static double probe_loss(const probe_process* process, const probe_estimate* bank, double read_um, double bound_um) {
+  const double most = 0.5 * PROBE_REFUSED * PROBE_REFUSED + log(bound_um / PROBE_REFUSED);
+  double density = 0.0, loss;
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double um2 = probe_sum_um2(&bank[k]) + process->noise_um * process->noise_um;
+    const double off_um = read_um - probe_sum_um(&bank[k]);
+    density += bank[k].weight * exp(-0.5 * off_um * off_um / um2) / sqrt(um2);
+  }
+  loss = -log(density); /* infinite where all exponentials vanish */
+  return loss < most ? loss : most;
+}
+
 /* Weights by the density of what was read. */
 static void probe_weigh(const probe_process* process, probe_estimate* bank, double read_um) {
   double logarithm[PROBE_BANK], most = 0.0, sum = 0.0; /* most: so that no exponential vanishes for all */
@@ -219,6 +233,7 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
   if (!probe_is_valid(process) || !isfinite(residual_um)) return probe_refuse(state, PROBE_NO_NUMBER);
   if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
   state->off_um = probe_off_um(process, state->now, residual_um, &state->bound_um);
+  state->loss = probe_loss(process, state->now, residual_um, state->bound_um);
   if (fabs(state->off_um) <= state->bound_um) {
     probe_learn(process, state->now, residual_um);
     return probe_accept(state, PROBE_TAKEN);

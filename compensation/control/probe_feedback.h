@@ -90,6 +90,8 @@ typedef struct {
   int verdict;     /* of the last probing, one of PROBE_... */
   double off_um;   /* of the last probing: read minus expected */
   double bound_um; /* by which they may differ */
+  double loss;     /* -ln of the density of the reading times sqrt(2 pi) um; of a normal one it is u^2 / 2 + ln d, of which
+                      PROBE_REFUSED deviations count at most, so that a chip does not decide among predictors */
   int n_taken, n_refused, n_jumps;
   int n_in_row; /* unlikely ones since the last that was taken */
 } probe_state;

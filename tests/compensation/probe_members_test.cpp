@@ -129,15 +129,25 @@ TEST(ProbeMembers, LossesMayBeBeyondTheRangeOfExponentials) {
   EXPECT_NEAR(weights.loss, 5000.0 + std::log(3.0) - std::log(1.0 + std::exp(-1.0)), 1e-9);
 }
 
-// A probing costs by the normal density of the deviation that the filter says; a chip counts as four deviations.
+/// Density of a first probing by a filter's 16 processes, times sqrt(2 pi), and its negative logarithm: four deviations count at most.
+double first_loss(double off_um, double deviation_um, double noise_um) {
+  double density = 0.0, sum = 0.0, um2 = 0.0;
+  for (const double size : {1.0 / 3.0, 1.0, 3.0, 9.0}) {
+    const double w = std::exp(-4.0 * std::pow(std::log(size) / std::numbers::pi, 2));
+    const double own_um2 = std::pow(size * deviation_um, 2) + noise_um * noise_um;
+    density += w * std::exp(-0.5 * off_um * off_um / own_um2) / std::sqrt(own_um2);
+    um2 += w * own_um2;
+    sum += w;
+  }
+  return std::min(-std::log(density / sum), 8.0 + 0.5 * std::log(um2 / sum));
+}
+
 TEST(ProbeMembers, AProbingCostsByItsDensity) {
-  for (const double read_um : {2.0, -35.0, 500.0}) {
+  for (const double read_um : {2.0, -15.0, 500.0}) {
     ProbeFeedback feedback({3.0, 3600.0}, {.noise_um = 4.0}, false);
     feedback.row(0.0, 0.0, 0.0);
-    const double expected_um = std::hypot(feedback.deviation_um(), 4.0);
     (void)feedback.probe_drift_um(read_um);
-    const double u2 = std::min(std::pow(read_um / expected_um, 2), 16.0);
-    EXPECT_NEAR(probe_loss(&feedback.state()), 0.5 * u2 + std::log(expected_um), 1e-12);
+    EXPECT_NEAR(feedback.state().loss, first_loss(read_um, 3.0, 4.0), 1e-12);
   }
 }
 
@@ -199,8 +209,7 @@ TEST(ProbeMembers, AProbingMovesWeightsAndResiduals) {
   EXPECT_TRUE(feedback.probe_drift_um(15.0));
   std::vector<double> weight(3), at(3);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double um2 = std::pow(first_factor() * s[k], 2) + 0.25, off = 15.0 - predicted[k];
-    weight[k] = std::exp(-0.5 * std::min(off * off / um2, 16.0)) / std::sqrt(um2);
+    weight[k] = std::exp(-first_loss(15.0 - predicted[k], s[k], 0.5));
     ProbeFeedback alone({s[k], fades_s[k]}, {.noise_um = 0.5}, false);
     alone.row(predicted[k], 0.0, 0.0);
     EXPECT_TRUE(alone.probe_drift_um(15.0));
@@ -213,8 +222,8 @@ TEST(ProbeMembers, AProbingMovesWeightsAndResiduals) {
     expected += weight[k] / sum * at[k];
   }
   EXPECT_NEAR(predicted[0] + feedback.estimate_um(), expected, 1e-9);
-  EXPECT_GT(feedback.members()[0].weight, feedback.members()[2].weight);
-  EXPECT_LT(feedback.members()[2].weight, 0.15);  // 11 um off
+  EXPECT_GT(feedback.members()[1].weight, 0.6);   // 1 um off
+  EXPECT_LT(feedback.members()[2].weight, 0.12);  // 11 um off
   EXPECT_EQ(feedback.n_refused(), 0);             // by the one that led
   for (int k = 0; k < 96 * 60; ++k) feedback.row(predicted, 0.0, 60.0);
   for (const probe_member& m : feedback.members()) EXPECT_NEAR(m.weight, 1.0 / 3.0, 1e-3);
