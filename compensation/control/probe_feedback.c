@@ -25,50 +25,35 @@ int probe_is_valid(const probe_process* process) {
          probe_is_above(process->noise_um, 0.0) && process->lag_s >= 0.0 && isfinite(process->lag_s);
 }
 
+/* Factors of s and T, and the first weight of each filter of a size: exp(-(ln factor)^2 / (pi^2 / 4)) over the sum of all. */
 static const double kProbeSizes[PROBE_SIZES] = {1.0 / 3.0, 1.0, 3.0, 9.0}, kProbeTimes[PROBE_TIMES] = {0.25, 1.0, 4.0, 16.0};
+static const double kProbeFirst[PROBE_SIZES] = {0.0647425292435455, 0.10559133412205336, 0.0647425292435455,
+                                                0.014923607390855635};
 
-/* Deviation and time constant of a filter of the bank. */
 static double probe_size_um(const probe_process* process, int k) {
   return kProbeSizes[k / PROBE_TIMES] * process->deviation_um;
 }
 
-static double probe_fades_s(const probe_process* process, int k) {
-  return kProbeTimes[k % PROBE_TIMES] * process->time_constant_s;
-}
-
-/* The weights before a probing. */
-static void probe_first_weights(double* weights) {
-  double sum = 0.0;
-  int k;
-  for (k = 0; k < PROBE_BANK; ++k) {
-    const double apart = log(kProbeSizes[k / PROBE_TIMES]) / PROBE_SIZE;
-    sum += weights[k] = exp(-0.5 * apart * apart);
-  }
-  for (k = 0; k < PROBE_BANK; ++k) weights[k] /= sum;
-}
-
 static void probe_begin(const probe_process* process, probe_estimate* bank) {
-  double weights[PROBE_BANK];
   int k;
-  probe_first_weights(weights);
   for (k = 0; k < PROBE_BANK; ++k) {
     const double size_um = probe_size_um(process, k);
     bank[k].residual_um2 = process->is_known_at_start ? 0.0 : size_um * size_um;
-    bank[k].weight = weights[k];
+    bank[k].weight = kProbeFirst[k / PROBE_TIMES];
   }
 }
 
 static void probe_wait(const probe_process* process, probe_estimate* bank, double step_s) {
   const double same = exp(-step_s / PROBE_REDRAW_S);
-  double weights[PROBE_BANK];
+  double kept[PROBE_TIMES];
   int k;
-  probe_first_weights(weights);
+  for (k = 0; k < PROBE_TIMES; ++k) kept[k] = exp(-step_s / (kProbeTimes[k] * process->time_constant_s));
   for (k = 0; k < PROBE_BANK; ++k) {
-    const double kept = exp(-step_s / probe_fades_s(process, k)), size_um = probe_size_um(process, k);
-    bank[k].residual_um *= kept;
-    bank[k].both_um2 *= kept;
-    bank[k].residual_um2 = kept * kept * bank[k].residual_um2 + (1.0 - kept * kept) * size_um * size_um;
-    bank[k].weight = same * bank[k].weight + (1.0 - same) * weights[k];
+    const double by = kept[k % PROBE_TIMES], size_um = probe_size_um(process, k);
+    bank[k].residual_um *= by;
+    bank[k].both_um2 *= by;
+    bank[k].residual_um2 = by * by * bank[k].residual_um2 + (1.0 - by * by) * size_um * size_um;
+    bank[k].weight = same * bank[k].weight + (1.0 - same) * kProbeFirst[k / PROBE_TIMES];
   }
 }
 

@@ -9,14 +9,14 @@
  * Errors of this run may be smaller or larger, faster or slower than those of the runs of the fit. So PROBE_BANK filters of
  * Kalman run side by side, with s times 1/3, 1, 3, 9 and T times 1/4, 1, 4, 16, and answer by their mean with weights w:
  *
- *   before a probing   w ~ exp(-(ln factor of s)^2 / (2 PROBE_SIZE^2))
+ *   before a probing   w ~ exp(-(ln factor of s)^2 / (pi^2 / 4))
  *   in time            dw / dt = (w before a probing - w) / PROBE_REDRAW_S
  *   a probing          w ~ w exp(-u^2 / 2) / d,   u = (read - expected) / d,   d: deviation of read - expected
  *
  * w is then the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a day, on
- * average: a calm axis does not say that the next cut is calm. PROBE_SIZE = pi / sqrt(8) is the deviation of the logarithm
- * of |x| of a normal x: the size is known beforehand as well as from one value. Time constants are equally likely
- * beforehand. The deviation of the answer is that of the mixture: before the first probing it is 2.75 times s.
+ * average: a calm axis does not say that the next cut is calm. pi / sqrt(8) is the deviation of the logarithm of |x| of a
+ * normal x: the size is known beforehand as well as from one value. Time constants are equally likely beforehand. The
+ * deviation of the answer is that of the mixture: before the first probing it is 2.75 times s.
  *
  * `level` is 0 until a jump. Each filter is the one of Kalman for level and r. It runs lag_s late, and its answer is
  * continued over lag_s: with a constant lag that is exact.
@@ -47,8 +47,7 @@ extern "C" {
 #define PROBE_SIZES 4     /* factors of s: 3^-1 to 3^2 */
 #define PROBE_TIMES 4     /* factors of T: 4^-1 to 4^2 */
 #define PROBE_BANK (PROBE_SIZES * PROBE_TIMES)
-#define PROBE_REDRAW_S 86400.0        /* a day */
-#define PROBE_SIZE 1.1107207345395915 /* pi / sqrt(8) */
+#define PROBE_REDRAW_S 86400.0 /* a day */
 
 typedef struct {
   double deviation_um;    /* s of the residual; > 0 */

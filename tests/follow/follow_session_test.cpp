@@ -363,7 +363,7 @@ TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
 TEST(FollowProbing, ARestartChangesNothing) {
   const std::filesystem::path state = temporary_folder() / "probed.state";
   Session whole = probed_session({.probe_lag_s = 100.0}), first = probed_session({.probe_lag_s = 100.0});
-  const auto probed_um = [](int k) { return k == 20 ? 13.0 : k == 59 || k == 60 ? 48.0 : NAN; };
+  const auto probed_um = [](int k) { return k == 20 ? 13.0 : k == 59 || k == 60 ? 95.0 : NAN; };
   for (int k = 0; k < 60; ++k)
     EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(first, k, probed_um(k))));
   write_state(state, first);  // between two probings that agree
@@ -371,6 +371,19 @@ TEST(FollowProbing, ARestartChangesNothing) {
   EXPECT_TRUE(resume_from(state, second));
   for (int k = 60; k < 100; ++k)
     EXPECT_EQ(line_text(minute(whole, k, probed_um(k))), line_text(minute(second, k, probed_um(k)))) << k;
+}
+
+TEST(FollowProbing, AStateOfAnotherVersionIsRefused) {
+  Session session = probed_session();
+  (void)minute(session, 0);
+  nlohmann::ordered_json state = session.state();
+  EXPECT_NO_THROW(session.recall(state));
+  std::string text = state.dump();
+  const std::size_t at = text.find("\"probing\":[");
+  ASSERT_NE(at, std::string::npos);
+  text.insert(at + 11, "0,");
+  EXPECT_THAT([&] { session.recall(nlohmann::ordered_json::parse(text)); },
+              ThrowsMessage<InputError>(HasSubstr("another version")));
 }
 
 /// A blend of two members, 10 um to either side of it.
