@@ -228,13 +228,16 @@ struct CompareOptions : CommonOptions {
 void compare(const CompareOptions& options);
 
 struct ExportOptions {
-  std::string scenario;
-  std::string out;  ///< file; empty: results/<name of the scenario>.fmu
+  std::string scenario;  ///< empty: a formula of `model` is exported
+  std::string out;       ///< file; empty: results/<name of the scenario>.fmu. With `as` a folder
   bool fmu = false;
-  int fmi = 2;                 ///< version of the standard, 2 or 3
-  std::string of = "machine";  ///< or observer
-  std::string type = "both";   ///< interfaces: both, me (model exchange), cs (co-simulation)
-  std::string model;           ///< with `of` = observer: its file
+  std::string as;                    ///< for a control: text, c, linuxcnc, st, siemens, heidenhain, fanuc; empty: none
+  std::string axis;                  ///< of siemens, heidenhain, fanuc: X, Y, Z, ...
+  std::string axis_moves = "by_dk";  ///< siemens: or against_dk
+  int fmi = 2;                       ///< version of the standard, 2 or 3
+  std::string of = "machine";        ///< or observer
+  std::string type = "both";         ///< interfaces: both, me (model exchange), cs (co-simulation)
+  std::string model;  ///< file of a predictor: an observer, with `of` = observer, or a formula, without a scenario
 };
 void export_model(const ExportOptions& options);
 

@@ -14,7 +14,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1] / "shared"))
 from result_schema import errors
 
-PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
+PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/how-to/controls.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
