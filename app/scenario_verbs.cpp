@@ -220,6 +220,14 @@ void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--between", options.between, "time at rest between two parts, such as '2 min' [none]");
+  CLI::Option* gauge = verb->add_option(
+      "--gauge", options.gauge,
+      "also writes the touch cycle of the axis for each control: X, Y and Z of the probe's tip in machine coordinates as it "
+      "touches a fixed gauge, such as '400 mm, 250 mm, -310 mm'; the offset that it finds is added, within limits");
+  verb->add_option("--touch", options.touch, "axis and direction of this touch; z is touched downward")
+      ->check(CLI::IsMember({"z", "x+", "x-", "y+", "y-"}))
+      ->capture_default_str()
+      ->needs(gauge);
   CLI::Option* points =
       verb->add_option(
               "--points", options.points,
