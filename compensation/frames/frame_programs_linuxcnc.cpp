@@ -117,9 +117,9 @@ std::string offset_update(const AxisProgram& p, const std::string& way_out) {
       "(the offset in force, and what it may change by)\n#<now> = [#160 * #{}]\n#<bound> = {}\no110 if [#<now> EQ 0]\n"
       "#<bound> = {}\no110 endif\n#<new> = [#<read> - {}]\n#<step_um> = [[#<new> - #<now>] * 1000]\n",
       5341 + p.axis, mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(p.at_m[p.axis]));
-  text +=
-      touch_refusal(p, 111, "ABS[#<new> - #<now>] GT #<bound>", way_out, 4,
-                    "too far from what is expected, chips, another tool, or the axis was knocked. Clean and probe again");
+  text += touch_refusal(p, 111, "ABS[#<new> - #<now>] GT #<bound>", way_out, 4,
+                        "too far from what is expected, by #<step_um> um, chips, another tool, or the axis was knocked. "
+                        "Clean and probe again");
   text += touch_refusal(p, 112, fmt::format("ABS[#<new>] GT {}", mm(1e-6 * p.most_um, 5)), way_out, 4,
                         "the offset would pass its limit. Look at G59.1");
   text += fmt::format("G10 L2 P7 {}#<new>\nG10 L2 P9", letter_of(p));

@@ -66,7 +66,7 @@ TEST(AxisProgram, WritesTheOffsetAfterAllChecks) {
   const std::string update = file("siemens/PROBEZ.SPF");
   expect_in_order(update, {"PA_FRAME=$P_BFRAME\n", "PA_NOW=$P_UBFR[Z,FI]\n", "TOUCHZ(PA_READ, PA_STATUS)\n",
                            "IF PA_STATUS<>0 GOTOF REFUSED\n", "PA_NEW=PA_READ-(-20.0000)\n", "PA_BOUND=0.03000\n",
-                           "PA_BOUND=0.06000", "IF ABS(PA_NEW-PA_NOW)>PA_BOUND GOTOF TOOFAR\n",
+                           "PA_BOUND=0.06000", "PA_STEP=PA_NEW-PA_NOW\n", "IF ABS(PA_STEP)>PA_BOUND GOTOF TOOFAR\n",
                            "IF ABS(PA_NEW)>0.10000 GOTOF TOOMUCH\n", "$P_UBFR[Z,FI]=PA_NEW", "$P_BFRAME=PA_FRAME\n", "RET\n",
                            "TOOFAR:\n", "TOOMUCH:\n", "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nRET\n"});
   EXPECT_EQ(update.find("$P_UBFR[Z,FI]="), update.rfind("$P_UBFR[Z,FI]="));
