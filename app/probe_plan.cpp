@@ -43,6 +43,18 @@ ReadJob read_job(const scenarios::Scenario& scenario, const std::string& text, c
   return {studies::probe_job_of(cyclogram, order), fastest_rpm(cyclogram)};
 }
 
+/// Rings that tell most about a table: all may be probed, with the noise of the scenario, and its judged points count.
+studies::PointChoice table_points(const scenarios::Scenario& scenario, const std::vector<Record>& records,
+                                  const ProbePlanOptions& options, std::size_t n_most) {
+  studies::PointErrors errors = studies::table_point_errors(scenario, records);
+  const auto first_judged = errors.names.begin() + static_cast<std::ptrdiff_t>(scenario.table->rings.size());
+  std::vector<std::string> rings(errors.names.begin(), first_judged), judged(first_judged, errors.names.end());
+  const double noise_um = options.noise.empty() ? 1e6 * scenario.table->probe_noise_m
+                                                : option_quantity("--probe-noise", options.noise, "um", 1e-3, 1e3);
+  return studies::choose_points(std::move(errors), options.may_probe.empty() ? rings : options.may_probe,
+                                options.counting.empty() ? judged : options.counting, n_most, noise_um);
+}
+
 /// The gauge of --gauge and --touch; limits are not set.
 compensation::AxisProgram axis_program(const ProbePlanOptions& options) {
   compensation::AxisProgram program{.axis = options.touch.front() - 'x', .toward = options.touch.back() == '+' ? 1.0 : -1.0};
@@ -91,8 +103,9 @@ void probe_plan(const ProbePlanOptions& options) {
     std::vector<Record> records;
     for (const std::string& path : options.points) records.push_back(read_record(path, scenario.columns).record);
     constexpr std::size_t kMostPoints = 8;
-    points = studies::choose_points(studies::point_errors(records), options.may_probe, options.counting, kMostPoints,
-                                    probe.noise_um);
+    points = scenario.table ? table_points(scenario, records, options, kMostPoints)
+                            : studies::choose_points(studies::point_errors(records), options.may_probe, options.counting,
+                                                     kMostPoints, probe.noise_um);
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
