@@ -207,6 +207,7 @@ std::vector<std::string> what_next(const ProbePlan& plan) {
   sentences.push_back(
       fmt::format("Probe {} first {:.0f} min from the start of the job ({}, part {}), then as the table says.", plan.target,
                   first.time_s / 60.0, place_words(first), first.part));
+  if (plan.touch) return sentences;
   sentences.emplace_back(
       "Give each value to `follow` (docs/how-to/probing.md). If it says that the errors of this run are larger than usual, "
       "probe earlier than planned.");

@@ -38,12 +38,12 @@ std::string upper(std::string text) {
 }
 
 /// How many digits a language keeps of a constant: significant ones, and behind the point.
-struct Digits {
+struct NumberFormat {
   int significant = 17, decimals = 300;
 };
 
 /// A number without exponent; a negative one in parentheses.
-std::string digits_of(double x, const Digits& digits) {
+std::string digits_of(double x, const NumberFormat& digits) {
   if (!std::isfinite(x)) throw std::logic_error("a control's program needs finite numbers");
   const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
   std::string text = fmt::format("{:.{}f}", std::abs(x), std::clamp(digits.significant - 1 - magnitude, 1, digits.decimals));
@@ -57,7 +57,7 @@ class Dialect {
  public:
   enum class Compare { kLess, kEqual, kGreater };
 
-  explicit Dialect(const Digits& digits) : digits_(digits) {}
+  explicit Dialect(const NumberFormat& digits) : digits_(digits) {}
   virtual ~Dialect() = default;
   [[nodiscard]] virtual bool is_called() const = 0;  ///< by an NC program; otherwise it runs in a cycle
   /// The variable of this name, made at its first use.
@@ -71,7 +71,7 @@ class Dialect {
   [[nodiscard]] virtual ControlProgram program(const std::vector<std::string>& remarks, const std::string& correction) = 0;
 
   [[nodiscard]] std::string number(double x) const { return digits_of(x, digits_); }
-  [[nodiscard]] const Digits& digits() const { return digits_; }
+  [[nodiscard]] const NumberFormat& digits() const { return digits_; }
   void at_least(const std::string& target, const std::string& low) { set_if(target, Compare::kLess, low, target, low); }
   void at_most(const std::string& target, const std::string& high) { set_if(target, Compare::kGreater, high, target, high); }
 
@@ -79,7 +79,7 @@ class Dialect {
   std::string text_;
 
  private:
-  Digits digits_;
+  NumberFormat digits_;
 };
 
 /// The sign of a comparison in a language that writes them so.
@@ -431,7 +431,7 @@ std::vector<std::string> remarks_of(const DeployedModel& d, Dialect& to, const s
 }
 
 /// Each constant is rounded by half a unit of its last digit, each product of them by a few: by so much the sum may differ.
-double rounding_um(const DeployedModel& d, const Digits& digits) {
+double rounding_um(const DeployedModel& d, const NumberFormat& digits) {
   double size_um = std::abs(d.model.intercept), values = 1.0;
   for (const DriftModel::Term& t : d.model.terms) {
     double most = 1.0;
