@@ -111,6 +111,8 @@ struct ProbePlanOptions : CommonOptions {
   std::string probing_time;                      ///< time of a probing, such as "2 min", which is also the default for empty
   int parts = 1;                                 ///< number of times that the job is done
   std::string between;                           ///< rest between two of them, such as "2 min"; empty: none
+  std::string gauge;                             ///< "100 mm, 50 mm, -20 mm", machine coordinates; empty: no touch cycle
+  std::string touch = "z";                       ///< the axis that touches it: z, x+, x-, y+, y-
   std::vector<std::string> points;               ///< record CSVs with errors of points; empty: no choice of points
   std::vector<std::string> may_probe, counting;  ///< displacements of these records; empty: all
 };

@@ -14,7 +14,8 @@ namespace {
 // As in sources/: of model.h, machine.c and observer.c. plain_start() refuses sizes that are too small.
 constexpr std::size_t kFirstInput = 4, kObserverRows = kObserverRowsBack + 2, kPieces = 32, kStepsKept = 12, kModesKept = 12,
                       kSlotsBeside = 8;
-constexpr std::size_t kMachineHead = 32, kSlotHead = 16;  // doubles, more than the structs take with pointers of 64 bits
+// Doubles, more than the structs take with pointers of 64 bits; vectors of live.c.
+constexpr std::size_t kMachineHead = 32, kSlotHead = 16, kLiveHead = 48, kLiveVectors = 27;
 
 struct PlainSizes {
   std::size_t saved = 0, scratch = 0;  // doubles
@@ -37,9 +38,22 @@ PlainSizes sizes_of_machine(const FmuModel& model, std::size_t n_inputs) {
   const auto n = static_cast<std::size_t>(model.start.size());
   const std::size_t slots = model.known_drives.size() + kSlotsBeside, exchanges = model.exchanges.size(),
                     sources = model.sources.size();
-  return {kFirstInput + n_inputs + 1 + n,  // the rate of the ambient is no input here
+  Eigen::Index n_probes = 0;
+  bool has_live = false;
+  const auto take_live = [&](const auto& laws) {
+    for (const auto& law : laws) {
+      if (!law.live) continue;
+      has_live = true;
+      n_probes = std::max(n_probes, law.live->weights.cols());
+    }
+  };
+  take_live(model.sources);
+  take_live(model.exchanges);
+  const std::size_t live =
+      has_live ? kLiveHead + 2 * (model.drive.size() + static_cast<std::size_t>(n_probes)) + kLiveVectors * n : 0;
+  return {kFirstInput + n_inputs + 1 + n + (has_live ? 1 : 0),  // the rate of the ambient is no input here
           kMachineHead + slots * (kSlotHead + exchanges + n + n * n + 3 * n) + model.drive.size() +
-              2 * (exchanges + sources) + 7 * n + 2 * n * n};
+              2 * (exchanges + sources) + 8 * n + 2 * n * n + live};
 }
 
 std::string names_text(const std::vector<std::string>& names) {
@@ -54,7 +68,7 @@ std::string names_text(const std::vector<std::string>& names) {
 
 bool is_plain(const std::string& name, bool is_observer) {
   if (name.starts_with("fmi") || name.starts_with("instance")) return false;
-  if (name == "machine.c") return !is_observer;
+  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
   if (name == "observer.c" || name.starts_with("state_observer") || name == "observer_filter.c" ||
       name == "probe_feedback.c")
     return is_observer;
