@@ -423,7 +423,10 @@ std::vector<std::string> remarks_of(const DeployedModel& d, Dialect& to, const s
         plain(fmt::format("{}: {} in {}, valid from {:.5g} to {:.5g}{}", to.reading(k), g.input, g.unit, g.low, g.high,
                           d.safe.from_start && !compensation::is_drive(g.unit) ? " above the first reading" : "")));
   }
-  if (!to.is_called()) list.push_back(fmt::format("One row every {:g} s", d.safe.period_s));
+  if (!to.is_called()) {
+    list.push_back(fmt::format("One row every {:g} s", d.safe.period_s));
+    list.push_back(fmt::format("Where a run begins (the machine starts cold) set {} = 0", to.kept("started")));
+  }
   list.push_back(fmt::format("Equal to what was judged within {:.1g} um while every reading is right", error_um));
   list.push_back(
       "It knows no broken thermometer but one out of range: a wire that breaks must stop the correction, by the PLC");
