@@ -13,6 +13,17 @@ namespace {
 
 constexpr double kMoreLikelyThanNot = 0.5;  // that nothing is missing
 
+constexpr int kDigits = 3;  // of a number that is shown
+
+/// Rounded to three digits, or to more if the interval is narrower than the last of them.
+double shown(const Estimate& e, double value) {
+  const double width = std::abs(e.high - e.low);
+  if (value == 0.0 || !std::isfinite(value) || !(width > 0.0)) return value;  // without an interval it is exact
+  const double exponent = std::min(std::floor(std::log10(std::abs(value))) - (kDigits - 1), std::floor(std::log10(width)));
+  const double unit = std::pow(10.0, std::abs(exponent));
+  return exponent < 0.0 ? std::round(value * unit) / unit : std::round(value / unit) * unit;
+}
+
 std::string unit_of(const Estimate& e) {
   return e.unit == "1" ? "" : " " + e.unit;
 }
@@ -20,12 +31,12 @@ std::string unit_of(const Estimate& e) {
 }  // namespace
 
 std::string value_text(const Estimate& e) {
-  return fmt::format("{:.4g}{}", e.value, unit_of(e));
+  return fmt::format("{:.10g}{}", shown(e, e.value), unit_of(e));
 }
 
 std::string interval_text(const Estimate& e) {
-  const double a = e.low, b = e.high;
-  return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
+  const double a = shown(e, e.low), b = shown(e, e.high);
+  return fmt::format("{:.10g} to {:.10g}", std::min(a, b), std::max(a, b));
 }
 
 std::string parameters_text(const Cause& cause) {

@@ -5,7 +5,7 @@
 
 namespace driftwright::diagnosis {
 
-/// "14.3 W/(m^2 K)"; times as minutes.
+/// "14.3 W/(m^2 K)"; times as minutes. It has three digits, or more if its interval is narrower.
 [[nodiscard]] std::string value_text(const Estimate& estimate);
 /// "13.1 to 15.6", in the unit of value_text().
 [[nodiscard]] std::string interval_text(const Estimate& estimate);

@@ -27,7 +27,7 @@ struct ExtendedScenario {
 [[nodiscard]] std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::VectorXd& x);
 
 /// Makes all changes in order and edits the scenario's text: numbers in place, further effects after the others, as
-/// effects::yaml_of() writes them. Numbers have eight digits. Paths become absolute. For a change that happened in one of
+/// effects::yaml_of() writes them. Numbers have six digits at most. Paths become absolute. For a change that happened in one of
 /// several runs, a cyclogram with the run's name is added if there is none, from its record and by the scenario's
 /// `columns`. If the text cannot be edited in place (an alias, an entry that shares its line), the whole entry is
 /// replaced; if that is impossible, the file is written anew without its comments.

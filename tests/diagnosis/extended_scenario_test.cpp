@@ -169,7 +169,7 @@ void expect_runs_as_predicted(const Bench& b, const Case& finding) {
     return (x - predicted.topRows(simulated.rows())).cwiseAbs().maxCoeff();
   };
   const double size = apart(before.topRows(simulated.rows()));
-  // Seven digits of a change of some 10 K or um. The reduced model of the mesh may be off by 8 mK and 16 nm, and by three
+  // Six digits of a change of some 10 K or um. The reduced model of the mesh may be off by 8 mK and 16 nm, and by three
   // percent of a change of matrices that its basis was not made for (2.5 % of what another conductivity does).
   const double tolerance = finding.with_mesh ? 0.01 + 0.03 * size : 1e-3;
   EXPECT_LT(apart(simulated), tolerance) << extended.text;
