@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/quantity.hpp"
 
@@ -23,9 +24,14 @@ double rounded_x(const Knob& knob, double x, int digits) {
   return x_within(knob, with_digits(knob, knob.value(x), digits));
 }
 
+/// Whether the scenario's number is as good as the fitted one.
+bool stays(const WrittenNumber& number, double x, double sd) {
+  return number.is_own && std::abs(x) <= kRoundedBy * sd;
+}
+
 /// The x that is written in place of one that is known to `sd`.
 double short_x(const WrittenNumber& number, double x, double sd) {
-  if (number.is_own && std::abs(x) <= kRoundedBy * sd) return 0.0;
+  if (stays(number, x, sd)) return 0.0;
   for (int digits = kFewestDigits; digits < kMostDigits; ++digits) {
     const double other = rounded_x(*number.knob, x, digits);
     if (std::abs(other - x) <= kRoundedBy * sd) return other;  // never for NaN
@@ -34,12 +40,14 @@ double short_x(const WrittenNumber& number, double x, double sd) {
   return std::isnan(other) ? x : other;
 }
 
-/// How much coarser than three digits a number is known: those known worst are rounded first.
-double coarseness(const Knob& knob, double x, double sd) {
+/// Numbers with the largest value are rounded first: those that stay, then those whose third digit is known worst.
+std::pair<bool, double> turn(const WrittenNumber& number, double x, double sd) {
+  if (stays(number, x, sd)) return {true, sd};
+  const Knob& knob = *number.knob;
   const double value = with_digits(knob, knob.value(x), kFewestDigits);
   const double unit = value == 0.0 ? 0.0 : std::pow(10.0, std::floor(std::log10(std::abs(value))) - (kFewestDigits - 1));
   const double next = x_within(knob, value + unit) - x_within(knob, value);
-  return next > 0.0 ? sd / next : 0.0;
+  return {false, next > 0.0 ? sd / next : 0.0};
 }
 
 }  // namespace
@@ -65,13 +73,13 @@ Eigen::VectorXd with_few_digits(const std::vector<WrittenNumber>& numbers, const
   std::vector<char> is_done(numbers.size(), 0);
   for (std::size_t step = 0; step < numbers.size(); ++step) {
     std::size_t next = numbers.size();
-    double coarsest = -1.0;
+    std::pair<bool, double> first = {false, -1.0};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const auto at_i = static_cast<Eigen::Index>(i);
       if (is_done[i]) continue;
-      const double coarse = coarseness(*numbers[i].knob, at[at_i], std::sqrt(std::max(0.0, c(at_i, at_i))));
-      if (!(coarse > coarsest)) continue;
-      coarsest = coarse;
+      const auto mine = turn(numbers[i], at[at_i], std::sqrt(std::max(0.0, c(at_i, at_i))));
+      if (!(mine > first)) continue;
+      first = mine;
       next = i;
     }
     const auto i = static_cast<Eigen::Index>(next);

@@ -23,7 +23,8 @@ struct WrittenNumber {
 [[nodiscard]] Eigen::VectorXd with_few_digits(const std::vector<WrittenNumber>& numbers, const Eigen::VectorXd& x,
                                               const Eigen::MatrixXd& covariance);
 
-/// x of the written fit, as with_few_digits() rounds it. Numbers without a slope, such as the time of a jump, have six digits.
+/// x of the written fit, as with_few_digits() rounds it. Numbers without a slope, such as the time of a jump, have six
+/// digits.
 /// @param causes_only  the scenario's own numbers are left, except those that are causes
 [[nodiscard]] Eigen::VectorXd written_x(const Diagnosis& d, bool causes_only);
 

@@ -82,13 +82,14 @@ std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only, c
   return changes;
 }
 
-void add_records(std::vector<std::string>& head, const MeasuredTwin& m) {
-  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + clean_name(run.path));
+void add_records(std::vector<std::string>& head, const MeasuredTwin& m, const std::filesystem::path& file) {
+  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + path_in_comments(run.path, file));
 }
 
-std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only) {
+std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only,
+                                           const std::filesystem::path& file) {
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
-                                               clean_name(m.scenario.path), diagnosis::word(d.verdict))};
+                                               path_in_comments(m.scenario.path, file), diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
     head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
                                c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
@@ -98,7 +99,7 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
   }
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
-  add_records(head, m);
+  add_records(head, m, file);
   if (d.written.keeps_numbers)
     head.emplace_back(causes_only || d.written.causes_alone
                           ? "  the scenario's own numbers are as they were"
@@ -108,10 +109,10 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
   return head;
 }
 
-std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d) {
+std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d, const std::filesystem::path& file) {
   std::vector<std::string> head = {
-      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(m.scenario.path))};
-  add_records(head, m);
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", path_in_comments(m.scenario.path, file))};
+  add_records(head, m, file);
   if (const std::string warning = diagnosis::calibration_warning(d); !warning.empty()) head.push_back("WARNING: " + warning);
   head.emplace_back("");
   return head;
@@ -143,7 +144,8 @@ MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& reques
   const Eigen::VectorXd x = diagnosis::written_x(result.found, request.causes_only);
   std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only, x);  // the fit's order
   for (StatedChange& cause : stated_causes(result.found, x)) changes.push_back(std::move(cause));
-  result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file);
+  result.written =
+      written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only, request.file), request.file);
   predict_as_written(m, result.written, result.found);
   return result;
 }
@@ -153,7 +155,8 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
   listener.begin("writing");
   const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
-  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file);
+  result.written =
+      written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found, file), file);
   predict_as_written(m, result.written, result.found);
   return result;
 }
