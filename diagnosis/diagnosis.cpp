@@ -8,10 +8,12 @@
 
 #include "base/normal.hpp"
 #include "diagnosis/calibration.hpp"
+#include "diagnosis/extended_scenario.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/own_effects.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
@@ -38,6 +40,8 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   const Variant& variant = list[of.candidate].variants[of.variant];
   Cause c{list[of.candidate].effect, list[of.candidate].where, variant.law, {}, gain, {}};
   const Eigen::Index first = first_of(hypothesis, claim, fitter.n_nuisance());
+  c.own = own_effects(fitter.twin().as_written(),
+                      change_of(of, fit.x.segment(first, static_cast<Eigen::Index>(of.knobs.size()))));
   for (std::size_t k = 0; k < of.knobs.size() && !of.all_or_nothing; ++k) {
     const Knob& knob = of.knobs[k];
     const auto at = first + static_cast<Eigen::Index>(k);
@@ -90,7 +94,7 @@ void leave_out(Cause& cause, const std::string& why) {
 }
 
 /// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted.
-std::vector<Cause> moved_numbers(const Diagnosis& d) {
+std::vector<Cause> moved_numbers(const Diagnosis& d, const Twin& twin) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
   for (std::size_t i : d.moved) {
@@ -105,6 +109,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
+    c.own = own_effects(twin.as_written(), [&](TwinState& state) { k.set(state, e.value); });
     if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
     c.standing = gain >= kSureOdds ? Standing::kNamed : Standing::kSuspected;
     if (c.standing == Standing::kNamed &&
@@ -350,7 +355,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   // A number that moved back once others were free again is no cause.
   std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
-  for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
+  for (Cause& c : moved_numbers(d, twin)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
   d.gain = held.channels;
   d.misses = held.misses;

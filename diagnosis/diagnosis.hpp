@@ -35,6 +35,7 @@ struct Estimate {
   double known_to = 0.0;   ///< standard deviation of that prior: of the logarithm if is_share, otherwise in the unit
   bool is_share = false;
   bool is_written = true;  ///< whether extended.yaml contains this value
+  int line = 0;            ///< of the scenario's effect whose number it is, in its file; 0: of none
 };
 
 struct Cause {
@@ -53,6 +54,7 @@ struct Cause {
   double share = 1.0;
   Odds odds = {};
   int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and how many of them found it again
+  std::string own = {};             ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
 };
 
 /// The content of extended.yaml: claims that predict kept-out rows better, and the scenario's own numbers as fitted with

@@ -39,6 +39,14 @@ std::string interval_text(const Estimate& e) {
   return fmt::format("{:.10g} to {:.10g}", std::min(a, b), std::max(a, b));
 }
 
+std::string cause_name(const Cause& cause, const std::string& where) {
+  return cause.own.empty() ? fmt::format("{} at {}", cause.effect, where) : cause.own;
+}
+
+std::string cause_name(const Cause& cause) {
+  return cause_name(cause, cause.where);
+}
+
 std::string parameters_text(const Cause& cause) {
   std::vector<std::string> numbers;
   for (const Estimate& p : cause.parameters) {
@@ -55,8 +63,7 @@ std::string channel_text(const std::string& name, const std::string& unit) {
 std::string taken_up_text(const Diagnosis& d) {
   if (d.written.taken_up.empty()) return "";
   std::vector<std::string> left_out, far;
-  for (std::size_t c : d.written.taken_up)
-    left_out.push_back(fmt::format("{} at {}", d.causes.at(c).effect, d.causes.at(c).where));
+  for (std::size_t c : d.written.taken_up) left_out.push_back(cause_name(d.causes.at(c)));
   for (std::size_t i = 0; i < d.calibrated.size(); ++i) {
     const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
     const Estimate& e = d.calibrated[i];

@@ -62,7 +62,7 @@ void add_certainty(Section& section, const diagnosis::Diagnosis& d, std::size_t 
 /// The statistics of one cause.
 Section one_cause_statistics(const diagnosis::Diagnosis& d, std::size_t i) {
   const diagnosis::Cause& c = d.causes[i];
-  Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where)};
+  Section section{.title = fmt::format("Cause {}, {}: {}", i + 1, diagnosis::word(c.standing), diagnosis::cause_name(c))};
   if (!is_moved_number(d, i) && d.ended_at.empty())
     add(section,
         Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
@@ -128,7 +128,7 @@ std::optional<ShownChannel> channel_of_cause(const studies::MeasuredTwin& m, con
 std::string alternatives_text(const diagnosis::Cause& cause, std::size_t most) {
   std::vector<std::string> list;
   for (const diagnosis::Cause& a : cause.alternatives) {
-    if (list.size() < most) list.push_back(fmt::format("{} at {} ({:.0f} %)", a.effect, a.where, 100.0 * a.share));
+    if (list.size() < most) list.push_back(fmt::format("{} ({:.0f} %)", diagnosis::cause_name(a), 100.0 * a.share));
   }
   if (list.empty()) return "";
   const std::size_t n_more = cause.alternatives.size() - list.size();

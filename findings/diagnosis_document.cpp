@@ -40,7 +40,7 @@ Table causes_table(const diagnosis::Diagnosis& d) {
                           {.title = "or"}}};
   for (std::size_t i = 0; i < d.causes.size(); ++i) {
     const diagnosis::Cause& c = d.causes[i];
-    table.rows.push_back({fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing),
+    table.rows.push_back({diagnosis::cause_name(c), diagnosis::word(c.standing),
                           is_moved_number(d, i) ? Datum() : Datum(c.probability), diagnosis::parameters_text(c),
                           alternatives_text(c, kMostBeside)});
   }
@@ -120,7 +120,7 @@ void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
     auto known =
         std::find_if(by_reason.begin(), by_reason.end(), [&](const auto& r) { return r.first == c.why_not_written; });
     if (known == by_reason.end()) known = by_reason.insert(by_reason.end(), {c.why_not_written, {}});
-    known->second.push_back(fmt::format("{} at {}", c.effect, c.where));
+    known->second.push_back(diagnosis::cause_name(c));
   }
   for (const auto& [why, causes] : by_reason)
     add(body, Text{fmt::format("{} {} not written into extended.yaml: {}.", fmt::join(causes, ", "),

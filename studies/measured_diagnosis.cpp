@@ -55,9 +55,9 @@ std::vector<StatedChange> stated_causes(const Diagnosis& d, const Eigen::VectorX
       if (p.low != p.high) numbers.push_back(interval_comment(p.name, p));
     }
     if (d.written.causes_alone) numbers.emplace_back("written as fitted beside the scenario's own numbers as they are");
-    changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
-                       fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
-                       diagnosis::change_of(claim, x.segment(first, n))});
+    const std::string name = diagnosis::cause_name(cause);
+    changes.push_back(
+        {name, fmt::format("{}: {}", name, fmt::join(numbers, "; ")), diagnosis::change_of(claim, x.segment(first, n))});
     first += n;
   }
   return changes;
@@ -91,12 +91,14 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
                                                path_in_comments(m.scenario.path, file), diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
-    head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
-                               c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
-                               c.parameters.empty() ? "" : ": ", diagnosis::parameters_text(c)));
+    head.push_back(fmt::format("  {}{}: {} ({}){}{}", diagnosis::word(c.standing), c.is_written ? "" : ", not written in",
+                               diagnosis::cause_name(c), c.law, c.parameters.empty() ? "" : ": ",
+                               diagnosis::parameters_text(c)));
     if (!c.is_written) head.push_back(fmt::format("    not written, since {}", c.why_not_written));
-    for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
+    for (const diagnosis::Cause& a : c.alternatives) head.push_back("    or " + diagnosis::cause_name(a));
   }
+  const bool names_lines = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& c) { return !c.own.empty(); });
+  if (names_lines) head.push_back(fmt::format("  lines are those of {}", path_in_comments(m.scenario.path, file)));
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
   add_records(head, m, file);
