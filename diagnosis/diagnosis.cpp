@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "base/normal.hpp"
 #include "diagnosis/calibration.hpp"
@@ -93,8 +94,9 @@ void leave_out(Cause& cause, const std::string& why) {
   cause.why_not_written = why;
 }
 
-/// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted.
-std::vector<Cause> moved_numbers(const Diagnosis& d, const Twin& twin) {
+/// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted. The surest is first,
+/// also in Diagnosis::moved.
+void add_moved_numbers(Diagnosis& d, const Twin& twin) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
   for (std::size_t i : d.moved) {
@@ -119,9 +121,34 @@ std::vector<Cause> moved_numbers(const Diagnosis& d, const Twin& twin) {
     }
     causes.push_back(std::move(c));
   }
-  std::stable_sort(causes.begin(), causes.end(),
-                   [](const Cause& a, const Cause& b) { return a.log_evidence_gain > b.log_evidence_gain; });
-  return causes;
+  std::vector<std::size_t> order(causes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return causes[a].log_evidence_gain > causes[b].log_evidence_gain; });
+  const std::vector<std::size_t> moved = d.moved;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    d.moved[i] = moved[order[i]];
+    d.causes.push_back(std::move(causes[order[i]]));
+  }
+}
+
+/// Simulates what was found without each cause in turn, at the same numbers.
+void add_readings_without(Diagnosis& d, const Fitter& fitter, Twin::Workspace& workspace, const Listener& listener) {
+  d.without_cause.assign(d.causes.size(), {});
+  for (std::size_t c = 0; c < d.causes.size() && !listener.wants_end(); ++c) {
+    const std::size_t n_found = d.search.findings.size();
+    Hypothesis hypothesis = d.search.hypothesis;
+    Eigen::VectorXd x = d.search.fit.x;
+    if (c < n_found) {
+      const Remainder rest = without_claims(d.search.hypothesis, {c}, fitter.n_nuisance());
+      hypothesis = rest.hypothesis;
+      x = d.search.fit.x(rest.x);
+    } else {
+      x[static_cast<Eigen::Index>(d.moved[c - n_found])] = 0.0;
+    }
+    Prediction without;
+    if (has_solution([&] { without = fitter.predict(hypothesis, x, workspace); })) d.without_cause[c] = std::move(without);
+  }
 }
 
 /// For one record of a machine with an unexplained error: in all trials, fits held for their own rows only
@@ -355,7 +382,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   // A number that moved back once others were free again is no cause.
   std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
-  for (Cause& c : moved_numbers(d, twin)) d.causes.push_back(std::move(c));
+  add_moved_numbers(d, twin);
+  add_readings_without(d, fitter, workspace, listener);
   d.holdout = held.how;
   d.gain = held.channels;
   d.misses = held.misses;

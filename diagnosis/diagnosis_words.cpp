@@ -16,7 +16,7 @@ constexpr double kMoreLikelyThanNot = 0.5;  // that nothing is missing
 constexpr int kDigits = 3;  // of a number that is shown
 
 /// Rounded to three digits, or to more if the interval is narrower than the last of them.
-double shown(const Estimate& e, double value) {
+double in_digits(const Estimate& e, double value) {
   const double width = std::abs(e.high - e.low);
   if (value == 0.0 || !std::isfinite(value) || !(width > 0.0)) return value;  // without an interval it is exact
   const double exponent = std::min(std::floor(std::log10(std::abs(value))) - (kDigits - 1), std::floor(std::log10(width)));
@@ -31,11 +31,11 @@ std::string unit_of(const Estimate& e) {
 }  // namespace
 
 std::string value_text(const Estimate& e) {
-  return fmt::format("{:.10g}{}", shown(e, e.value), unit_of(e));
+  return fmt::format("{:.10g}{}", in_digits(e, e.value), unit_of(e));
 }
 
 std::string interval_text(const Estimate& e) {
-  const double a = shown(e, e.low), b = shown(e, e.high);
+  const double a = in_digits(e, e.low), b = in_digits(e, e.high);
   return fmt::format("{:.10g} to {:.10g}", std::min(a, b), std::max(a, b));
 }
 

@@ -17,7 +17,7 @@ bool has_same_values(const Effect& a, const Effect& b) {
 }
 
 /// Whether an added effect changes a heat, an exchange or the capacity of an effect of the scenario.
-bool changes(const Effect& added, const Effect& own) {
+bool changes_law_of(const Effect& added, const Effect& own) {
   if (!own.kind->contribute || (added.place_kind != effects::Place::kLaw && !added.kind->change_material)) return false;
   const effects::HeatBalance alone = effects::heat_balance({own});
   const auto is_it = [&](const auto& law) { return law.name == added.place; };
@@ -39,7 +39,7 @@ std::string own_effects(const TwinState& written, const std::function<void(TwinS
     const Effect& own = written[i];
     const bool is_changed = !has_same_values(own, changed[i]) ||
                             std::any_of(changed.begin() + static_cast<std::ptrdiff_t>(written.size()), changed.end(),
-                                        [&](const Effect& added) { return changes(added, own); });
+                                        [&](const Effect& added) { return changes_law_of(added, own); });
     if (!is_changed) continue;
     names.push_back(fmt::format("{} at {}", own.kind->key, effects::where_of(own)));
     if (own.where.line > 0) names.back() += fmt::format(", line {}", own.where.line);

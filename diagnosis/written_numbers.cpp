@@ -25,13 +25,13 @@ double rounded_x(const Knob& knob, double x, int digits) {
 }
 
 /// Whether the scenario's number is as good as the fitted one.
-bool stays(const WrittenNumber& number, double x, double sd) {
+bool may_stay(const WrittenNumber& number, double x, double sd) {
   return number.is_own && std::abs(x) <= kRoundedBy * sd;
 }
 
 /// The x that is written in place of one that is known to `sd`.
 double short_x(const WrittenNumber& number, double x, double sd) {
-  if (stays(number, x, sd)) return 0.0;
+  if (may_stay(number, x, sd)) return 0.0;
   for (int digits = kFewestDigits; digits < kMostDigits; ++digits) {
     const double other = rounded_x(*number.knob, x, digits);
     if (std::abs(other - x) <= kRoundedBy * sd) return other;  // never for NaN
@@ -41,8 +41,8 @@ double short_x(const WrittenNumber& number, double x, double sd) {
 }
 
 /// Numbers with the largest value are rounded first: those that stay, then those whose third digit is known worst.
-std::pair<bool, double> turn(const WrittenNumber& number, double x, double sd) {
-  if (stays(number, x, sd)) return {true, sd};
+std::pair<bool, double> order_key(const WrittenNumber& number, double x, double sd) {
+  if (may_stay(number, x, sd)) return {true, sd};
   const Knob& knob = *number.knob;
   const double value = with_digits(knob, knob.value(x), kFewestDigits);
   const double unit = value == 0.0 ? 0.0 : std::pow(10.0, std::floor(std::log10(std::abs(value))) - (kFewestDigits - 1));
@@ -77,7 +77,7 @@ Eigen::VectorXd with_few_digits(const std::vector<WrittenNumber>& numbers, const
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const auto at_i = static_cast<Eigen::Index>(i);
       if (is_done[i]) continue;
-      const auto mine = turn(numbers[i], at[at_i], std::sqrt(std::max(0.0, c(at_i, at_i))));
+      const auto mine = order_key(numbers[i], at[at_i], std::sqrt(std::max(0.0, c(at_i, at_i))));
       if (!(mine > first)) continue;
       first = mine;
       next = i;

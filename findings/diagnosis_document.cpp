@@ -252,7 +252,11 @@ void add_evidence(Section& experts, const DiagnosisFindings& found, const std::s
 Section picture_section(const DiagnosisFindings& found, const std::optional<ShownChannel>& shown,
                         const diagnosis::Prediction* after, const std::string& words) {
   Section section;
-  if (shown) add(section, channel_figure(found.measured, found.diagnosis, *shown, after, words));
+  if (!shown) return section;
+  std::vector<ShownCurve> curves = {{"simulated with the scenario as it is", &found.diagnosis.as_written}};
+  if (after) curves.push_back({words, after});
+  add(section,
+      channel_figure(found.measured, *shown, channel_words(found.measured, *shown) + ": measured and simulated", curves));
   return section;
 }
 
@@ -270,10 +274,10 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
 
   const diagnosis::Prediction* after = with_causes(m, d);
   const std::optional<ShownChannel> shown =
-      d.causes.empty() ? clearest_channel(m, d, nullptr) : channel_of_cause(m, d, lead_cause(d));
+      d.causes.empty() ? clearest_channel(m, d, d.as_written, nullptr) : channel_of_lead(m, d);
   body.sections.push_back(picture_section(found, shown, after, with_causes_text(d)));
   body.sections.push_back(output::next_section(next_steps(m, d, compared, made_by)));
-  if (!d.causes.empty()) body.sections.push_back(causes_section(m, d, shown));
+  if (!d.causes.empty()) body.sections.push_back(causes_section(m, d));
   if (d.experiment)
     body.sections.push_back(experiment_section(*d.experiment));
   else
@@ -319,7 +323,8 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   add(body, Value{.key = "discriminating_experiment"});
 
   const diagnosis::Prediction* after = d.written.keeps_numbers ? &d.extended : nullptr;
-  body.sections.push_back(picture_section(found, clearest_channel(m, d, after), after, "simulated with its numbers fitted"));
+  body.sections.push_back(
+      picture_section(found, clearest_channel(m, d, d.as_written, after), after, "simulated with its numbers fitted"));
   body.sections.push_back(output::next_section(steps_after_calibration(m, d, warning, made_by)));
   add_causes_data(body, d.causes);
 

@@ -5,12 +5,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void move(YamlText& yaml, const ConfigNode& node, const fs::path& from, const fs::path& to,
-          std::vector<const ConfigNode*>& left) {
+void move_below(YamlText& yaml, const ConfigNode& node, const fs::path& from, const fs::path& to,
+                std::vector<const ConfigNode*>& left) {
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const ConfigNode& item = *node.items[i];
     if (!node.is_map() || !item.is_scalar() || !is_path_key(node.keys[i].text)) {
-      move(yaml, item, from, to, left);
+      move_below(yaml, item, from, to, left);
     } else if (!fs::path(item.text).is_absolute()) {
       const std::string moved = moved_path(item.text, from, to);
       if (moved != item.text && !yaml.replace(item, path_text(moved))) left.push_back(&item);
@@ -48,7 +48,7 @@ std::string path_text(const std::string& path) {
 
 std::vector<const ConfigNode*> move_paths(YamlText& yaml, const fs::path& from, const fs::path& to) {
   std::vector<const ConfigNode*> left;
-  move(yaml, yaml.root(), from, to, left);
+  move_below(yaml, yaml.root(), from, to, left);
   return left;
 }
 

@@ -27,6 +27,13 @@ TEST(DiagnosisWords, HaveMoreThanThreeDigitsWhereAnIntervalIsNarrower) {
   EXPECT_EQ(value_text({"at_speed", "rpm", 1234.5, 1234.5, 1234.5}), "1234.5 rpm");  // it has no interval
 }
 
+TEST(DiagnosisWords, CallACauseByTheUsersOwnEffect) {
+  Cause cause{"contact", "head,column", "another conductance", {}, 41.3, {}};
+  EXPECT_EQ(cause_name(cause), "contact at head,column");
+  cause.own = "link at head,column, line 8";
+  EXPECT_EQ(cause_name(cause), "link at head,column, line 8");
+}
+
 TEST(DiagnosisWords, SayWhichQuantityAChannelIs) {
   EXPECT_EQ(channel_text("t_head", "K"), "temperature t_head");
   EXPECT_EQ(channel_text("drift_z", "um"), "displacement drift_z");
