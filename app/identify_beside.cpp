@@ -25,13 +25,13 @@ void identify_beside(const IdentifyOptions& asked) {
   identification::Identified learned =
       identification::extend(beside.measured, beside.roles, beside.simulated, progress.listener());
   progress.begin("writing");
-  const std::filesystem::path file = folder.target() / "extended.yaml";
   std::vector<std::string> head = {
       fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/how-to/identification.md)",
-                  studies::path_in_comments(options.prior, file))};
-  for (const std::string& path : options.records) head.push_back("  record: " + studies::path_in_comments(path, file));
+                  studies::name_in_comments(options.prior))};
+  for (const std::string& path : options.records) head.push_back("  record: " + studies::name_in_comments(path));
   head.emplace_back("");
-  const studies::WrittenScenario written = studies::written_scenario(m, studies::stated_extension(learned), head, file);
+  const studies::WrittenScenario written =
+      studies::written_scenario(m, studies::stated_extension(learned), head, folder.target() / "extended.yaml");
   if (!written.is_readable())
     throw InputError(
         fmt::format("{}: what was learned could not be written: {}", options.prior, written.extended.not_written.front()));

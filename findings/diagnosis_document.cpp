@@ -55,8 +55,9 @@ Section courses_section(const diagnosis::Diagnosis& d) {
     if (section.blocks.size() == kMost) break;
     if (s.course.empty()) continue;
     const auto [unit, scale] = shown_unit(s);
-    Plot plot{.title = fmt::format("{} at {}, if it alone is wrong", diagnosis::word(s.says.quantity),
-                                   fmt::join(s.says.place, " and ")),
+    const bool has_place = s.says.quantity != diagnosis::StatedQuantity::kAmbient;
+    Plot plot{.title = fmt::format("{}{}, if it alone is wrong", diagnosis::word(s.says.quantity),
+                                   has_place ? fmt::format(" at {}", fmt::join(s.says.place, " and ")) : ""),
               .x_label = "time [min]",
               .y_label = fmt::format("{} [{}]", diagnosis::word(s.says.quantity), unit),
               .series = {}};

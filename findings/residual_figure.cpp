@@ -88,7 +88,7 @@ output::Plot channel_figure(const studies::MeasuredTwin& m, const ShownChannel& 
                     .series = {curve("measured", c.value)},
                     .marks = section_marks(run.cyclogram)};
   plot.series.front().style = Series::Style::kPoints;
-  plot.series.front().width = 1.2;
+  plot.series.front().width = 2.6;  // wider than the curves, which are drawn over it
   for (const ShownCurve& s : simulated) plot.series.push_back(curve(s.label, (*s.readings)[shown.run].row(c.output)));
   return plot;
 }

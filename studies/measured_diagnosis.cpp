@@ -82,14 +82,13 @@ std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only, c
   return changes;
 }
 
-void add_records(std::vector<std::string>& head, const MeasuredTwin& m, const std::filesystem::path& file) {
-  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + path_in_comments(run.path, file));
+void add_records(std::vector<std::string>& head, const MeasuredTwin& m) {
+  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + name_in_comments(run.path));
 }
 
-std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only,
-                                           const std::filesystem::path& file) {
+std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only) {
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
-                                               path_in_comments(m.scenario.path, file), diagnosis::word(d.verdict))};
+                                               name_in_comments(m.scenario.path), diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
     head.push_back(fmt::format("  {}{}: {} ({}){}{}", diagnosis::word(c.standing), c.is_written ? "" : ", not written in",
                                diagnosis::cause_name(c), c.law, c.parameters.empty() ? "" : ": ",
@@ -98,10 +97,10 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
     for (const diagnosis::Cause& a : c.alternatives) head.push_back("    or " + diagnosis::cause_name(a));
   }
   const bool names_lines = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& c) { return !c.own.empty(); });
-  if (names_lines) head.push_back(fmt::format("  lines are those of {}", path_in_comments(m.scenario.path, file)));
+  if (names_lines) head.push_back(fmt::format("  lines are those of {}", name_in_comments(m.scenario.path)));
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
-  add_records(head, m, file);
+  add_records(head, m);
   if (d.written.keeps_numbers)
     head.emplace_back(causes_only || d.written.causes_alone
                           ? "  the scenario's own numbers are as they were"
@@ -111,10 +110,10 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
   return head;
 }
 
-std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d, const std::filesystem::path& file) {
+std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d) {
   std::vector<std::string> head = {
-      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", path_in_comments(m.scenario.path, file))};
-  add_records(head, m, file);
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", name_in_comments(m.scenario.path))};
+  add_records(head, m);
   if (const std::string warning = diagnosis::calibration_warning(d); !warning.empty()) head.push_back("WARNING: " + warning);
   head.emplace_back("");
   return head;
@@ -146,8 +145,7 @@ MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& reques
   const Eigen::VectorXd x = diagnosis::written_x(result.found, request.causes_only);
   std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only, x);  // the fit's order
   for (StatedChange& cause : stated_causes(result.found, x)) changes.push_back(std::move(cause));
-  result.written =
-      written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only, request.file), request.file);
+  result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file);
   predict_as_written(m, result.written, result.found);
   return result;
 }
@@ -157,8 +155,7 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
   listener.begin("writing");
   const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
-  result.written =
-      written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found, file), file);
+  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file);
   predict_as_written(m, result.written, result.found);
   return result;
 }

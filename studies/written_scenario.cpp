@@ -28,14 +28,12 @@ WrittenScenario written_scenario(const MeasuredTwin& m, const std::vector<diagno
     return written;
   }
   written.difference =
-      unified_diff(read_bytes(m.scenario.path), written.extended.text, path_in_comments(m.scenario.path, file), name);
+      unified_diff(read_bytes(m.scenario.path), written.extended.text, name_in_comments(m.scenario.path), name);
   return written;
 }
 
-std::string path_in_comments(const std::string& path, const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.parent_path();
-  return clean_name(folder.empty() ? std::filesystem::path(path).filename().string()
-                                   : scenarios::moved_path(path, std::filesystem::current_path(), folder));
+std::string name_in_comments(const std::string& path) {
+  return clean_name(std::filesystem::path(path).filename().string());
 }
 
 }  // namespace driftwright::studies

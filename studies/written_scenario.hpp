@@ -25,7 +25,7 @@ struct WrittenScenario {
 [[nodiscard]] WrittenScenario written_scenario(const MeasuredTwin& m, const std::vector<diagnosis::StatedChange>& changes,
                                                std::vector<std::string> head, const std::filesystem::path& file);
 
-/// A path in the comments of such a file: relative to it, or the file's name alone for a text that is not written.
-[[nodiscard]] std::string path_in_comments(const std::string& path, const std::filesystem::path& file);
+/// A file in the comments of such a text, which may be sent to somebody: its name without folders.
+[[nodiscard]] std::string name_in_comments(const std::string& path);
 
 }  // namespace driftwright::studies
