@@ -27,8 +27,8 @@ void identify_beside(const IdentifyOptions& asked) {
   progress.begin("writing");
   std::vector<std::string> head = {
       fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/how-to/identification.md)",
-                  clean_name(options.prior))};
-  for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
+                  studies::name_in_comments(options.prior))};
+  for (const std::string& path : options.records) head.push_back("  record: " + studies::name_in_comments(path));
   head.emplace_back("");
   const studies::WrittenScenario written =
       studies::written_scenario(m, studies::stated_extension(learned), head, folder.target() / "extended.yaml");

@@ -137,9 +137,10 @@ std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd
     std::string of;  // names one of several sensitivities of a body
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
-    numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x[at]),
-                       k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i], known_to[i],
-                       k.scale == Knob::Scale::kLog});
+    numbers.push_back({fmt::format("{} {} {}{}", k.own.empty() ? k.effect : k.own, k.where, k.name, of), k.unit,
+                       k.value(x[at]), k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i],
+                       known_to[i], k.scale == Knob::Scale::kLog});
+    numbers.back().line = k.line;
   }
   return numbers;
 }

@@ -44,6 +44,7 @@ void add_causes(std::vector<ResultKey>& keys) {
                text("causes[].effect", "key of the catalogue of effects"),
                words("causes[].standing", standings, "how surely it is a cause"),
                text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
+               sometimes(text("causes[].own", "the scenario's own effects that it changes, each with its line in the file")),
                text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
                object("causes[].parameters[]", "its numbers"),
                text("causes[].parameters[].name", "key in the scenario"),

@@ -20,6 +20,11 @@ using output::Value;
 
 constexpr output::Digits kNumbersDigits = output::significant(3);
 
+/// A number of the scenario with the line of its effect.
+std::string number_name(const diagnosis::Estimate& e) {
+  return e.line > 0 ? fmt::format("{}, line {}", e.name, e.line) : e.name;
+}
+
 const char* limit_words(diagnosis::HeatWander::Limit limit) {
   using Limit = diagnosis::HeatWander::Limit;
   return limit == Limit::kAtMost ? "at most" : limit == Limit::kAtLeast ? "at least" : "about";
@@ -158,7 +163,8 @@ Table moved_most(const diagnosis::Diagnosis& d) {
                           {.title = "95 % interval"},
                           {.key = "unit", .title = "unit"},
                           {.title = "moved [sigmas]", .digits = output::signed_decimals(2)}}};
-  for (const auto* e : list) table.rows.push_back({e->name, e->value, diagnosis::interval_text(*e), e->unit, e->deviation});
+  for (const auto* e : list)
+    table.rows.push_back({number_name(*e), e->value, diagnosis::interval_text(*e), e->unit, e->deviation});
   return table;
 }
 
@@ -176,6 +182,7 @@ Section numbers_section(const diagnosis::Diagnosis& d) {
                   {.key = "value", .title = "fitted", .digits = output::significant(4)},
                   {.title = "95 % interval"},
                   {.key = "unit", .title = "unit"},
+                  {.title = "line"},
                   {.title = "in the file"},
                   {.title = "known to"},
                   {.key = "sigmas_of_prior", .title = "moved [sigmas]", .digits = output::signed_decimals(2)},
@@ -184,9 +191,10 @@ Section numbers_section(const diagnosis::Diagnosis& d) {
                   {.key = "known_to_unit"},
                   {.key = "written"}}};
   for (const diagnosis::Estimate& e : d.calibrated) {
-    table.rows.push_back({e.name, e.value, diagnosis::interval_text(e), e.unit, e.is_written ? "yes" : "no",
-                          known_to_text(e), e.deviation, std::vector<double>{e.low, e.high}, e.known_to,
-                          e.is_share ? "of its logarithm" : e.unit, e.is_written});
+    table.rows.push_back({e.name, e.value, diagnosis::interval_text(e), e.unit,
+                          e.line > 0 ? output::Datum(static_cast<std::int64_t>(e.line)) : output::Datum(),
+                          e.is_written ? "yes" : "no", known_to_text(e), e.deviation, std::vector<double>{e.low, e.high},
+                          e.known_to, e.is_share ? "of its logarithm" : e.unit, e.is_written});
   }
   add(section, std::move(table));
   return section;

@@ -110,7 +110,7 @@ TEST_F(Calibration, FindsANumberWhereTheModelIsRight) {
   EXPECT_FALSE(d.weighed_by_model_error);
   EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
-  const Estimate& link = number(d, "contact head,column conductance");
+  const Estimate& link = number(d, "link head,column conductance");
   EXPECT_LT(link.low, 12.0);
   EXPECT_GT(link.high, 12.0);
   EXPECT_NEAR(link.value, 12.0, 0.6);
