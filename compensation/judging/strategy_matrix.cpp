@@ -11,14 +11,15 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "base/record_channel.hpp"
+#include "compensation/judging/failed_left_out.hpp"
+#include "compensation/judging/failed_sensor_runs.hpp"
 #include "compensation/judging/iso230_3.hpp"
+#include "compensation/judging/strategy_verdict.hpp"
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/scored_rows.hpp"
 
 namespace driftwright::compensation {
 namespace {
-
-using namespace compensation;
 
 /// Range from row `first` on until a time.
 double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
@@ -29,147 +30,6 @@ double range_until(const std::vector<double>& time_s, const std::vector<double>&
     high = std::max(high, x[i]);
   }
   return high >= low ? high - low : std::numeric_limits<double>::quiet_NaN();
-}
-
-struct Failure {
-  SensorFailure kind;
-  const char* word;
-};
-constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
-                                 {SensorFailure::kOpen, "open"},
-                                 {SensorFailure::kDetached, "fallen off"},
-                                 {SensorFailure::kRising, "drifting up"},
-                                 {SensorFailure::kFalling, "drifting down"}};
-
-/// The ambient according to a thermometer that fails at a time. If it gives no new readings, the last one stays; otherwise
-/// its reading at the failure is used, plus the later change of its channel. If its value is unknown, it stays unknown.
-/// @param readings  after the failure; @param channel  of the ambient thermometer in them
-TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, double from_s, const Record& readings,
-                          const std::string& channel) {
-  if (ambient.time_s.empty()) return ambient;
-  TimeSeries told;
-  const auto add = [&](double t_s, double value) {
-    told.time_s.push_back(t_s);
-    told.value.push_back(value);
-  };
-  for (std::size_t i = 0; i < ambient.time_s.size() && ambient.time_s[i] < from_s; ++i)
-    add(ambient.time_s[i], ambient.value[i]);
-  add(from_s, ambient.at(from_s));
-  if (failure == SensorFailure::kStuck || failure == SensorFailure::kOpen) return told;
-  if (failure == SensorFailure::kRising || failure == SensorFailure::kFalling) {
-    const double rate_K_s = (failure == SensorFailure::kRising ? 1.0 : -1.0) * kSensorDrift_K_h / 3600.0;
-    for (double t_s : readings.time_s) {
-      if (t_s > from_s) add(t_s, ambient.at(t_s) + rate_K_s * (t_s - from_s));
-    }
-    return told;
-  }
-  const std::vector<double>& read = readings.at(channel).values;  // from another place
-  double first = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    const double t_s = readings.time_s[i];
-    if (t_s < from_s) {
-      if (std::isfinite(read[i])) first = read[i];
-    } else if (t_s > from_s && std::isfinite(read[i] - first)) {
-      add(t_s, ambient.at(from_s) + read[i] - first);
-    }
-  }
-  return told;
-}
-
-/// The thermometer whose readings differ most from a sensor's over the run; "" if there is no other.
-std::string least_alike(const MachineRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
-  const Channel& mine = run.readings.at(sensor);
-  std::string worst;
-  double most = 0.0;
-  for (const std::string& name : candidates) {
-    const Channel& other = run.readings.at(name);
-    if (name == sensor || other.unit != mine.unit) continue;
-    std::vector<double> apart;
-    for (std::size_t i = 0; i < mine.values.size(); ++i) apart.push_back(other.values[i] - mine.values[i]);
-    if (const double rms = score(apart).rmse; rms > most) {
-      most = rms;
-      worst = name;
-    }
-  }
-  return worst;
-}
-
-/// The conditions of one strategy: the run unchanged, and with each of its sensors failed in each way.
-/// @param start_s  with end_s, times of the first and the last row that count: a sensor fails at `fails_at` between them
-std::vector<std::pair<std::string, MachineRun>> conditions(const MatrixSettings& settings, const DeployedPredictor& strategy,
-                                                           const JudgedRunOfMachine& judged, double start_s, double end_s) {
-  std::vector<std::pair<std::string, MachineRun>> list = {{"", judged.run}};
-  if (!settings.fails_at || judged.season != settings.fails_in) return list;
-  const double from_s = start_s + *settings.fails_at * (end_s - start_s);
-  const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
-                       const std::string& elsewhere) {
-    MachineRun run = judged.run;
-    run.readings = with_failed_sensor(std::move(run.readings), sensor, kind, from_s, elsewhere);
-    for (const std::string& failed : {sensor, kind == SensorFailure::kSwapped ? elsewhere : sensor}) {
-      if (failed != settings.strategies.ambient) continue;
-      run.ambient = failed_ambient(judged.run.ambient, kind, from_s, run.readings, failed);
-      break;
-    }
-    list.emplace_back(words, std::move(run));
-  };
-  const std::vector<std::string>& sensors = strategy.sensors;
-  for (std::size_t s = 0; s < sensors.size(); ++s) {
-    for (const Failure& failure : kFailures) {
-      if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensors[s]))
-        continue;
-      add(fmt::format("{} {}", sensors[s], failure.word), sensors[s], failure.kind, settings.elsewhere);
-    }
-    if (const std::string other = least_alike(judged.run, sensors[s], settings.strategies.candidates); !other.empty())
-      add(fmt::format("{} and {} exchanged", sensors[s], other), sensors[s], SensorFailure::kSwapped, other);
-  }
-  return list;
-}
-
-/// True if more remains than without correction, by RMS or by peak.
-bool is_worse_than_nothing(const Case& c) {
-  return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
-}
-
-/// Of the cases that count and leave more than no correction, the one with the largest excess; null if there is none.
-const Case* worst_beside_nothing(const JudgedStrategy& s, const std::function<bool(const Case&)>& counts) {
-  const auto excess_um = [](const Case& c) {
-    return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);
-  };
-  const Case* worst = nullptr;
-  for (const Case& c : s.cases) {
-    if (counts(c) && is_worse_than_nothing(c) && (!worst || excess_um(c) > excess_um(*worst))) worst = &c;
-  }
-  return worst;
-}
-
-std::string where_of(const StrategyMatrix& m, const Case& c) {
-  const JudgedRunOfMachine& run = m.runs[c.run];
-  return fmt::format("on '{}'{}{}", run.name, run.season.empty() ? "" : fmt::format(" ({})", run.season),
-                     c.failed.empty() ? "" : fmt::format(" with {}", c.failed));
-}
-
-constexpr std::size_t kMostNotKept = 3;  // runs, and failures, that a sentence names
-
-KeptCells kept_cells(const StrategyMatrix& m, const JudgedStrategy& s) {
-  KeptCells cells;
-  std::vector<std::string> runs, failures;
-  for (const Case& c : s.cases) {
-    const bool is_intact = c.failed.empty(), keeps = c.after.peak_abs <= m.settings.tolerance_um;
-    ++(is_intact ? cells.n_intact : cells.n_failed);
-    if (keeps) {
-      ++(is_intact ? cells.n_kept_intact : cells.n_kept_failed);
-      continue;
-    }
-    std::vector<std::string>& list = is_intact ? runs : failures;
-    std::string where = is_intact ? where_of(m, c) : "with " + c.failed;
-    if (std::find(list.begin(), list.end(), where) == list.end()) list.push_back(std::move(where));
-  }
-  cells.n_not_kept = static_cast<int>(runs.size() + failures.size());
-  for (std::vector<std::string>* list : {&runs, &failures}) {
-    list->resize(std::min(list->size(), kMostNotKept));
-    cells.not_kept.insert(cells.not_kept.end(), list->begin(), list->end());
-  }
-  return cells;
 }
 
 template <class F>
@@ -185,79 +45,6 @@ std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, 
 
 const char* word(Safety safety) {
   return safety == Safety::kSafe ? "safe to deploy" : safety == Safety::kWithinLimits ? "safe within limits" : "unsafe";
-}
-
-std::string words_of(const KeptCells& cells, double tolerance_um) {
-  std::string words = fmt::format("keeps {:g} µm in {} of {} cells", tolerance_um, cells.n_kept(), cells.n());
-  if (cells.n_failed > 0) words += fmt::format(" ({} of {} with all sensors intact)", cells.n_kept_intact, cells.n_intact);
-  if (cells.not_kept.empty()) return words;
-  words += fmt::format(": not {}", fmt::join(cells.not_kept, ", "));
-  const int n_more = cells.n_not_kept - static_cast<int>(cells.not_kept.size());
-  return n_more > 0 ? fmt::format("{} and {} other{}", words, n_more, n_more == 1 ? "" : "s") : words;
-}
-
-void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
-  const double tolerance = m.settings.tolerance_um;
-  const Worst all = worst_of(s, [](const Case&) { return true; });
-  if (!all.peak) return;
-  s.cells = kept_cells(m, s);
-  const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
-  // a small increase while the drift passes through 0 does not count as harm
-  const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
-  const Case* worse = worst_beside_nothing(s, [](const Case&) { return true; });
-  s.is_worse_than_nothing = worse != nullptr;
-  const Case* worse_beyond = worst_beside_nothing(s, [&](const Case& c) { return !keeps(c); });
-  const auto beside_nothing = [&](const Case& c) {
-    return fmt::format(
-        "more is left than without any correction, RMS {:.1f} instead of {:.1f} µm and peak {:.1f} instead of {:.1f} µm {}",
-        c.after.rmse, c.before.rmse, c.after.peak_abs, c.before.peak_abs, where_of(m, c));
-  };
-  if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
-    s.safety = Safety::kSafe;
-    s.why = fmt::format("{}it leaves at most {:.1f} µm of the drift, {}{}",
-                        worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
-                        all.peak->after.peak_abs, where_of(m, *all.peak),
-                        m.runs.size() > 2
-                            ? ""
-                            : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
-    return;
-  }
-  if (worse_beyond) {
-    s.safety = Safety::kUnsafe;
-    s.why = beside_nothing(*worse_beyond);
-    return;
-  }
-  const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
-    return (harms(a) ? a.harm_um : 0.0) < (harms(b) ? b.harm_um : 0.0);
-  });
-  if (harms(*harm)) {
-    s.safety = Safety::kUnsafe;
-    s.why = fmt::format("it makes things worse, by up to {:.1f} µm at one moment ({:.1f} µm left of a peak of {:.1f} µm) {}",
-                        harm->harm_um, harm->after.peak_abs, harm->before.peak_abs, where_of(m, *harm));
-    return;
-  }
-  const std::vector<std::string> seasons = seasons_of(m);
-  for (const std::string& family : families_of(m)) {
-    std::vector<std::string> kept;
-    for (const std::string& season : seasons) {
-      if (std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) {
-            return !c.failed.empty() || m.runs[c.run].family != family || m.runs[c.run].season != season || keeps(c);
-          }))
-        kept.push_back(season);
-    }
-    if (kept.size() == seasons.size()) s.limits.push_back(family);
-    if (!kept.empty() && kept.size() < seasons.size())
-      s.limits.push_back(fmt::format("{} ({})", family, fmt::join(kept, ", ")));
-  }
-  if (!s.limits.empty() &&
-      !std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return c.failed.empty() || keeps(c); }))
-    s.limits.emplace_back("all with sensors intact");
-  const std::string worst = fmt::format("{:.1f} µm of {:.1f} µm are left {}", all.peak->after.peak_abs,
-                                        all.peak->before.peak_abs, where_of(m, *all.peak));
-  s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
-  s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst
-                           : fmt::format("it {}; {}", words_of(s.cells, tolerance), worst);
-  if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
 }
 
 std::vector<std::string> other_axes(const StrategyMatrix& m) {
@@ -434,31 +221,6 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
   });
 }
 
-/// What is left of one run of a fold with each of the strategy's sensors failed in turn.
-/// @return the largest residual in the hidden rows [um]; none without a sensor or a hidden row
-std::optional<double> failed_in_fold_um(const MatrixSettings& settings, const FoldedRuns& folds, std::size_t fold,
-                                        std::size_t r, const DeployedPredictor& strategy) {
-  const StrategySettings& how = settings.strategies;
-  const std::vector<bool>& hidden = folds.folds[fold].hidden[r];
-  const auto first = std::find(hidden.begin(), hidden.end(), true);
-  if (first == hidden.end()) return std::nullopt;
-  const JudgedRunOfMachine part{"", settings.fails_in, "", folds.runs[r]};
-  std::vector<double> drift_um = scored_readings(part.run, how.target, how.count_from_start).at(how.target).values;
-  const auto last = std::find(hidden.rbegin(), hidden.rend(), true).base() - 1;
-  for (std::size_t i = 0; i < drift_um.size(); ++i) {
-    if (!hidden[i]) drift_um[i] = std::numeric_limits<double>::quiet_NaN();
-  }
-  const std::vector<double>& t_s = part.run.readings.time_s;
-  const auto time_of = [&](auto row) { return t_s[static_cast<std::size_t>(row - hidden.begin())]; };
-  auto failed_runs = conditions(settings, strategy, part, time_of(first), time_of(last));
-  failed_runs.erase(failed_runs.begin());  // all sensors intact
-  if (failed_runs.empty()) return std::nullopt;
-  std::vector<double> peak_um(failed_runs.size());
-  parallel_for(peak_um.size(),
-               [&](std::size_t c) { peak_um[c] = judge(strategy, failed_runs[c].second, drift_um).scores.after.peak_abs; });
-  return *std::max_element(peak_um.begin(), peak_um.end());
-}
-
 /// Sets what models of the machine leave on left-out parts with failed sensors; the choice among them depends on it.
 void try_failures(const MatrixSettings& settings, FittedStrategies& fitted) {
   for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
@@ -468,22 +230,6 @@ void try_failures(const MatrixSettings& settings, FittedStrategies& fitted) {
 }
 
 }  // namespace
-
-std::optional<double> failed_left_out_um(const MatrixSettings& settings, const FoldedRuns& folds,
-                                         std::span<const FittedInFold> in_folds) {
-  if (!settings.fails_at) return std::nullopt;
-  const std::size_t n_runs = folds.runs.size();
-  std::vector<std::optional<double>> most_um(in_folds.size() * n_runs);
-  parallel_for(most_um.size(), [&](std::size_t job) {
-    const FittedInFold& in = in_folds[job / n_runs];
-    most_um[job] = failed_in_fold_um(settings, folds, in.fold, job % n_runs, in.fitted);
-  });
-  std::optional<double> result;
-  for (const std::optional<double>& um : most_um) {
-    if (um) result = std::max(result.value_or(0.0), *um);
-  }
-  return result;
-}
 
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<MachineRun> training,
                                 std::vector<JudgedRunOfMachine> runs) {
@@ -531,8 +277,8 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Mach
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
     const MachineRun& whole = matrix.runs[r].run;
-    for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r], whole.readings.time_s[whole.n_before],
-                                                whole.readings.time_s.back())) {
+    for (const auto& [failed, run] : runs_with_failures(
+             settings, strategy, matrix.runs[r], whole.readings.time_s[whole.n_before], whole.readings.time_s.back())) {
       Judgement judged = judge(strategy, run, drift_um[r]);
       cases[job].push_back(judged.scores);
       cases[job].back().run = r;

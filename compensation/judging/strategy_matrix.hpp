@@ -61,8 +61,6 @@ struct KeptCells {
   [[nodiscard]] int n() const { return n_intact + n_failed; }
   [[nodiscard]] int n_kept() const { return n_kept_intact + n_kept_failed; }
 };
-/// "keeps 10 µm in 14 of 63 cells (4 of 9 with all sensors intact): not on 'noon' (summer), with t03 stuck and 2 others".
-[[nodiscard]] std::string words_of(const KeptCells& cells, double tolerance_um);
 
 /// All cases of one strategy.
 struct JudgedStrategy {
@@ -99,11 +97,6 @@ struct StrategyMatrix {
   Choice choice = {};                      ///< of the strategy to deploy, from training runs alone
 };
 
-/// The largest residual of a strategy in the hidden rows of folds with one of its sensors failed [um]. The sensor fails at the
-/// share `fails_at` of a fold's hidden part of a run. None without failures, a fold or a sensor.
-[[nodiscard]] std::optional<double> failed_left_out_um(const MatrixSettings& settings, const FoldedRuns& folds,
-                                                       std::span<const FittedInFold> in_folds);
-
 /// A case with its values over time, per row of the run's readings.
 struct Judgement {
   Case scores;                        ///< without `run` and `failed`, which the matrix sets
@@ -122,10 +115,6 @@ struct Judgement {
 /// Fits on `training`, judges on `runs`. Cases run in parallel on all cores; the result does not depend on their number.
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<MachineRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
-
-/// Sets `safety`, `is_worse_than_nothing`, `why`, `limits` and `cells` from the cases of a strategy; does nothing without
-/// cases.
-void give_verdict(const StrategyMatrix& matrix, JudgedStrategy& strategy);
 
 /// The worst values over some cases of a strategy.
 struct Worst {

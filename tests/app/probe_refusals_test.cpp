@@ -12,6 +12,7 @@
 #include "compensation/predictors/formula_predictor.hpp"
 #include "output/predictor_file.hpp"
 #include "tests/shared/deployed_model.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::app::probe_refusals_test {
@@ -68,7 +69,7 @@ struct Shop {
   void expect_refused(const std::function<void(ProbePlanOptions&)>& change, const std::string& says) const {
     ProbePlanOptions o = options();
     change(o);
-    EXPECT_THAT([&] { probe_plan(o); }, ThrowsMessage<InputError>(HasSubstr(says)));
+    EXPECT_REFUSED(probe_plan(o), says);
     EXPECT_FALSE(std::filesystem::exists(results)) << says;
   }
 };

@@ -7,12 +7,11 @@
 #include <sys/resource.h>
 
 #include "base/errors.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::file_bytes_test {
 namespace {
-
-using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 TEST(FileBytes, ComeBackAsTheyWereWritten) {
   const std::string bytes("a\0\r\n\xFF", 5);
@@ -29,7 +28,7 @@ TEST(FileBytes, OfADeviceWithoutEndAreRefusedBeforeMemoryIsFull) {
   little.rlim_cur = rlim_t(512) << 20;
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &little), 0);
   for (const char* device : {"/dev/zero", "/dev/urandom", "/dev/full"})
-    EXPECT_THAT([&] { (void)read_bytes(device); }, ThrowsMessage<InputError>(HasSubstr("without end"))) << device;
+    EXPECT_REFUSED(read_bytes(device), "without end") << device;
   setrlimit(RLIMIT_DATA, &before);
 }
 

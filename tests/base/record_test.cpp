@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::record_test {
 namespace {
-
-using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 TEST(RecordCsv, ReadsNamesUnitsMinutesAndMissingValues) {
   const Record r =
@@ -40,7 +39,7 @@ class RecordCsvErrors : public ::testing::TestWithParam<BadCsv> {};
 
 TEST_P(RecordCsvErrors, NameWhatIsWrong) {
   const std::string path = write_file("bad.csv", GetParam().text);
-  EXPECT_THAT([&] { (void)read_record_csv(path); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read_record_csv(path), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, RecordCsvErrors,
@@ -74,7 +73,7 @@ TEST(RecordCsv, RefusesFoldersAndControlCharactersInNames) {
 }
 
 TEST(RecordCsv, RefusesAMissingFile) {
-  EXPECT_THAT([] { (void)read_record_csv("/nowhere/x.csv"); }, ThrowsMessage<InputError>(HasSubstr("cannot be opened")));
+  EXPECT_REFUSED(read_record_csv("/nowhere/x.csv"), "cannot be opened");
 }
 
 }  // namespace

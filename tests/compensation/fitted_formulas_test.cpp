@@ -12,13 +12,13 @@
 
 #include "base/errors.hpp"
 #include "compensation/sensors/product_sums.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::fitted_formulas_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 using Fit = std::function<FittedFormula(std::span<const Record>, const std::vector<std::string>&, const std::string&)>;
 const std::vector<Fit> kFits = {
@@ -255,10 +255,8 @@ TEST(Formulas, OfOneRunOrTooFewRowsAreRefused) {
   const std::vector<Record> one = {fixtures::sensor_record(1, 60, 3)},
                             few = {fixtures::sensor_record(1, 3, 3), fixtures::sensor_record(2, 60, 3)};
   for (const Fit& fit : kFits) {
-    EXPECT_THAT([&] { (void)fit(one, fixtures::sensor_names(3), "drift_y"); },
-                ThrowsMessage<InputError>(HasSubstr("two training records")));
-    EXPECT_THAT([&] { (void)fit(few, fixtures::sensor_names(3), "drift_y"); },
-                ThrowsMessage<InputError>(HasSubstr("but only 3 complete rows")));
+    EXPECT_REFUSED(fit(one, fixtures::sensor_names(3), "drift_y"), "two training records");
+    EXPECT_REFUSED(fit(few, fixtures::sensor_names(3), "drift_y"), "but only 3 complete rows");
   }
   EXPECT_THROW((void)fit_from_speed({}, "speed", "", "drift_y"), InputError);
 }
@@ -308,8 +306,7 @@ TEST(DriftModel, CountsTemperaturesFromTheirFirstReadingAndSpeedsNot) {
   EXPECT_EQ(rises.channels[2].values[2], 4.0);
   Record kelvin = r;
   kelvin.channels[0].unit = "K";
-  EXPECT_THAT([&] { (void)model.predict(kelvin); },
-              ThrowsMessage<InputError>(HasSubstr("is in K, but the model was fitted in degC")));
+  EXPECT_REFUSED(model.predict(kelvin), "is in K, but the model was fitted in degC");
 }
 
 }  // namespace

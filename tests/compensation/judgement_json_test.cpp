@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compensation/judging/strategy_verdict.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "findings/strategy_section.hpp"
 #include "output/document_json.hpp"

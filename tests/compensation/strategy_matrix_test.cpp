@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "compensation/judging/failed_left_out.hpp"
+#include "compensation/judging/strategy_verdict.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 
 namespace driftwright::compensation::strategy_matrix_test {

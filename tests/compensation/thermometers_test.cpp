@@ -7,15 +7,14 @@
 
 #include "base/errors.hpp"
 #include "compensation/predictors/score.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::compensation::thermometers_test {
 namespace {
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::NanSensitiveDoubleEq;
-using ::testing::ThrowsMessage;
 
 Record four_rows() {
   return {.source = "four",
@@ -78,8 +77,8 @@ TEST(Thermometers, FailAsTheyAreTold) {
     EXPECT_NEAR(rising.at("b").values[i], r.at("b").values[i] + drift_K, 1e-12);
     EXPECT_NEAR(falling.at("b").values[i], r.at("b").values[i] - drift_K, 1e-12);
   }
-  EXPECT_THAT([&] { (void)with_failed_sensor(r, "b", SensorFailure::kDetached, 0.0, "drift"); },
-              ThrowsMessage<InputError>(HasSubstr("'b' in degC cannot read 'drift' in um")));
+  EXPECT_REFUSED(with_failed_sensor(r, "b", SensorFailure::kDetached, 0.0, "drift"),
+                 "'b' in degC cannot read 'drift' in um");
 }
 
 TEST(Sampling, IsLinearBetweenRowsAndHoldsTheSpeed) {

@@ -11,6 +11,7 @@
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
 #include "machine/run_record.hpp"
+#include "tests/shared/lumped_records.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::bad_data_test {
@@ -22,52 +23,10 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-constexpr const char* kSpindle = R"(name: spindle
-reference_temperature: 20 degC
-start: ambient
-machine: {generator: lumped}
-effects:
-  - {type: node, node: shaft, capacity: 5 kJ/K}
-  - {type: node, node: housing, capacity: 20 kJ/K}
-  - {type: motor_loss, node: shaft, power: 150 W, at_speed: 1000 rpm, exponent: 1.5}
-  - {type: link, node: shaft, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: ambient, conductance: 9 W/K}
-ambient: [[0 min, 20 degC]]
-sensors:
-  - {name: t_shaft, node: shaft}
-  - {name: t_housing, node: housing}
-displacements:
-  - name: nose
-    sensitivities:
-      - {node: shaft, sensitivity: 3 um/K}
-      - {node: housing, sensitivity: -1 um/K}
-cyclograms:
-  cycle: [[100 min, 1000 rpm], [60 min, 0 rpm], [80 min, 600 rpm]]
-solver: {output_interval: 1 min}
-)";
-
 /// The twin of the spindle and a run that reads exactly what it says, from `start_K` of shaft and housing.
-struct Bench {
-  scenarios::Scenario scenario;
-  std::vector<MeasuredRun> runs{1};
-  AugmentedModel augmented;
-  scenarios::ReducedMachine machine;
-  std::optional<Twin> twin;
-
-  explicit Bench(const char* machine_text = kSpindle)
-      : scenario(scenarios::read_scenario(write_file("bad_data_spindle.yaml", machine_text))) {
-    MeasuredRun& run = runs[0];
-    run.name = run.path = "cycle";
-    run.cyclogram = scenario.cyclograms.front();
-    run.time_s = scenarios::output_times_s(run.cyclogram, scenario.solver.output_interval_s);
-    run.ambient = scenario.machine->ambient;
-    run.has_ambient = true;
-    set_grid(run);
-    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
-    augmented = augment(scenario, placed.mesh, runs);
-    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
-                                augmented.plan);
-    twin.emplace(augmented, machine, solver::TransientOptions{});
+struct Bench : AloneTwin {
+  explicit Bench(const std::string& machine_text = spindle_in_housing(1000, 600))
+      : AloneTwin(write_file("bad_data_spindle.yaml", machine_text)) {
     if (!scenario.machine->displacements.empty()) measure({0.0, 0.0});
   }
   void measure(const Eigen::Vector2d& start_K) {

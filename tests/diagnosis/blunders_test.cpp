@@ -15,6 +15,8 @@
 #include "diagnosis/blunder_match.hpp"
 #include "machine/machine.hpp"
 #include "machine/run_record.hpp"
+#include "tests/shared/edited_text.hpp"
+#include "tests/shared/lumped_records.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::diagnosis::blunders_test {
@@ -23,62 +25,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr const char* kSpindle = R"(name: spindle
-reference_temperature: 20 degC
-start: ambient
-machine: {generator: lumped}
-effects:
-  - {type: node, node: shaft, capacity: 5 kJ/K}
-  - {type: node, node: housing, capacity: 20 kJ/K}
-  - {type: motor_loss, node: shaft, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
-  - {type: link, node: shaft, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: ambient, conductance: 9 W/K}
-ambient: [[0 min, 20 degC]]
-sensors:
-  - {name: t_shaft, node: shaft}
-  - {name: t_housing, node: housing}
-displacements:
-  - name: nose
-    sensitivities:
-      - {node: shaft, sensitivity: 3 um/K}
-      - {node: housing, sensitivity: -1 um/K}
-  - {name: tail, sensitivities: [{node: housing, sensitivity: 2 um/K}]}
-cyclograms:
-  cycle: [[100 min, 6000 rpm], [60 min, 0 rpm], [80 min, 4000 rpm]]
-solver: {output_interval: 1 min}
-)";
+const std::string kSpindle =
+    spindle_in_housing(6000, 4000, "  - {name: tail, sensitivities: [{node: housing, sensitivity: 2 um/K}]}\n");
 
-/// The spindle's text with one part replaced.
-std::string spindle_with(const std::string& part, const std::string& other) {
-  std::string text = kSpindle;
-  const std::size_t at = text.find(part);
-  EXPECT_NE(at, std::string::npos) << part;
-  return text.replace(at, part.size(), other);
-}
-
-/// A scenario's twin, and the run that it has by itself.
-struct Machine {
-  scenarios::Scenario scenario;
-  std::vector<MeasuredRun> runs{1};
-  AugmentedModel augmented;
-  scenarios::ReducedMachine machine;
-  std::optional<Twin> twin;
-
-  explicit Machine(const std::string& text)
-      : scenario(scenarios::read_scenario(write_file("blunders_spindle.yaml", text.c_str()))) {
-    MeasuredRun& run = runs[0];
-    run.name = run.path = "cycle";
-    run.cyclogram = scenario.cyclograms.front();
-    run.time_s = scenarios::output_times_s(run.cyclogram, scenario.solver.output_interval_s);
-    run.ambient = scenario.machine->ambient;
-    run.has_ambient = true;
-    set_grid(run);
-    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
-    augmented = augment(scenario, placed.mesh, runs);
-    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
-                                augmented.plan);
-    twin.emplace(augmented, machine, solver::TransientOptions{});
-  }
+struct Machine : AloneTwin {
+  explicit Machine(const std::string& text) : AloneTwin(write_file("blunders_spindle.yaml", text)) {}
 };
 
 /// What a machine reads in that run, with 0.1 K and 0.5 um of noise.
@@ -197,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Of a machine whose heat is twice that of the scenario: no gain within its scatter, but no machine is 48 K off.
 TEST(FaultyMachine, ThatIsReadInFahrenheitIsNamed) {
-  const Machine truth(spindle_with("power: 150 W", "power: 300 W"));
+  const Machine truth(fixtures::replaced(kSpindle, "power: 150 W", "power: 300 W"));
   MeasuredRun run = read_by(truth);
   EXPECT_EQ(said_of(run), "");
   run.channels[0].value = (1.8 * run.channels[0].value.array() + 48.0).matrix();
@@ -206,9 +157,9 @@ TEST(FaultyMachine, ThatIsReadInFahrenheitIsNamed) {
 
 TEST(SoundRecords, SayNothing) {
   EXPECT_EQ(said_of(read_by(Machine(kSpindle))), "");
-  const Machine doubled(spindle_with("power: 150 W", "power: 300 W")),
-      halved(spindle_with("conductance: 9 W/K", "conductance: 4.5 W/K")),
-      heavy(spindle_with("capacity: 5 kJ/K", "capacity: 20 kJ/K"));
+  const Machine doubled(fixtures::replaced(kSpindle, "power: 150 W", "power: 300 W")),
+      halved(fixtures::replaced(kSpindle, "conductance: 9 W/K", "conductance: 4.5 W/K")),
+      heavy(fixtures::replaced(kSpindle, "capacity: 5 kJ/K", "capacity: 20 kJ/K"));
   EXPECT_EQ(said_of(read_by(doubled)), "");
   EXPECT_EQ(said_of(read_by(halved)), "");
   EXPECT_EQ(said_of(read_by(heavy)), "");

@@ -18,6 +18,7 @@
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/shared/column_and_head.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::diagnosis::extended_scenario_test {
 namespace {
@@ -537,8 +538,7 @@ TEST(AMachineThatHadRun, IsRefusedByWhatBeginsEveryCyclogramAtTheStart) {
   std::string text = kSpindle;
   text.insert(text.find("ambient: [["), "  - " + kWarm + "\n");
   const scenarios::Scenario s = scenarios::read_scenario(write_file("warm_before.yaml", text));
-  EXPECT_THAT([&] { scenarios::require_nothing_before(*s.machine, "sweep"); },
-              testing::ThrowsMessage<InputError>(HasSubstr("`sweep` begins every cyclogram")));
+  EXPECT_REFUSED(scenarios::require_nothing_before(*s.machine, "sweep"), "`sweep` begins every cyclogram");
 }
 
 }  // namespace

@@ -12,13 +12,12 @@
 #include "effects/channel_formulas.hpp"
 #include "effects/flow_path.hpp"
 #include "tests/effects/read_entry.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::effects::coolant_channel_test {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 TEST(Liquids, HaveThePropertiesOfTheirTables) {
   EXPECT_NEAR(water_at(300.0).prandtl(), 5.83, 0.02);                     // Incropera & DeWitt, table A.6
@@ -217,9 +216,8 @@ struct Bad {
 class ChannelErrors : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(ChannelErrors, NameWhatIsWrong) {
-  EXPECT_THAT(
-      [] { (void)read("{type: coolant_channel, diameter: 8 mm, length: 600 mm, " + std::string(GetParam().keys) + "}"); },
-      ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read("{type: coolant_channel, diameter: 8 mm, length: 600 mm, " + std::string(GetParam().keys) + "}"),
+                 GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

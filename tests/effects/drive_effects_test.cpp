@@ -9,13 +9,12 @@
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
 #include "tests/effects/read_entry.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::effects::drive_effects_test {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 DriveChange change_of(const std::string& text, const std::string& run = "shift") {
   return drive_change({read(text)}, run);
@@ -154,8 +153,7 @@ TEST(TrueAmbient, MayBeAnotherOneForAWhile) {
   EXPECT_NEAR(ambient.at(600), 2.5 + 2.0, 1e-9);
   EXPECT_NEAR(ambient.at(600.001), 2.5, 1e-5);
   EXPECT_NEAR(ambient.at(900), 3.25, 1e-9);
-  EXPECT_THAT([] { read("{type: ambient, offset: 2 K, from: 5 min, until: 4 min}"); },
-              ThrowsMessage<InputError>(HasSubstr("until")));
+  EXPECT_REFUSED(read("{type: ambient, offset: 2 K, from: 5 min, until: 4 min}"), "until");
 }
 
 TEST(TrueAmbient, ErrorsAddUp) {
@@ -257,7 +255,7 @@ struct Bad {
 class BadDriveEffect : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadDriveEffect, IsAnInputError) {
-  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read(GetParam().text), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -6,12 +6,10 @@
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
 #include "tests/effects/read_entry.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::effects::effect_errors_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 struct Bad {
   const char* text;
@@ -20,7 +18,7 @@ struct Bad {
 class LawErrors : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(LawErrors, NameWhatIsWrong) {
-  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read(GetParam().text), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

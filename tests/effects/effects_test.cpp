@@ -10,6 +10,7 @@
 #include "effects/film_formulas.hpp"
 #include "effects/formula.hpp"
 #include "tests/effects/read_entry.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::effects::effects_test {
 namespace {
@@ -239,7 +240,7 @@ struct Bad {
 class EffectErrors : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(EffectErrors, NameWhatIsWrong) {
-  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read(GetParam().text), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/errors.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::effects::formula_test {
@@ -199,7 +200,7 @@ struct BadEntry {
 };
 class FormulaEntries : public ::testing::TestWithParam<BadEntry> {};
 TEST_P(FormulaEntries, AreRefused) {
-  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_REFUSED(read(GetParam().text), GetParam().message);
 }
 INSTANTIATE_TEST_SUITE_P(
     Each, FormulaEntries,
@@ -284,12 +285,10 @@ TEST(Formula, UsesBodiesOfTheListWhereverTheyAre) {
     return read_effects(ConfigMap::read_file(write_file("formula_list.yaml", text)).maps("effects"));
   };
   // The units of the formula do not fit either; a word that is no body is the reason that comes first.
-  EXPECT_THAT(
-      [&] { (void)read_all("about 5 W"); },
-      ThrowsMessage<InputError>(HasSubstr("'about 5 W' is neither a quantity nor a body; bodies are ambient, abutment")));
-  EXPECT_THAT([&] { (void)read_all("abutmnet"); }, ThrowsMessage<InputError>(HasSubstr("Did you mean 'abutment'?")));
-  EXPECT_THAT([&] { (void)read_all("abutment"); }, ThrowsMessage<InputError>(HasSubstr("'T' is a temperature")));
-  EXPECT_THAT([&] { (void)read_all("{region: r}"); }, ThrowsMessage<InputError>(HasSubstr("'T' is a temperature")));
+  EXPECT_REFUSED(read_all("about 5 W"), "'about 5 W' is neither a quantity nor a body; bodies are ambient, abutment");
+  EXPECT_REFUSED(read_all("abutmnet"), "Did you mean 'abutment'?");
+  EXPECT_REFUSED(read_all("abutment"), "'T' is a temperature");
+  EXPECT_REFUSED(read_all("{region: r}"), "'T' is a temperature");
 }
 
 TEST(Formula, SaysWhatFailedAndWithWhichValues) {

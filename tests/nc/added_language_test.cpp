@@ -16,6 +16,7 @@
 #include "nc/units.hpp"
 #include "nc/written_words.hpp"
 #include "tests/nc/program_sums.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::added_language_test {
@@ -142,8 +143,7 @@ TEST(AddedLanguage, IsRecognisedReadAndTimed) {
 }
 
 TEST(AddedLanguage, RefusesProgramsOfOthersAndControlsThatNobodyKnows) {
-  EXPECT_THAT([] { (void)read("G21\nG0 X0\nM2\n"); },
-              ThrowsMessage<InputError>(HasSubstr("the program is in no language of Marker")));
+  EXPECT_REFUSED(read("G21\nG0 X0\nM2\n"), "the program is in no language of Marker");
   EXPECT_THAT([] { (void)read(kProgram, "plotter"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("'plotter'"), HasSubstr("siemens, heidenhain and marker"))));
 }
@@ -196,9 +196,8 @@ TEST(AddedLanguage, NamesItsOwnUnit) {
     (void)corrected_nc_program(text, program.steps, {1e-5, 0, 0}, {},
                                {.language = program.language, .axes = {true, false, false}});
   };
-  EXPECT_THAT([&] { correct("MARK\nJUMP X0\nSTOP\n"); }, ThrowsMessage<InputError>(HasSubstr("write UNIT MM in a block")));
-  EXPECT_THAT([&] { correct("MARK\nUNIT INCH\nJUMP X0\nSTOP\n"); },
-              ThrowsMessage<InputError>(HasSubstr("the program is in inches")));
+  EXPECT_REFUSED(correct("MARK\nJUMP X0\nSTOP\n"), "write UNIT MM in a block");
+  EXPECT_REFUSED(correct("MARK\nUNIT INCH\nJUMP X0\nSTOP\n"), "the program is in inches");
 }
 
 }  // namespace

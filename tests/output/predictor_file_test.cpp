@@ -15,6 +15,7 @@
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "tests/shared/deployed_model.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::predictor_file_test {
@@ -164,8 +165,7 @@ TEST(PredictorFile, WrongNumbersForProbingsAreRefusedWithTheirKey) {
   j["probing"].erase("lag_s");
   EXPECT_THROW((void)read_predictor(driftwright::write_file("probing.json", j.dump())), InputError);
   j["probing"] = 3.0;
-  EXPECT_THAT([&] { (void)read_predictor(driftwright::write_file("probing.json", j.dump())); },
-              ThrowsMessage<InputError>(HasSubstr("must be a map")));
+  EXPECT_REFUSED(read_predictor(driftwright::write_file("probing.json", j.dump())), "must be a map");
 }
 
 // Tests at one speed, or at rest, leave a drive no width.
@@ -222,7 +222,7 @@ TEST(PredictorFile, EarlierRunsThatAreNoneAreRefused) {
     Json j = good;
     (key == std::string("runs") ? j["earlier_runs"]["runs"] : j["earlier_runs"]["runs"][0][key]) = value;
     const std::string path = driftwright::write_file("broken_runs.json", j.dump());
-    EXPECT_THAT([&] { (void)read_predictor(path); }, ThrowsMessage<InputError>(HasSubstr(word))) << value.dump();
+    EXPECT_REFUSED(read_predictor(path), word) << value.dump();
   };
   refused("runs", Json::array(), "`runs` is empty");
   refused("time_s", {0.0, 100.0, 100.0}, "which rise");

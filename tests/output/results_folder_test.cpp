@@ -12,6 +12,7 @@
 
 #include "base/errors.hpp"
 #include "output/json_text.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::output::results_folder_test {
 namespace {
@@ -111,7 +112,7 @@ TEST_F(ResultsFolderTest, RefusesFilesBesideAManifestThatIsNotOurs) {
   fs::create_directories(out_);
   for (const char* text : {"{ broken", "[]", R"({"program": 5, "files": 3})"}) {
     std::ofstream(out_ / kManifestName) << text;
-    EXPECT_THAT([&] { (void)folder(); }, ThrowsMessage<InputError>(HasSubstr(kManifestName)));
+    EXPECT_REFUSED(folder(), kManifestName);
   }
 }
 
@@ -135,25 +136,24 @@ TEST_F(ResultsFolderTest, KeepsFilesThatCameDuringTheRun) {
 TEST_F(ResultsFolderTest, RefusesAFile) {
   std::ofstream(out_.string()) << "text";
   for (const bool force : {false, true}) {
-    EXPECT_THAT([&] { (void)folder(force); }, ThrowsMessage<InputError>(HasSubstr("is no folder")));
+    EXPECT_REFUSED(folder(force), "is no folder");
   }
 }
 
 TEST_F(ResultsFolderTest, RefusesAParentThatIsAFile) {
   std::ofstream(out_.string()) << "text";
-  EXPECT_THAT([&] { (void)ResultsFolder(out_ / "x", false, {}); }, ThrowsMessage<InputError>(HasSubstr("cannot be used")));
+  EXPECT_REFUSED(ResultsFolder(out_ / "x", false, {}), "cannot be used");
 }
 
 TEST_F(ResultsFolderTest, RefusesTheCurrentFolderAndThoseAboveItEvenWithForce) {
   for (const char* target : {".", "..", "/"}) {
-    EXPECT_THAT([&] { (void)ResultsFolder(target, true, {}); },
-                ThrowsMessage<InputError>(HasSubstr("current or the home folder")));
+    EXPECT_REFUSED(ResultsFolder(target, true, {}), "current or the home folder");
   }
   EXPECT_THROW((void)ResultsFolder("", true, {}), InputError);
 }
 
 TEST_F(ResultsFolderTest, RefusesAMountPoint) {
-  EXPECT_THAT([&] { (void)ResultsFolder("/proc", true, {}); }, ThrowsMessage<InputError>(HasSubstr("mount point")));
+  EXPECT_REFUSED(ResultsFolder("/proc", true, {}), "mount point");
 }
 
 TEST_F(ResultsFolderTest, TakesALinkForTheFolderItLeadsTo) {

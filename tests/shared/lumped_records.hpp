@@ -1,6 +1,7 @@
 #pragma once
 // Lumped machines and noisy records of them, for tests of a diagnosis.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -102,6 +103,60 @@ struct Beside {
     how.most_effects = most_effects;
     return diagnose(*twin, nullptr, runs, how);
   }
+};
+
+/// A spindle in its housing, two thermometers, a nose. @param rpm  at which it loses 150 W and runs first; slow_rpm: later
+inline std::string spindle_in_housing(int rpm, int slow_rpm, const std::string& more_displacements = "") {
+  return fmt::format(R"(name: spindle
+reference_temperature: 20 degC
+start: ambient
+machine: {{generator: lumped}}
+effects:
+  - {{type: node, node: shaft, capacity: 5 kJ/K}}
+  - {{type: node, node: housing, capacity: 20 kJ/K}}
+  - {{type: motor_loss, node: shaft, power: 150 W, at_speed: {0} rpm, exponent: 1.5}}
+  - {{type: link, node: shaft, to: housing, conductance: 12 W/K}}
+  - {{type: link, node: housing, to: ambient, conductance: 9 W/K}}
+ambient: [[0 min, 20 degC]]
+sensors:
+  - {{name: t_shaft, node: shaft}}
+  - {{name: t_housing, node: housing}}
+displacements:
+  - name: nose
+    sensitivities:
+      - {{node: shaft, sensitivity: 3 um/K}}
+      - {{node: housing, sensitivity: -1 um/K}}
+{2}cyclograms:
+  cycle: [[100 min, {0} rpm], [60 min, 0 rpm], [80 min, {1} rpm]]
+solver: {{output_interval: 1 min}}
+)",
+                     rpm, slow_rpm, more_displacements);
+}
+
+/// A scenario's twin, and the run that it has by itself: its first cyclogram, without readings.
+struct AloneTwin {
+  scenarios::Scenario scenario;
+  std::vector<MeasuredRun> runs{1};
+  AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+
+  explicit AloneTwin(const std::string& path) : scenario(scenarios::read_scenario(path)) {
+    MeasuredRun& run = runs[0];
+    run.name = run.path = "cycle";
+    run.cyclogram = scenario.cyclograms.front();
+    run.time_s = scenarios::output_times_s(run.cyclogram, scenario.solver.output_interval_s);
+    run.ambient = scenario.machine->ambient;
+    run.has_ambient = true;
+    set_grid(run);
+    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
+    augmented = augment(scenario, placed.mesh, runs);
+    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
+                                augmented.plan);
+    twin.emplace(augmented, machine, solver::TransientOptions{});
+  }
+  AloneTwin(const AloneTwin&) = delete;  // the twin refers to its parts
+  AloneTwin& operator=(const AloneTwin&) = delete;
 };
 
 /// Writes the first cause of a diagnosis into the scenario and diagnoses the records with that file: nothing must be

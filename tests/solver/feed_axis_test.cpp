@@ -14,6 +14,7 @@
 #include "solver/transient.hpp"
 #include "tests/shared/effect_list.hpp"
 #include "tests/shared/fixtures.hpp"
+#include "tests/shared/refused.hpp"
 
 namespace driftwright::solver::feed_axis_test {
 namespace {
@@ -21,8 +22,6 @@ namespace {
 using effects::Effect;
 using effects::ScrewRod;
 using fixtures::flow;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 const TimeSeries kStillAmbient{{0.0}, {0.0}};
 const TransientOptions kFine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
@@ -296,7 +295,7 @@ TEST(FeedAxis, SharesItsHeatWithTheNutAndCoolsItsBore) {
 
 TEST(FeedAxis, RefusesWhatCannotBe) {
   const auto refuses = [](const std::string& more, const std::string& message) {
-    EXPECT_THAT([&] { (void)read(axis("torque: 1 N m, " + more)); }, ThrowsMessage<InputError>(HasSubstr(message))) << more;
+    EXPECT_REFUSED(read(axis("torque: 1 N m, " + more)), message) << more;
   };
   refuses("mounting: fixed_free, bore: 36 mm", "the bore must be smaller");
   refuses("mounting: fixed_free, section_length: 2 mm", "200 are allowed");
@@ -310,8 +309,8 @@ TEST(FeedAxis, RefusesWhatCannotBe) {
   const Effect e = read(axis("torque: 1 N m, mounting: fixed_free, position: position_x, stroke: stroke_x"));
   Cyclogram beyond = one_way();
   beyond.columns[0].rows.value[7] = 799.0;  // and half of a stroke of 6.67 mm
-  EXPECT_THAT([&] { (void)effects::true_cyclogram(effects::drive_change({e}, "way"), beyond); },
-              ThrowsMessage<InputError>(HasSubstr("row 8 of column 'position_x', at 1.16667 min, has 799 mm")));
+  EXPECT_REFUSED(effects::true_cyclogram(effects::drive_change({e}, "way"), beyond),
+                 "row 8 of column 'position_x', at 1.16667 min, has 799 mm");
 }
 
 }  // namespace

@@ -5,12 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::prediction_test {
 namespace {
-
-using ::testing::HasSubstr, ::testing::ThrowsMessage;
 
 scenarios::ModelKind model_of(const std::string& path) {
   return studies::predicting_model(scenarios::read_scenario(path));
@@ -41,11 +40,9 @@ TEST(NamedCyclogram, IsTheScenariosOrThatOfACsvNamedAsTheFile) {
   const Cyclogram plan = studies::named_cyclogram(scenario, csv);
   EXPECT_EQ(plan.name, "plan");
   EXPECT_EQ(plan.sections, scenario.cyclogram("warm_up").sections);
-  EXPECT_THAT([&] { (void)studies::named_cyclogram(scenario, "warmup"); },
-              ThrowsMessage<InputError>(HasSubstr("there are shift, warm_up")));
-  EXPECT_THAT(
-      [&] { (void)studies::named_cyclogram(scenario, "nope.ngc"); },
-      ThrowsMessage<InputError>(HasSubstr("nope.ngc: there is no such file, and scenarios/lumped_spindle.yaml has no")));
+  EXPECT_REFUSED(studies::named_cyclogram(scenario, "warmup"), "there are shift, warm_up");
+  EXPECT_REFUSED(studies::named_cyclogram(scenario, "nope.ngc"),
+                 "nope.ngc: there is no such file, and scenarios/lumped_spindle.yaml has no");
 }
 
 }  // namespace
