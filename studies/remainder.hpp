@@ -21,6 +21,17 @@ struct BesideRecords {
 /// record.
 [[nodiscard]] double missed(const BesideRecords& beside, const std::string& channel);
 
+/// A scenario beside records, and what was learned there.
+struct LearnedBeside {
+  BesideRecords records;
+  identification::Identified network;
+};
+/// What a state of the twin misses of the measured runs, learned beside it; for each channel also the noise of its readings
+/// and what a plain regression on drive and ambient misses of the same kept-out rows (diagnosis/plain_regression.hpp). A
+/// displacement of a record without any fitted row counts from its first reading.
+/// @throws InputError  as beside(); SolveError  as read_of()
+[[nodiscard]] LearnedBeside learn_beside(const MeasuredTwin& m, const diagnosis::TwinState& state, const Listener& listener);
+
 /// The extension of a scenario as effects: one `learned` for each extended channel.
 [[nodiscard]] std::vector<effects::Effect> learned_effects(const identification::Identified& extension);
 /// The same effects, each as one change of a twin's state.
