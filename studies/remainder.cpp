@@ -205,6 +205,31 @@ LearnedBeside learn_beside(const MeasuredTwin& m, const diagnosis::TwinState& st
   return learned;
 }
 
+Remainder remainder_of(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const WrittenScenario& written,
+                       const Listener& listener) {
+  Remainder remainder;
+  const bool is_too_short = std::any_of(m.runs.begin(), m.runs.end(), [](const diagnosis::MeasuredRun& run) {
+    return run.time_s.size() < identification::kFewestRows;
+  });
+  if (!d.ended_at.empty() || listener.wants_end()) {
+    remainder.why_not = "The diagnosis was ended before.";
+  } else if (d.verdict == diagnosis::Verdict::kInsufficientData || is_too_short) {
+    remainder.why_not = "The readings are too few.";
+  } else if (!written.is_readable()) {
+    remainder.why_not = "The file cannot be read back.";
+  }
+  if (!remainder.why_not.empty()) return remainder;
+  try {
+    const LearnedBeside learned = learn_beside(m, written.effects, listener);
+    for (const identification::IdentifiedChannel& c : learned.network.channels)
+      remainder.channels.push_back({c.name, c.unit == "um" || c.unit == "urad" ? c.unit : "K", c.scenario_kept_out,
+                                    c.missed_kept_out, c.regression_kept_out, c.noise, c.is_extended});
+  } catch (const InputError& e) {
+    remainder.why_not = fmt::format("{}.", e.what());
+  }
+  return remainder;
+}
+
 std::vector<effects::Effect> learned_effects(const identification::Identified& extension) {
   using identification::Law;
   std::vector<effects::Effect> list;

@@ -167,6 +167,25 @@ TEST(Reports, OfADiagnosisAreReadFromTheTop) {
   expect_read_from_the_top(diagnosis_document(found.findings("extended.yaml"), {}));
 }
 
+TEST(Reports, OfADiagnosisSayWhatCouldBeLearnedBesideIt) {
+  const StepOfAnIndicator found;
+  const studies::Remainder learned{
+      .channels = {{.name = "nose", .unit = "um", .rmse_file = 4.5, .rmse_with_remainder = 1.25, .is_learned = true}},
+      .why_not = ""},
+      none{.channels = {}, .why_not = "The readings are too few."};
+  const auto document = [&](const studies::Remainder& remainder) {
+    DiagnosisFindings findings = found.findings("extended.yaml");
+    findings.remainder = &remainder;
+    return diagnosis_document(findings, {});
+  };
+  const auto gain = output::document_json(document(learned)).at("gain");
+  ASSERT_EQ(gain.at("remainder").size(), 1u);
+  EXPECT_EQ(gain.at("remainder")[0].at("rmse_with_remainder"), 1.25);
+  EXPECT_EQ(gain.at("remainder")[0].at("learned"), "yes");
+  EXPECT_THAT(output::document_html(document(none)).page,
+              ::testing::HasSubstr("Nothing was learned beside extended.yaml: The readings are too few."));
+}
+
 TEST(Reports, OfACalibrationAreReadFromTheTop) {
   const StepOfAnIndicator found;
   expect_read_from_the_top(calibration_document(found.findings("calibrated.yaml"), {}));
@@ -251,8 +270,9 @@ TEST(Reports, SayFirstWhatWasComparedAndWhatLooksWrong) {
   found.measured.renamings = {{.path = "monday.csv", .column = "T3_degC", .header = "t_housing_degC"}};
   const Compared compared = compared_of(found.measured.runs);
   const std::string first = said_first_text(found.measured, compared);
-  EXPECT_THAT(first, StartsWith("monday.csv: nose_um looks like mm. Call the column nose_mm. T3_degC reads what the scenario "
-                                "simulates for t_housing_degC: call"));
+  EXPECT_THAT(first,
+              StartsWith("monday.csv: nose_um looks like mm. Call the column nose_mm. T3_degC reads what the scenario "
+                         "simulates for t_housing_degC: call"));
   found.d.verdict = diagnosis::Verdict::kConsistent;
   const output::Verdict answer = answer_of(found.d, compared, first);
   EXPECT_EQ(answer.kind, output::Verdict::Kind::kNeutral);

@@ -52,5 +52,27 @@ TEST(LearnBeside, SaysWhatARegressionAndTheNoiseLeave) {
   }
 }
 
+// Beside what a diagnosis wrote, here the scenario as it was.
+TEST(LearnBeside, IsTheRemainderOfADiagnosis) {
+  const std::string scenario = write_file("half.yaml", fixtures::replaced(kBody, "power: 100 W", "power: 50 W"));
+  const std::vector<std::string> records = diagnosis::noisy_records(write_file("truth.yaml", kBody), "", 60.0, 0.05, 0.3);
+  const MeasuredTwin m = open_measured_twin(scenarios::read_scenario(scenario), "diagnose", records, {});
+  WrittenScenario written;
+  written.effects = m.twin->as_written();
+  diagnosis::Diagnosis d;
+  d.verdict = diagnosis::Verdict::kUnexplained;
+  const Remainder remainder = remainder_of(m, d, written, {});
+  EXPECT_EQ(remainder.why_not, "");
+  ASSERT_EQ(remainder.channels.size(), 2u);
+  for (const RemainderGain& g : remainder.channels) {
+    EXPECT_EQ(g.unit, g.name == "nose" ? "um" : "K");
+    EXPECT_TRUE(g.is_learned) << g.name;
+    EXPECT_LT(g.rmse_with_remainder, 0.2 * g.rmse_file) << g.name;
+  }
+  d.verdict = diagnosis::Verdict::kInsufficientData;
+  EXPECT_EQ(remainder_of(m, d, written, {}).why_not, "The readings are too few.");
+  EXPECT_TRUE(remainder_of(m, d, written, {}).channels.empty());
+}
+
 }  // namespace
 }  // namespace driftwright::studies::remainder_test
