@@ -26,8 +26,8 @@ struct GuessHints {
 };
 
 /// Finds the separator, header, decimal sign, the time columns and their format, units in headers such as "T3 (°C)" or in a
-/// line below the header, texts for missing readings, and logs with a tag in each row. Columns of numbers become channels, as
-/// do columns of switches (true and false, on and off), which are plain numbers; a spindle speed is called `speed`, the
+/// line below the header, texts for missing readings, and logs with a tag in each row. Columns of numbers become channels,
+/// and so do columns of switches (true and false, on and off), as plain numbers; a spindle speed is called `speed`, the
 /// ambient temperature `ambient`.
 /// @throws InputError  where no rows, no time or no channel are found; the message says what to write into `columns`; for a
 ///                     unit of a column that is not there, or that records cannot store

@@ -32,8 +32,8 @@ struct LearnedBeside {
 /// @throws InputError  as beside(); SolveError  as read_of()
 [[nodiscard]] LearnedBeside learn_beside(const MeasuredTwin& m, const diagnosis::TwinState& state, const Listener& listener);
 
-/// What could be learned beside the file that a diagnosis wrote: root mean squares on rows that were kept out of it, K, um or
-/// urad.
+/// What could be learned beside the file that a diagnosis wrote: root mean squares on rows that were kept out of it, in K,
+/// um or urad.
 struct RemainderGain {
   std::string name, unit;
   double rmse_file = 0.0, rmse_with_remainder = 0.0, rmse_regression = 0.0, noise = 0.0;

@@ -32,9 +32,8 @@ cyclograms:
 solver: {output_interval: 1 min}
 )";
 
-// The regression has the spindle on after 20 min among its columns, so it leaves little more than the noise; hidden speeds cost
-// it most. So does the extension. Half of
-// the heat is missing: while the spindle turns, 5 K in the end.
+// The regression has the spindle on after 20 min among its columns, so it leaves little more than the noise; hidden speeds
+// cost it most. So does the extension. Half of the heat is missing: while the spindle turns, 5 K in the end.
 TEST(LearnBeside, SaysWhatARegressionAndTheNoiseLeave) {
   const std::string scenario = write_file("half.yaml", fixtures::replaced(kBody, "power: 100 W", "power: 50 W"));
   const std::vector<std::string> records = diagnosis::noisy_records(write_file("truth.yaml", kBody), "", 60.0, 0.05, 0.3);
