@@ -209,6 +209,7 @@ void calibrate(const CalibrateOptions& options);
 struct ImportOptions : CommonOptions {  ///< `scenario` is the logger's file
   std::string by;                       ///< YAML with the key `columns`; empty: guessed
   std::string zone, interval, every;    ///< hints for the guess (base/guess_columns.hpp)
+  std::vector<std::string> units;       ///< "t1=degC"
 };
 /// Writes a logger's file as a record.
 void import_file(const ImportOptions& options);
@@ -217,6 +218,7 @@ struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::vector<std::string> records;
   std::string ambient;              ///< channel; empty: guessed
   std::vector<std::string> drives;  ///< channels that drive the machine, in addition to those recognised by their unit
+  std::vector<std::string> units;   ///< of columns of logger files, "t1=degC"
   std::string prior;                ///< scenario to extend; empty: none
   bool as_recorded = false;         ///< with `prior`: go on with records that have a blunder
 };

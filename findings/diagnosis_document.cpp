@@ -228,7 +228,7 @@ void add_judgement(Section& numbers, const DiagnosisFindings& found) {
   numbers.sections.push_back(compared_data(found.measured.runs));
   numbers.sections.push_back(d.unexplained ? unexplained_section(d) : Section{.blocks = {Value{.key = "unexplained"}}});
   numbers.sections.push_back(data_section(d));
-  numbers.sections.push_back(gain_section(d, found.file));
+  numbers.sections.push_back(gain_section(d, found.file, found.remainder));
 }
 
 /// What only an expert needs, folded: where the model errs, every channel of every record, ISO 230-3.

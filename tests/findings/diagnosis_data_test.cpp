@@ -168,6 +168,25 @@ TEST(Reports, OfADiagnosisAreReadFromTheTop) {
   expect_read_from_the_top(diagnosis_document(found.findings("extended.yaml"), {}));
 }
 
+TEST(Reports, OfADiagnosisSayWhatCouldBeLearnedBesideIt) {
+  const StepOfAnIndicator found;
+  const studies::Remainder learned{
+      .channels = {{.name = "nose", .unit = "um", .rmse_file = 4.5, .rmse_with_remainder = 1.25, .is_learned = true}},
+      .why_not = ""},
+      none{.channels = {}, .why_not = "The readings are too few."};
+  const auto document = [&](const studies::Remainder& remainder) {
+    DiagnosisFindings findings = found.findings("extended.yaml");
+    findings.remainder = &remainder;
+    return diagnosis_document(findings, {});
+  };
+  const auto gain = output::document_json(document(learned)).at("gain");
+  ASSERT_EQ(gain.at("remainder").size(), 1u);
+  EXPECT_EQ(gain.at("remainder")[0].at("rmse_with_remainder"), 1.25);
+  EXPECT_EQ(gain.at("remainder")[0].at("learned"), "yes");
+  EXPECT_THAT(output::document_html(document(none)).page,
+              ::testing::HasSubstr("Nothing was learned beside extended.yaml: The readings are too few."));
+}
+
 TEST(Reports, OfACalibrationAreReadFromTheTop) {
   const StepOfAnIndicator found;
   expect_read_from_the_top(calibration_document(found.findings("calibrated.yaml"), {}));
