@@ -25,7 +25,9 @@ void diagnose(const DiagnoseOptions& options) {
       listener);
   write_scenario("extended", written, folder);
   write_missing_heat(m.mesh, d.statements, folder);
-  finish(findings::diagnosis_document({m, d, written.extended, written.difference, "extended.yaml"}, folder.made_by()),
+  const studies::Remainder remainder = studies::remainder_of(m, d, written, listener);
+  finish(findings::diagnosis_document({m, d, written.extended, written.difference, "extended.yaml", &remainder},
+                                      folder.made_by()),
          folder, progress, options, "", "diagnosis.json");
   std::fflush(stdout);
   if (!d.ended_at.empty()) throw EndedEarly(fmt::format("ended at \"{}\": the diagnosis is incomplete", d.ended_at));

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/model_files.hpp"
 #include "app/results.hpp"
 #include "app/verbs.hpp"
 #include "base/quantity.hpp"
 #include "base/version.hpp"
-#include "output/fmu/fmu_file.hpp"
+#include "output/fmu/plain_c.hpp"
 #include "output/predictor_file.hpp"
 #include "studies/prediction.hpp"
 
@@ -54,9 +55,19 @@ const Cyclogram& reference_cyclogram(const scenarios::Scenario& scenario) {
   return scenario.study ? scenario.cyclogram(scenario.study->judge) : scenario.cyclograms.front();
 }
 
-void add_machine_reference(output::FmuOrder& order, const Record& record, const Cyclogram& cyclogram) {
-  order.reference_in = drive_columns(order.model, cyclogram, record.time_s).csv();
-  Columns out;
+std::vector<double> ambient_column(const scenarios::Scenario& scenario, const std::vector<double>& time_s) {
+  std::vector<double> ambient_degC;
+  for (double t_s : time_s)
+    ambient_degC.push_back(scenario.machine->ambient.at(t_s) + scenario.machine->reference_K - kZeroCelsius_K);
+  return ambient_degC;
+}
+
+/// @param with_ambient  the ambient is an input
+void add_machine_reference(output::FmuOrder& order, const scenarios::Scenario& scenario, const Record& record,
+                           const Cyclogram& cyclogram, bool with_ambient) {
+  Columns in = drive_columns(order.model, cyclogram, record.time_s), out;
+  if (with_ambient) in.add("ambient_temperature", ambient_column(scenario, record.time_s));
+  order.reference_in = in.csv();
   out.add("time", record.time_s);
   for (const output::FmuOutput& o : order.model.outputs) out.add(o.name, record.at(o.name).values);
   order.reference_out = out.csv();
@@ -68,13 +79,11 @@ void add_observer_reference(output::FmuOrder& order, const compensation::Observe
                             const scenarios::Scenario& scenario, const Record& record, const Cyclogram& cyclogram) {
   MachineRun run{.cyclogram = cyclogram, .ambient = {}, .readings = record};
   Columns in = drive_columns(order.model, cyclogram, record.time_s), out;
-  std::vector<double> ambient_degC;
   for (double t_s : record.time_s) {
     run.ambient.time_s.push_back(t_s);
     run.ambient.value.push_back(scenario.machine->ambient.at(t_s));
-    ambient_degC.push_back(run.ambient.value.back() + scenario.machine->reference_K - kZeroCelsius_K);
   }
-  in.add("ambient_temperature", std::move(ambient_degC));
+  in.add("ambient_temperature", ambient_column(scenario, record.time_s));
   for (const std::string& sensor : observer.sensors()) in.add(sensor, record.at(sensor).values);
   const compensation::Observation seen = observer.observe(run);
   out.add("time", record.time_s);
@@ -108,10 +117,71 @@ fs::path target_of(const ExportOptions& options, const std::string& name) {
   return target;
 }
 
+void show_files(const output::ResultsFolder& folder) {
+  for (const std::string& file : folder.files()) {
+    if (file != output::kManifestName) fmt::print("{}/{}\n", shown_path(folder.target()), file);
+  }
+}
+
+/// A formula of models/ as files for a control.
+void export_formula(const ExportOptions& options) {
+  if (options.model.empty())
+    throw InputError(fmt::format("--as {} requires --model FILE, a formula of models/ as `validate` writes it{}", options.as,
+                                 options.as == "c" ? ", or a scenario, whose machine or observer becomes C" : ""));
+  const bool is_of_axis = options.as == "siemens" || options.as == "heidenhain" || options.as == "fanuc";
+  if (is_of_axis && options.axis.empty())
+    throw InputError(fmt::format("--as {} requires --axis, the letter of the axis that is corrected", options.as));
+  const output::PredictorFile file = output::read_predictor(options.model);
+  const compensation::DeployedPredictor& d = file.predictor;
+  if (d.predictor->observer())
+    throw InputError(
+        fmt::format("{}: an observer is no formula. It becomes C: `driftwright export SCENARIO --as c --of "
+                    "observer --model {}`, with the scenario that it was fitted with",
+                    options.model, options.model));
+  if (!d.predictor->formula() || !d.fail_safe)
+    throw InputError(fmt::format("{}: '{}' is no formula of readings, and no control takes it; export a formula of models/",
+                                 options.model, d.name));
+  const std::string name = fs::path(options.model).stem().string();
+  const output::ControlAxis axis{options.axis.empty() ? 'Z' : options.axis[0], options.axis_moves == "against_dk"};
+  const std::vector<compensation::ControlFile> files =
+      formula_files(output::deployed_model(d), options.as, name, axis,
+                    fmt::format("Driftwright {}, {}", kVersion, fs::path(options.model).filename().string()));
+  CommonOptions common;
+  common.scenario = options.model;
+  common.out = options.out;
+  output::ResultsFolder folder = open_results(common, name + "_" + options.as);
+  for (const compensation::ControlFile& f : files) folder.write_text(f.name, f.text);
+  if (needs_control_files(options.as)) {
+    for (const compensation::ControlFile& f : compensation::control_files()) folder.write_text(f.name, f.text);
+  }
+  folder.commit();
+  show_files(folder);
+}
+
+void write_plain_c(const ExportOptions& options, const output::FmuOrder& order) {
+  CommonOptions common;
+  common.scenario = options.scenario;
+  common.out = options.out;
+  output::ResultsFolder folder = open_results(common, order.model.name + "_c");
+  for (const output::FmuEntry& entry : output::plain_c_files(order, folder.made_by()))
+    folder.write_text(entry.path, entry.bytes);
+  folder.commit();
+  show_files(folder);
+}
+
 }  // namespace
 
 void export_model(const ExportOptions& options) {
-  if (!options.fmu) throw InputError("export: no format is given; write --fmu for a functional mock-up unit (FMI)");
+  if (options.fmu != options.as.empty())
+    throw InputError(
+        "export: one format is required: --fmu for a functional mock-up unit (FMI), or --as for a control or a PLC");
+  if (options.scenario.empty() && !options.fmu) return export_formula(options);
+  if (options.scenario.empty()) throw InputError("export --fmu requires a scenario");
+  if (!options.fmu && options.as != "c")
+    throw InputError(
+        fmt::format("--as {} takes a formula of models/ (--model, without a scenario); a scenario's machine or observer is "
+                    "exported --as c",
+                    options.as));
   const bool of_observer = options.of == "observer";
   if (of_observer == options.model.empty())
     throw InputError(of_observer
@@ -120,7 +190,7 @@ void export_model(const ExportOptions& options) {
   scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "export");
   output::require_exportable(scenario);
-  const fs::path target = target_of(options, scenario.name);
+  const fs::path target = options.fmu ? target_of(options, scenario.name) : fs::path();
   const output::Provenance made_by{kVersion, options.scenario};
 
   Progress progress;
@@ -145,9 +215,13 @@ void export_model(const ExportOptions& options) {
     order.step_s = scenario.solver.output_interval_s;
     const studies::Prediction prediction =
         studies::predict_drift(scenario, cyclogram, {.model = "reduced"}, progress.listener(), "export");
-    add_machine_reference(order, prediction.record, cyclogram);
+    add_machine_reference(order, scenario, prediction.record, cyclogram, !options.fmu);
   }
   order.model.duration_s = cyclogram.duration_s();
+  if (!options.fmu) {
+    progress.end();
+    return write_plain_c(options, order);
+  }
   const std::vector<output::FmuEntry> entries = output::fmu_entries(order, made_by);
   write_whole(target, [&](const fs::path& partial) { output::write_zip(partial, entries); });
   progress.end();

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "app/identify_beside.hpp"
@@ -20,16 +22,26 @@ namespace driftwright::app {
 namespace {
 
 /// Reads a record CSV, or any logger's file with guessed columns.
-Record read(const std::string& path, std::vector<std::string>& notes) {
+/// @param units  of columns of a logger's file  @param n_loggers  counts such files
+/// @throws InputError  if a column of such a file has no unit
+Record read(const std::string& path, const std::map<std::string, std::string>& units, std::size_t& n_loggers,
+            std::vector<std::string>& notes) {
   try {
     return read_record_csv(path);
   } catch (const InputError& no_record) {
     studies::LoggerImport import;
     try {
-      import = studies::import_logger(path, "", {});
+      import = studies::import_logger(path, "", {.zone = "", .interval = "", .every = "", .units = units});
     } catch (const InputError&) {
+      if (!units.empty()) throw;
       throw no_record;
     }
+    ++n_loggers;
+    if (!import.without_unit.empty())
+      throw InputError(
+          fmt::format("{}: nothing says the unit of '{}'. Write --unit '{}=degC' for a thermometer, =um for a "
+                      "displacement, =1 for a plain number that drives the machine, =none to leave it out",
+                      clean_name(path), fmt::join(import.without_unit, "', '"), import.without_unit.front()));
     for (const std::string& guess : import.guesses) notes.push_back(clean_name(path) + ": " + guess);
     for (const std::string& note : import.read.notes) notes.push_back(clean_name(path) + ": " + note);
     return import.read.record;
@@ -53,8 +65,10 @@ void identify(const IdentifyOptions& asked) {
   std::vector<Record> records;
   std::vector<std::string> notes, files;
   std::set<std::string> stems;
+  const std::map<std::string, std::string> units = studies::units_of_columns(options.units);
+  std::size_t n_loggers = 0;
   for (const std::string& path : options.records) {
-    records.push_back(read(path, notes));
+    records.push_back(read(path, units, n_loggers, notes));
     records.back().source = clean_name(std::filesystem::path(path).filename().string());
     const std::string stem = plain_stem(path);
     if (!stems.insert(stem).second)
@@ -62,6 +76,8 @@ void identify(const IdentifyOptions& asked) {
           fmt::format("--record {}: two records are called {}; runs go by the names of their files", path, stem));
     files.push_back(file_name(stem, ".csv"));
   }
+  if (!units.empty() && n_loggers == 0)
+    throw InputError(fmt::format("--unit {}: all records say the units of their columns", units.begin()->first));
   const std::string name = std::filesystem::path(files.front()).stem().string();
   output::ResultsFolder folder = open_results(options, name);
   Progress progress(options.quiet);

@@ -20,15 +20,12 @@ void identify_beside(const IdentifyOptions& asked) {
   Progress progress(options.quiet);
   const studies::MeasuredTwin m =
       studies::open_measured_twin(scenario, "identify --prior", options.records, progress.listener(), options.as_recorded);
-  const double reference_K = m.twin->reference_K();
-  const studies::BesideRecords beside = studies::beside(m.runs, studies::read_of(m, m.twin->as_written()), reference_K);
-  identification::Identified learned =
-      identification::extend(beside.measured, beside.roles, beside.simulated, progress.listener());
+  auto [beside, learned] = studies::learn_beside(m, m.twin->as_written(), progress.listener());
   progress.begin("writing");
   std::vector<std::string> head = {
       fmt::format("{} with what it misses, learned by `driftwright identify --prior` (docs/how-to/identification.md)",
-                  clean_name(options.prior))};
-  for (const std::string& path : options.records) head.push_back("  record: " + clean_name(path));
+                  studies::name_in_comments(options.prior))};
+  for (const std::string& path : options.records) head.push_back("  record: " + studies::name_in_comments(path));
   head.emplace_back("");
   const studies::WrittenScenario written =
       studies::written_scenario(m, studies::stated_extension(learned), head, folder.target() / "extended.yaml");
@@ -36,7 +33,7 @@ void identify_beside(const IdentifyOptions& asked) {
     throw InputError(
         fmt::format("{}: what was learned could not be written: {}", options.prior, written.extended.not_written.front()));
   write_scenario("extended", written, folder);
-  const studies::BesideRecords again = studies::beside(m.runs, studies::read_of(m, written.effects), reference_K);
+  const studies::BesideRecords again = studies::beside(m.runs, studies::read_of(m, written.effects), m.twin->reference_K());
   for (identification::IdentifiedChannel& c : learned.channels) c.missed_simulated = studies::missed(again, c.name);
   findings::IdentificationFindings found{scenario.name, beside.measured, learned, {}};
   for (const diagnosis::MeasuredRun& run : m.runs) {

@@ -11,7 +11,8 @@ namespace driftwright::app {
 
 void import_file(const ImportOptions& options) {
   const studies::LoggerImport import =
-      studies::import_logger(options.scenario, options.by, {options.zone, options.interval, options.every});
+      studies::import_logger(options.scenario, options.by,
+                             {options.zone, options.interval, options.every, studies::units_of_columns(options.units)});
   const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
   output::ResultsFolder folder = open_results(options, file_name(stem, ""));
   Progress progress(options.quiet);

@@ -173,10 +173,22 @@ void add_follow(CLI::App& cli, FollowVerbOptions& options) {
 void add_export(CLI::App& cli, ExportOptions& options) {
   CLI::App* verb = cli.add_subcommand(
       "export",
-      "writes the reduced machine or an observer as a functional mock-up unit for other simulators (docs/how-to/fmu.md)");
-  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
+      "writes the machine, an observer or a formula for other programs: a functional mock-up unit (docs/how-to/fmu.md), or "
+      "files for a control or a PLC (docs/how-to/controls.md)");
+  verb->add_option("scenario", options.scenario, "scenario YAML; none with --as and a formula (--model)");
   verb->add_flag("--fmu", options.fmu, "writes a functional mock-up unit (FMI) with C sources and a linux64 binary");
-  verb->add_option("-o,--out", options.out, "file to write, NAME.fmu [results/<name of the scenario>.fmu]");
+  verb->add_option("-o,--out", options.out,
+                   "file to write, NAME.fmu [results/<name of the scenario>.fmu]; with --as a folder");
+  verb->add_option("--as", options.as,
+                   "files for a control: text, c (C99, also of a scenario's machine or observer), linuxcnc, st (structured "
+                   "text of a PLC), siemens, heidenhain, fanuc")
+      ->check(CLI::IsMember({"text", "c", "linuxcnc", "st", "siemens", "heidenhain", "fanuc"}));
+  verb->add_option("--axis", options.axis, "axis that siemens, heidenhain or fanuc corrects")
+      ->check(CLI::IsMember({"X", "Y", "Z", "U", "V", "W"}));
+  verb->add_option("--axis-moves", options.axis_moves,
+                   "siemens: the axis moves by_dk or against_dk, as a dial gauge shows it (docs/how-to/controls.md)")
+      ->check(CLI::IsMember({"by_dk", "against_dk"}))
+      ->capture_default_str();
   verb->add_option("--fmi", options.fmi, "version of the FMI standard: 2 or 3")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
@@ -186,11 +198,11 @@ void add_export(CLI::App& cli, ExportOptions& options) {
   verb->add_option("--type", options.type, "interface: me (model exchange), cs (co-simulation) or both")
       ->check(CLI::IsMember({"me", "cs", "both"}))
       ->capture_default_str();
-  verb->add_option("--model", options.model, "observer to export: the file models/observer.json written by `validate`");
+  verb->add_option("--model", options.model, "predictor to export: a file of models/ written by `validate`");
   verb->footer(
       "Example:\n  driftwright export scenarios/fp3_spindle.yaml --fmu -o machine.fmu\n  driftwright export "
       "scenarios/fp3_spindle.yaml --fmu --fmi 3 --of observer --model results/validation/models/observer.json -o "
-      "observer.fmu");
+      "observer.fmu\n  driftwright export scenarios/fp3_spindle.yaml --as c -o machine_c");
   verb->callback([&] { app::export_model(options); });
 }
 

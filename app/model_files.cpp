@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.hpp"
-#include "compensation/control/control_files.hpp"
 #include "compensation/judging/judgement_json.hpp"
 #include "compensation/predictors/observer.hpp"
 #include "findings/strategy_section.hpp"
@@ -49,6 +48,33 @@ std::optional<output::Covered> covered_by(const JudgedStrategy& s, const Strateg
 
 }  // namespace
 
+bool needs_control_files(const std::string& as) {
+  return as == "c" || as == "linuxcnc";
+}
+
+std::vector<ControlFile> formula_files(const output::DeployedModel& formula, const std::string& as, const std::string& name,
+                                       const output::ControlAxis& axis, const std::string& made_by) {
+  if (as == "text") return {{name + ".txt", output::formula_text(formula)}};
+  std::vector<ControlFile> files;
+  if (needs_control_files(as)) files.push_back({name + ".c", output::c_function(formula, made_by)});
+  if (as == "c") return files;
+  if (as == "linuxcnc") {
+    files.push_back({name + "_axis.comp", output::linuxcnc_component(formula, name + "_axis", name + ".c", made_by)});
+    return files;
+  }
+  using Language = output::ControlLanguage;
+  const std::vector<std::pair<std::string, Language>> languages = {{"st", Language::kStructuredText},
+                                                                   {"siemens", Language::kSiemens},
+                                                                   {"heidenhain", Language::kHeidenhain},
+                                                                   {"fanuc", Language::kFanuc}};
+  for (const auto& [word, language] : languages) {
+    if (word != as) continue;
+    const output::ControlProgram program = output::control_program(formula, language, name, axis, made_by);
+    files.push_back({program.file, program.text});
+  }
+  return files;
+}
+
 void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& folder, const Listener& listener) {
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
@@ -60,12 +86,12 @@ void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& 
                           "\n");
     if (!s.fitted.predictor->formula() || !s.fitted.fail_safe) continue;
     const output::DeployedModel formula = output::deployed_model(s.fitted);
-    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(formula));
     const std::string made_by =
         fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
-    folder.write_text(fmt::format("models/{}.c", name), output::c_function(formula, made_by));
-    folder.write_text(fmt::format("models/{}_axis.comp", name),
-                      output::linuxcnc_component(formula, name + "_axis", name + ".c", made_by));
+    for (const char* as : {"text", "linuxcnc"}) {  // the component comes with the C
+      for (const ControlFile& file : formula_files(formula, as, name, {}, made_by))
+        folder.write_text("models/" + file.name, file.text);
+    }
     has_formulas = true;
   }
   for (const ControlFile& file : control_files()) {

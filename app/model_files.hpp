@@ -2,10 +2,24 @@
 // The deployable models that `validate` writes.
 
 #include "base/listener.hpp"
+#include "compensation/control/control_files.hpp"
 #include "compensation/judging/strategy_matrix.hpp"
+#include "output/control_program.hpp"
 #include "output/results_folder.hpp"
 
 namespace driftwright::app {
+
+/// A formula as files for a control: text, c, linuxcnc, st, siemens, heidenhain, fanuc. Those of c and linuxcnc need the
+/// files of control_files() beside them.
+/// @param as    one of these words
+/// @param name  of the files
+/// @throws InputError  for a formula that this control cannot hold (control_program())
+[[nodiscard]] std::vector<compensation::ControlFile> formula_files(const output::DeployedModel& formula,
+                                                                   const std::string& as, const std::string& name,
+                                                                   const output::ControlAxis& axis,
+                                                                   const std::string& made_by);
+/// True if control_files() belong to these files.
+[[nodiscard]] bool needs_control_files(const std::string& as);
 
 /// Writes models/<strategy>.json of each strategy, with its verdict and the conditions it was judged under, and also .txt
 /// and .c of strategies that are formulas.

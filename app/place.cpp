@@ -83,7 +83,7 @@ void place(const PlaceOptions& options) {
   std::string sensors;
   for (const std::string& line : head) sensors += fmt::format("# {}\n", line);
   folder.write_text("sensors.yaml", sensors + fmt::format("sensors:\n  - {}\n", fmt::join(entries, "\n  - ")));
-  folder.write_text("placed.yaml", studies::with_sensors(scenario.path, entries, head));
+  folder.write_text("placed.yaml", studies::with_sensors(scenario.path, entries, head, folder.target()));
   finish(findings::document_of(placement, scenario, entries, folder.made_by()), folder, progress, options, "", "place.json");
   kept.remove();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "app/job_program.hpp"
 #include "app/machine_predictor.hpp"
@@ -42,6 +43,32 @@ ReadJob read_job(const scenarios::Scenario& scenario, const std::string& text, c
   return {studies::probe_job_of(cyclogram, order), fastest_rpm(cyclogram)};
 }
 
+/// Rings that tell most about a table: all may be probed, with the noise of the scenario, and its judged points count.
+studies::PointChoice table_points(const scenarios::Scenario& scenario, const std::vector<Record>& records,
+                                  const ProbePlanOptions& options, std::size_t n_most) {
+  studies::PointErrors errors = studies::table_point_errors(scenario, records);
+  const auto first_judged = errors.names.begin() + static_cast<std::ptrdiff_t>(scenario.table->rings.size());
+  std::vector<std::string> rings(errors.names.begin(), first_judged), judged(first_judged, errors.names.end());
+  const double noise_um = options.noise.empty() ? 1e6 * scenario.table->probe_noise_m
+                                                : option_quantity("--probe-noise", options.noise, "um", 1e-3, 1e3);
+  return studies::choose_points(std::move(errors), options.may_probe.empty() ? rings : options.may_probe,
+                                options.counting.empty() ? judged : options.counting, n_most, noise_um);
+}
+
+/// The gauge of --gauge and --touch; limits are not set.
+compensation::AxisProgram axis_program(const ProbePlanOptions& options) {
+  compensation::AxisProgram program{.axis = options.touch.front() - 'x', .toward = options.touch.back() == '+' ? 1.0 : -1.0};
+  std::istringstream parts(options.gauge);
+  int axis = 0;
+  for (std::string part; std::getline(parts, part, ','); ++axis) {
+    if (axis < 3) program.at_m[axis] = option_quantity("--gauge", part, "m", -100.0, 100.0);
+  }
+  if (axis != 3)
+    throw InputError(fmt::format("--gauge '{}': three lengths with commas are required, such as '400 mm, 250 mm, -310 mm'",
+                                 options.gauge));
+  return program;
+}
+
 }  // namespace
 
 void probe_plan(const ProbePlanOptions& options) {
@@ -69,13 +96,16 @@ void probe_plan(const ProbePlanOptions& options) {
   if (read.job.places.size() > kMostPlaces)
     throw InputError(fmt::format("--job '{}' with --parts {}: there are {} places for a probing; at most {} are allowed",
                                  options.job, options.parts, read.job.places.size(), kMostPlaces));
+  std::optional<compensation::AxisProgram> touch;
+  if (!options.gauge.empty()) touch = axis_program(options);
   std::optional<studies::PointChoice> points;
   if (!options.points.empty()) {
     std::vector<Record> records;
     for (const std::string& path : options.points) records.push_back(read_record(path, scenario.columns).record);
     constexpr std::size_t kMostPoints = 8;
-    points = studies::choose_points(studies::point_errors(records), options.may_probe, options.counting, kMostPoints,
-                                    probe.noise_um);
+    points = scenario.table ? table_points(scenario, records, options, kMostPoints)
+                            : studies::choose_points(studies::point_errors(records), options.may_probe, options.counting,
+                                                     kMostPoints, probe.noise_um);
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
@@ -84,6 +114,19 @@ void probe_plan(const ProbePlanOptions& options) {
   plan.predictor = predictor.name;
   plan.target = predictor.target;
   plan.points = std::move(points);
+  if (touch) {
+    const studies::TouchBounds bounds = studies::touch_bounds(plan);
+    const CorrectionLimits& limits = scenario.limits.correction;
+    touch->most_um = std::min(limits.most_um, 1e6 * compensation::kMostRise_m);
+    touch->first_um = std::min(bounds.first_um, touch->most_um);
+    touch->step_um = std::min({bounds.step_um, limits.most_step_um, touch->most_um});
+    touch->to_component = predictor.predictor->formula() && predictor.fail_safe;  // `validate` wrote a component for it
+    touch->made_by = fmt::format("Driftwright {}, scenario {}, {} corrected by {}", folder.made_by().version,
+                                 folder.made_by().scenario, predictor.target, predictor.name);
+    for (const compensation::ProgramFile& written : compensation::axis_programs(*touch))
+      folder.write_text("control/" + written.name, written.text);
+  }
+  plan.touch = std::move(touch);
   std::vector<std::string> warnings;
   if (file.covered && read.most_rpm > file.covered->most_rpm)
     warnings.push_back(

@@ -109,6 +109,14 @@ void add_compare(CLI::App& cli, CompareOptions& options) {
   verb->callback([&] { app::compare(options); });
 }
 
+CLI::Option* add_units(CLI::App* verb, std::vector<std::string>& units) {
+  return verb
+      ->add_option("--unit", units,
+                   "unit of a column of a logger file, such as t1=degC, where the file does not say it; 1: a plain number, "
+                   "none: the column is left out; may be repeated")
+      ->allow_extra_args(false);
+}
+
 void add_import(CLI::App& cli, ImportOptions& options) {
   CLI::App* verb = cli.add_subcommand("import",
                                       "converts a logger file into a record CSV of the same name and reports how each "
@@ -130,6 +138,7 @@ void add_import(CLI::App& cli, ImportOptions& options) {
                    "time from row to row of the record, such as '10 s'; for logs in which each row has one tag and its "
                    "value [one row for each time in the log]")
       ->excludes(by);
+  add_units(verb, options.units)->excludes(by);
   add_results(verb, options, "<name of the file>",
               "import scenarios/records/logger_file.csv -o results/import\n  driftwright import "
               "scenarios/records/logger_file.csv --by "
@@ -157,6 +166,7 @@ void add_identify(CLI::App& cli, IdentifyOptions& options) {
                    "confirm it, written to extended.yaml. Ambient and drives are then those of the scenario")
       ->excludes("--ambient")
       ->excludes("--drive");
+  add_units(verb, options.units)->excludes("--prior");
   add_as_recorded(*verb, options.as_recorded)->needs("--prior");
   add_results(verb, options, "<name of the first record>",
               "identify --record scenarios/records/monday.csv --record scenarios/records/tuesday.csv -o "

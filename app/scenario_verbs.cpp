@@ -220,11 +220,20 @@ void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--between", options.between, "time at rest between two parts, such as '2 min' [none]");
+  CLI::Option* gauge = verb->add_option(
+      "--gauge", options.gauge,
+      "also writes the touch cycle of the axis for each control: X, Y and Z of the probe's tip in machine coordinates as it "
+      "touches a fixed gauge, such as '400 mm, 250 mm, -310 mm'; the offset that it finds is added, within limits");
+  verb->add_option("--touch", options.touch, "axis and direction of this touch; z is touched downward")
+      ->check(CLI::IsMember({"z", "x+", "x-", "y+", "y-"}))
+      ->capture_default_str()
+      ->needs(gauge);
   CLI::Option* points =
       verb->add_option(
               "--points", options.points,
               "record CSV with errors of several points (rings, spheres, the spindle nose) as displacements in um, of "
-              "`simulate` or measured; also says which of the points to probe; may be repeated")
+              "`simulate` or measured; also says which of the points to probe. Of a scenario with `table`: its record.csv, "
+              "which tells of its rings; may be repeated")
           ->allow_extra_args(false);
   verb->add_option("--may-probe", options.may_probe,
                    "displacement of these records that can be probed; may be repeated [all that they share]")

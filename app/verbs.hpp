@@ -111,6 +111,8 @@ struct ProbePlanOptions : CommonOptions {
   std::string probing_time;                      ///< time of a probing, such as "2 min", which is also the default for empty
   int parts = 1;                                 ///< number of times that the job is done
   std::string between;                           ///< rest between two of them, such as "2 min"; empty: none
+  std::string gauge;                             ///< "100 mm, 50 mm, -20 mm", machine coordinates; empty: no touch cycle
+  std::string touch = "z";                       ///< the axis that touches it: z, x+, x-, y+, y-
   std::vector<std::string> points;               ///< record CSVs with errors of points; empty: no choice of points
   std::vector<std::string> may_probe, counting;  ///< displacements of these records; empty: all
 };
@@ -207,6 +209,7 @@ void calibrate(const CalibrateOptions& options);
 struct ImportOptions : CommonOptions {  ///< `scenario` is the logger's file
   std::string by;                       ///< YAML with the key `columns`; empty: guessed
   std::string zone, interval, every;    ///< hints for the guess (base/guess_columns.hpp)
+  std::vector<std::string> units;       ///< "t1=degC"
 };
 /// Writes a logger's file as a record.
 void import_file(const ImportOptions& options);
@@ -215,6 +218,7 @@ struct IdentifyOptions : CommonOptions {  ///< `scenario` is the first record
   std::vector<std::string> records;
   std::string ambient;              ///< channel; empty: guessed
   std::vector<std::string> drives;  ///< channels that drive the machine, in addition to those recognised by their unit
+  std::vector<std::string> units;   ///< of columns of logger files, "t1=degC"
   std::string prior;                ///< scenario to extend; empty: none
   bool as_recorded = false;         ///< with `prior`: go on with records that have a blunder
 };
@@ -228,13 +232,16 @@ struct CompareOptions : CommonOptions {
 void compare(const CompareOptions& options);
 
 struct ExportOptions {
-  std::string scenario;
-  std::string out;  ///< file; empty: results/<name of the scenario>.fmu
+  std::string scenario;  ///< empty: a formula of `model` is exported
+  std::string out;       ///< file; empty: results/<name of the scenario>.fmu. With `as` a folder
   bool fmu = false;
-  int fmi = 2;                 ///< version of the standard, 2 or 3
-  std::string of = "machine";  ///< or observer
-  std::string type = "both";   ///< interfaces: both, me (model exchange), cs (co-simulation)
-  std::string model;           ///< with `of` = observer: its file
+  std::string as;                    ///< for a control: text, c, linuxcnc, st, siemens, heidenhain, fanuc; empty: none
+  std::string axis;                  ///< of siemens, heidenhain, fanuc: X, Y, Z, ...
+  std::string axis_moves = "by_dk";  ///< siemens: or against_dk
+  int fmi = 2;                       ///< version of the standard, 2 or 3
+  std::string of = "machine";        ///< or observer
+  std::string type = "both";         ///< interfaces: both, me (model exchange), cs (co-simulation)
+  std::string model;  ///< file of a predictor: an observer, with `of` = observer, or a formula, without a scenario
 };
 void export_model(const ExportOptions& options);
 

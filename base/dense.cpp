@@ -25,7 +25,8 @@ GeneralizedSymmetricEigen::GeneralizedSymmetricEigen(const MatrixXd& a, const Ma
 namespace {
 
 SingularValues decomposed(const MatrixXd& a, unsigned what) {
-  const Eigen::BDCSVD<MatrixXd> svd(a, what);
+  // The methods of Eigen for large matrices take the compiler ten times longer; the largest here has some hundred rows.
+  const Eigen::JacobiSVD<MatrixXd> svd(a, what);
   SingularValues s{svd.singularValues(), {}, {}};
   if (svd.computeU()) s.u = svd.matrixU();
   if (svd.computeV()) s.v = svd.matrixV();

@@ -193,13 +193,28 @@ struct NumberColumn {
   std::vector<std::string> cells;
 };
 
+/// A column's words, with its unit if the user says one. @param unused  names of the user's without a column yet
+HeaderWords words_with_hint(const NumberColumn& column, const GuessHints& hints, std::set<std::string>& unused) {
+  HeaderWords words = words_of_header(column.header, column.unit_line);
+  for (const std::string& name : {column.header, words.name, channel_name(words.name, 1)}) {
+    const auto said = hints.units.find(name);
+    if (said == hints.units.end()) continue;
+    unused.erase(name);
+    words.unit = said->second;
+    break;
+  }
+  return words;
+}
+
 /// The column of the spindle speed, by its header: first one in rpm, then one with the name of a speed, then the bare name
 /// of the spindle if its numbers cannot be temperatures. Of equally good columns the first.
-std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns, char decimal) {
+std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns, const GuessHints& hints,
+                                        std::set<std::string>& unused, char decimal) {
   std::optional<std::size_t> best;
   int most = 0;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const HeaderWords words = words_of_header(columns[c].header, columns[c].unit_line);
+    if (are_switches(columns[c].cells)) continue;
+    const HeaderWords words = words_with_hint(columns[c], hints, unused);
     const bool is_named = is_speed_name(words.name);
     int rank = 0;
     if (turns_beside_spindle(words.name)) continue;
@@ -220,13 +235,13 @@ std::optional<std::size_t> speed_column(const std::vector<NumberColumn>& columns
 }
 
 /// Adds a channel according to its header. @return false  if records cannot store its unit
-bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& guessed) {
+bool add_channel(const NumberColumn& column, const HeaderWords& words, bool is_speed, GuessedColumns& guessed) {
   const std::string& header = column.header;
   const std::vector<std::string>& cells = column.cells;
-  const HeaderWords words = words_of_header(header, column.unit_line);
   MappedChannel channel;
   channel.column = column.place;
-  const std::string likely = is_speed ? "rpm" : likely_unit(words.name);
+  const bool is_switch = are_switches(cells);
+  const std::string likely = is_switch ? "1" : is_speed ? "rpm" : likely_unit(words.name);
   channel.written_unit = words.unit.empty() ? likely : words.unit;
   try {
     channel.unit = record_unit(channel.written_unit);
@@ -245,9 +260,15 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
         "'{}' is taken to be a difference of temperatures; for an absolute one write `unit: degC, offset: -273.15 K`",
         header));
   }
-  if (words.unit.empty())
-    guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}", header,
-                                          channel.written_unit == "1" ? "a plain number" : channel.written_unit));
+  if (is_switch) {
+    guessed.guesses.push_back(fmt::format("'{}' is a switch: on, true and yes are 1, off, false and no are 0", header));
+  } else if (words.unit.empty()) {
+    const bool is_plain = channel.written_unit == "1";
+    if (is_plain) guessed.without_unit.push_back(header);
+    guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}{}", header,
+                                          is_plain ? "a plain number" : channel.written_unit,
+                                          is_plain ? fmt::format("; --unit '{}=degC' says another", header) : ""));
+  }
   const auto is_taken = [&](const std::string& name) {
     return std::any_of(guessed.map.channels.begin(), guessed.map.channels.end(),
                        [&](const auto& c) { return c.name == name; });
@@ -267,11 +288,31 @@ bool add_channel(const NumberColumn& column, bool is_speed, GuessedColumns& gues
   return true;
 }
 
-void add_channels(const std::vector<NumberColumn>& columns, char decimal, GuessedColumns& guessed,
+/// @throws InputError  for a unit of the user's that records cannot store, or of a column that is not there
+void add_channels(const std::vector<NumberColumn>& columns, char decimal, const GuessHints& hints, GuessedColumns& guessed,
                   std::set<std::string>& missing) {
-  const std::optional<std::size_t> speed = speed_column(columns, decimal);
+  std::set<std::string> unused;
+  for (const auto& [name, unit] : hints.units) {
+    unused.insert(name);
+    if (unit == "none") continue;
+    try {
+      (void)record_unit(unit);
+    } catch (const RangeError& e) {
+      throw InputError(fmt::format("--unit {}={}: {}", name, unit, e.what()));
+    }
+  }
+  const std::optional<std::size_t> speed = speed_column(columns, hints, unused, decimal);
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (add_channel(columns[c], speed == c, guessed)) guess_missing(columns[c].cells, decimal, missing);
+    const HeaderWords words = words_with_hint(columns[c], hints, unused);
+    if (words.unit == "none") continue;
+    if (add_channel(columns[c], words, speed == c, guessed) && !are_switches(columns[c].cells))
+      guess_missing(columns[c].cells, decimal, missing);
+  }
+  if (!unused.empty()) {
+    std::vector<std::string> there;
+    for (const NumberColumn& column : columns) there.push_back(column.header);
+    throw InputError(fmt::format("--unit: {} has no column of numbers '{}'; those it has are '{}'", guessed.map.where.file,
+                                 *unused.begin(), fmt::join(there, "', '")));
   }
   if (!speed)
     guessed.guesses.push_back(
@@ -310,11 +351,12 @@ void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at
   }
   std::vector<NumberColumn> columns;
   for (const std::string& tag : order) {
-    if (tag.empty() || tag.starts_with('$') || share_of_numbers(values[tag], sheet.decimal) < 0.5)
+    if (tag.empty() || tag.starts_with('$') ||
+        (share_of_numbers(values[tag], sheet.decimal) < 0.5 && !are_switches(values[tag])))
       continue;  // "$RT_OFF$": events
     columns.push_back({tag, "", {.name = tag, .position = 0, .where = {}}, values[tag]});
   }
-  add_channels(columns, sheet.decimal, guessed, missing);
+  add_channels(columns, sheet.decimal, hints, guessed, missing);
 }
 
 }  // namespace
@@ -352,10 +394,10 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       const std::vector<std::string> cells = sheet.column(c);
       const bool is_counter = is_counter_name(sheet.names[c]);
-      if (used.contains(c) || is_counter || share_of_numbers(cells, sheet.decimal) < 0.5) continue;
+      if (used.contains(c) || is_counter || (share_of_numbers(cells, sheet.decimal) < 0.5 && !are_switches(cells))) continue;
       columns.push_back({sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), cells});
     }
-    add_channels(columns, sheet.decimal, guessed, missing);
+    add_channels(columns, sheet.decimal, hints, guessed, missing);
   }
   guessed.map.missing.assign(missing.begin(), missing.end());
   if (!missing.empty())

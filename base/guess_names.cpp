@@ -78,8 +78,8 @@ std::string likely_unit(const std::string& name) {
 }
 
 bool is_time_name(const std::string& name) {
-  return is_word(name, {"t", "x_value", "elapsed", "laufzeit"}) || has_word(name, {"time", "sekunden"}) ||
-         lower_case(trimmed(name)).starts_with("zeit");
+  return is_word(name, {"t", "x_value", "elapsed", "laufzeit", "epoch", "unix", "ts"}) ||
+         has_word(name, {"time", "sekunden"}) || lower_case(trimmed(name)).starts_with("zeit");
 }
 bool is_tag_name(const std::string& name) {
   return has_word(name, {"tag", "var", "name", "signal", "point", "kanal", "channel", "messstelle"});

@@ -10,6 +10,7 @@
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/guess_names.hpp"
+#include "base/row_clock.hpp"
 
 namespace driftwright {
 namespace {
@@ -73,10 +74,10 @@ char find_decimal(const std::vector<std::string>& lines, char separator) {
   return n_comma > n_point ? ',' : '.';
 }
 
-/// A row of data: half of its cells are numbers or stamps.
+/// A row of data: half of its cells are numbers, stamps or words of switches.
 bool is_data(const Row& row, char decimal) {
   const auto n = std::count_if(row.begin(), row.end(), [&](const std::string& cell) {
-    return !cell.empty() && (number_of(cell, decimal) || is_stamp_like(cell));
+    return !cell.empty() && (number_of(cell, decimal) || is_stamp_like(cell) || switch_of(cell));
   });
   const auto filled = std::count_if(row.begin(), row.end(), [](const std::string& cell) { return !cell.empty(); });
   return n >= 2 && 2 * n >= filled;
@@ -113,6 +114,12 @@ double share_of_numbers(const std::vector<std::string>& cells, char decimal) {
     n += !cell.empty() && number_of(cell, decimal) ? 1.0 : 0.0;
   }
   return filled > 0.0 ? n / filled : 0.0;
+}
+
+bool are_switches(const std::vector<std::string>& cells) {
+  const auto says_something = [](const std::string& cell) { return !cell.empty(); };
+  return std::any_of(cells.begin(), cells.end(), says_something) &&
+         std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty() || switch_of(cell); });
 }
 
 bool is_stamp_like(const std::string& cell) {

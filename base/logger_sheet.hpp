@@ -30,6 +30,8 @@ struct LoggerSheet {
 [[nodiscard]] std::optional<double> number_of(const std::string& cell, char decimal);
 /// Share of numbers among the non-empty cells, 0 to 1.
 [[nodiscard]] double share_of_numbers(const std::vector<std::string>& cells, char decimal);
+/// True if all non-empty cells, at least one, are words of switches (switch_of()).
+[[nodiscard]] bool are_switches(const std::vector<std::string>& cells);
 /// True if the digits look like a date or a time of day.
 [[nodiscard]] bool is_stamp_like(const std::string& cell);
 

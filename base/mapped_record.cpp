@@ -63,7 +63,7 @@ class Rows {
       const Cell& there = cell_of(path_, cells, channel_[c], line, channel.name);
       double value = std::numeric_limits<double>::quiet_NaN();
       try {
-        if (!is_missing(map_, there.text)) value = zero_[c] + slope_[c] * parse_number(there.text, map_.decimal);
+        if (!is_missing(map_, there.text)) value = zero_[c] + slope_[c] * number_in(there.text, channel, map_.decimal);
       } catch (const RangeError& e) {
         throw InputError(place_of(path_, cells, channel_[c], line, channel.name), e.what());
       }

@@ -5,9 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/characters.hpp"
 #include "base/quantity.hpp"
 
 namespace driftwright {
+namespace {
+
+constexpr double kClock_s = 1e8;  // three years: a number of time that begins above it is a clock, for no record is so long
+
+}  // namespace
 
 Where place_of(const std::string& path, const std::vector<Cell>& cells, std::size_t i, int line, const std::string& key) {
   return {path, line, i < cells.size() ? cells[i].column : 1, key, ""};
@@ -20,6 +26,21 @@ const Cell& cell_of(const std::string& path, const std::vector<Cell>& cells, std
                    fmt::format("this row has {} cells, but column {} is required. A row that was cut short can be taken "
                                "out, and `end` names the first line after the rows",
                                cells.size(), i + 1));
+}
+
+std::optional<double> switch_of(const std::string& text) {
+  static const char* const kOn[] = {"true", "on", "yes", "wahr", "ein", "an", "ja"};
+  static const char* const kOff[] = {"false", "off", "no", "falsch", "aus", "nein"};
+  const std::string low = lower_case(plain_name(text));
+  const auto is_low = [&](const char* word) { return low == word; };
+  if (std::any_of(std::begin(kOn), std::end(kOn), is_low)) return 1.0;
+  if (std::any_of(std::begin(kOff), std::end(kOff), is_low)) return 0.0;
+  return std::nullopt;
+}
+
+double number_in(const std::string& text, const MappedChannel& channel, char decimal) {
+  const std::optional<double> of_switch = channel.unit == "1" ? switch_of(text) : std::nullopt;
+  return of_switch ? *of_switch : parse_number(text, decimal);
 }
 
 bool is_missing(const ColumnMap& map, const std::string& text) {
@@ -38,7 +59,11 @@ double RowClock::time_s(const std::vector<Cell>& cells, int line, std::size_t n_
   std::string text;
   for (const std::size_t i : columns_) text += (text.empty() ? "" : " ") + cell_of(path_, cells, i, line, "time").text;
   try {
-    if (!map_.time.has_stamps()) return seconds_ * parse_number(text, map_.decimal);
+    if (!map_.time.has_stamps()) {
+      const double time_s = seconds_ * parse_number(text, map_.decimal);
+      if (!first_number_s_) first_number_s_ = time_s > kClock_s ? time_s : 0.0;
+      return time_s - *first_number_s_;
+    }
     std::chrono::nanoseconds time = stamps_.read(text);
     if (milliseconds_) {
       const std::string& ms = cell_of(path_, cells, *milliseconds_, line, "time").text;

@@ -42,7 +42,7 @@ class Log {
       try {
         entries_.push_back({time_s, c,
                             is_missing(map_, cell.text) ? std::numeric_limits<double>::quiet_NaN()
-                                                        : channel.value(parse_number(cell.text, map_.decimal))});
+                                                        : channel.value(number_in(cell.text, channel, map_.decimal))});
       } catch (const RangeError& e) {
         throw InputError(place_of(path_, cells, value_column, line, channel.name), e.what());
       }

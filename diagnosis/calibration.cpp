@@ -69,33 +69,38 @@ double over_noise(const std::map<std::string, OutputError>& errors, const Diagno
   return std::sqrt(squares / n);
 }
 
-/// If the simulation errs by no more than noise, the numbers are written. If it errs by more, the fitted rows must not
-/// have larger errors than with the scenario as written, nor kept-out rows by more than a standard error of the folds.
-/// Displacements, if there are some, are also judged alone: a machine is simulated for their sake.
+/// With the numbers the fitted rows must not have larger errors than with the scenario as written, nor kept-out rows by more
+/// than a standard error of the folds: over all channels. If the simulation errs by more than noise, this also holds for
+/// the fitted rows of displacements, for whose sake a machine is simulated, and for the kept-out rows of each channel: a
+/// large gain of one must not hide that another one becomes worse.
 /// @return  a clause; "" if the numbers are written
 std::string why_not_written(const Judge& judge, const Models& models, const std::map<std::string, OutputError>& own,
                             const std::map<std::string, OutputError>& before, const Diagnosis& d) {
-  if (!d.weighed_by_model_error) return "";
-  for (const Judge::Of of : {Judge::Of::kAll, Judge::Of::kDisplacements}) {
-    const bool all = of == Judge::Of::kAll;
+  for (const bool all : {true, false}) {
+    if (!all && !d.weighed_by_model_error) continue;
     const double own_misses = over_noise(own, d, all), own_before = over_noise(before, d, all);
-    if (std::isnan(own_before)) continue;  // there is no displacement
-    const MeanError loss =
-        kept_out_loss(judge.over_noise_by_fold(models.calibrated, of), judge.over_noise_by_fold(models.written, of));
-    const std::string what = all ? "all channels" : "displacements";
-    if (own_misses > own_before)
+    if (own_misses > own_before)  // not with NaN: there is no displacement
       return fmt::format(
           "with them {} are missed by {:.3g} times the noise on the very rows that they were fitted to, and by {:.3g} times "
           "with the scenario as "
           "it was",
-          what, own_misses, own_before);
-    if (loss.n < 2) return "fewer than two parts of the records could judge them";
-    if (loss.mean > loss.standard_error)
+          all ? "all channels" : "displacements", own_misses, own_before);
+  }
+  std::vector<std::string> channels = {""};
+  if (d.weighed_by_model_error) {
+    for (const auto& [name, error] : before) channels.push_back(name);
+  }
+  for (const std::string& channel : channels) {
+    const MeanError loss = kept_out_loss(judge.over_noise_by_fold(models.calibrated, channel),
+                                         judge.over_noise_by_fold(models.written, channel));
+    if (channel.empty() && loss.n < 2) return "fewer than two parts of the records could judge them";
+    if (loss.n >= 2 && loss.mean > loss.standard_error)
       return fmt::format(
-          "rows that were kept out are predicted better by the scenario as it was: {} are missed by {:.3g} times as much "
+          "rows that were kept out are predicted better by the scenario as it was: {} missed by {:.3g} times as much "
           "(times or over "
           "{:.3g}, one standard error of the folds)",
-          what, std::exp(loss.mean), std::exp(loss.standard_error));
+          channel.empty() ? "all channels are" : fmt::format("'{}' is", channel), std::exp(loss.mean),
+          std::exp(loss.standard_error));
   }
   return "";
 }
@@ -137,9 +142,10 @@ std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd
     std::string of;  // names one of several sensitivities of a body
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
-    numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x[at]),
-                       k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i], known_to[i],
-                       k.scale == Knob::Scale::kLog});
+    numbers.push_back({fmt::format("{} {} {}{}", k.own.empty() ? k.effect : k.own, k.where, k.name, of), k.unit,
+                       k.value(x[at]), k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i],
+                       known_to[i], k.scale == Knob::Scale::kLog});
+    numbers.back().line = k.line;
   }
   return numbers;
 }

@@ -19,9 +19,9 @@ namespace driftwright::diagnosis {
 [[nodiscard]] std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x,
                                                    const Eigen::MatrixXd& covariance, const std::vector<double>& known_to);
 
-/// A diagnosis without causes: numbers, gain, and what is left. If the simulation errs by more than noise, numbers are
-/// written unless the error is larger than the scenario's: on the rows that they were fitted to, or on kept-out rows by
-/// more than a standard error of the folds.
+/// A diagnosis without causes: numbers, gain, and what is left. Numbers are written unless the error is larger than the
+/// scenario's: on the rows that they were fitted to, or on kept-out rows by more than a standard error of the folds. If the
+/// simulation errs by more than noise, nor may displacements together lose on fitted rows, nor a channel on kept-out rows.
 /// @param coarse, runs, listener  as in diagnose()
 [[nodiscard]] Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                                   const DiagnosisOptions& options, const Listener& listener = {});

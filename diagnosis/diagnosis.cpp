@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "base/normal.hpp"
 #include "diagnosis/calibration.hpp"
+#include "diagnosis/extended_scenario.hpp"
 #include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/own_effects.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
@@ -38,6 +41,8 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   const Variant& variant = list[of.candidate].variants[of.variant];
   Cause c{list[of.candidate].effect, list[of.candidate].where, variant.law, {}, gain, {}};
   const Eigen::Index first = first_of(hypothesis, claim, fitter.n_nuisance());
+  c.own = own_effects(fitter.twin().as_written(),
+                      change_of(of, fit.x.segment(first, static_cast<Eigen::Index>(of.knobs.size()))));
   for (std::size_t k = 0; k < of.knobs.size() && !of.all_or_nothing; ++k) {
     const Knob& knob = of.knobs[k];
     const auto at = first + static_cast<Eigen::Index>(k);
@@ -89,8 +94,9 @@ void leave_out(Cause& cause, const std::string& why) {
   cause.why_not_written = why;
 }
 
-/// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted.
-std::vector<Cause> moved_numbers(const Diagnosis& d) {
+/// Numbers of the scenario that moved too far for a calibration: causes with their own key, as fitted. The surest is first,
+/// also in Diagnosis::moved.
+void add_moved_numbers(Diagnosis& d, const Twin& twin) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
   for (std::size_t i : d.moved) {
@@ -105,6 +111,7 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
+    c.own = own_effects(twin.as_written(), [&](TwinState& state) { k.set(state, e.value); });
     if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
     c.standing = gain >= kSureOdds ? Standing::kNamed : Standing::kSuspected;
     if (c.standing == Standing::kNamed &&
@@ -114,9 +121,34 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     }
     causes.push_back(std::move(c));
   }
-  std::stable_sort(causes.begin(), causes.end(),
-                   [](const Cause& a, const Cause& b) { return a.log_evidence_gain > b.log_evidence_gain; });
-  return causes;
+  std::vector<std::size_t> order(causes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return causes[a].log_evidence_gain > causes[b].log_evidence_gain; });
+  const std::vector<std::size_t> moved = d.moved;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    d.moved[i] = moved[order[i]];
+    d.causes.push_back(std::move(causes[order[i]]));
+  }
+}
+
+/// Simulates what was found without each cause in turn, at the same numbers.
+void add_readings_without(Diagnosis& d, const Fitter& fitter, Twin::Workspace& workspace, const Listener& listener) {
+  d.without_cause.assign(d.causes.size(), {});
+  for (std::size_t c = 0; c < d.causes.size() && !listener.wants_end(); ++c) {
+    const std::size_t n_found = d.search.findings.size();
+    Hypothesis hypothesis = d.search.hypothesis;
+    Eigen::VectorXd x = d.search.fit.x;
+    if (c < n_found) {
+      const Remainder rest = without_claims(d.search.hypothesis, {c}, fitter.n_nuisance());
+      hypothesis = rest.hypothesis;
+      x = d.search.fit.x(rest.x);
+    } else {
+      x[static_cast<Eigen::Index>(d.moved[c - n_found])] = 0.0;
+    }
+    Prediction without;
+    if (has_solution([&] { without = fitter.predict(hypothesis, x, workspace); })) d.without_cause[c] = std::move(without);
+  }
 }
 
 /// For one record of a machine with an unexplained error: in all trials, fits held for their own rows only
@@ -350,7 +382,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   // A number that moved back once others were free again is no cause.
   std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
-  for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
+  add_moved_numbers(d, twin);
+  add_readings_without(d, fitter, workspace, listener);
   d.holdout = held.how;
   d.gain = held.channels;
   d.misses = held.misses;

@@ -35,6 +35,7 @@ struct Estimate {
   double known_to = 0.0;   ///< standard deviation of that prior: of the logarithm if is_share, otherwise in the unit
   bool is_share = false;
   bool is_written = true;  ///< whether extended.yaml contains this value
+  int line = 0;            ///< of the scenario's effect whose number it is, in its file; 0: of none
 };
 
 struct Cause {
@@ -53,6 +54,7 @@ struct Cause {
   double share = 1.0;
   Odds odds = {};
   int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and how many of them found it again
+  std::string own = {};             ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
 };
 
 /// The content of extended.yaml: claims that predict kept-out rows better, and the scenario's own numbers as fitted with
@@ -134,9 +136,12 @@ struct Diagnosis {
   std::map<std::string, NoiseModel> noise;
   Written written;
   std::vector<Knob> scatter;         ///< uncertain numbers: the scenario's own and each run's ambient
-  std::vector<std::size_t> moved;    ///< indices of those that moved so far that they are causes
+  std::vector<std::size_t> moved;    ///< indices of those that moved so far that they are causes, in the order of these
   std::vector<Estimate> calibrated;  ///< these numbers as fitted with the written causes
   Prediction as_written, scatter_alone;
+  /// For each cause: all that was found but this cause, at the same numbers. Empty if it was not simulated: the diagnosis
+  /// was ended, or the machine has no solution without the cause.
+  std::vector<Prediction> without_cause;
   Prediction extended;  ///< prediction by extended.yaml for all rows of all records
 };
 

@@ -13,6 +13,17 @@ namespace {
 
 constexpr double kMoreLikelyThanNot = 0.5;  // that nothing is missing
 
+constexpr int kDigits = 3;  // of a number that is shown
+
+/// Rounded to three digits, or to more if the interval is narrower than the last of them.
+double in_digits(const Estimate& e, double value) {
+  const double width = std::abs(e.high - e.low);
+  if (value == 0.0 || !std::isfinite(value) || !(width > 0.0)) return value;  // without an interval it is exact
+  const double exponent = std::min(std::floor(std::log10(std::abs(value))) - (kDigits - 1), std::floor(std::log10(width)));
+  const double unit = std::pow(10.0, std::abs(exponent));
+  return exponent < 0.0 ? std::round(value * unit) / unit : std::round(value / unit) * unit;
+}
+
 std::string unit_of(const Estimate& e) {
   return e.unit == "1" ? "" : " " + e.unit;
 }
@@ -20,12 +31,20 @@ std::string unit_of(const Estimate& e) {
 }  // namespace
 
 std::string value_text(const Estimate& e) {
-  return fmt::format("{:.4g}{}", e.value, unit_of(e));
+  return fmt::format("{:.10g}{}", in_digits(e, e.value), unit_of(e));
 }
 
 std::string interval_text(const Estimate& e) {
-  const double a = e.low, b = e.high;
-  return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
+  const double a = in_digits(e, e.low), b = in_digits(e, e.high);
+  return fmt::format("{:.10g} to {:.10g}", std::min(a, b), std::max(a, b));
+}
+
+std::string cause_name(const Cause& cause, const std::string& where) {
+  return cause.own.empty() ? fmt::format("{} at {}", cause.effect, where) : cause.own;
+}
+
+std::string cause_name(const Cause& cause) {
+  return cause_name(cause, cause.where);
 }
 
 std::string parameters_text(const Cause& cause) {
@@ -44,8 +63,7 @@ std::string channel_text(const std::string& name, const std::string& unit) {
 std::string taken_up_text(const Diagnosis& d) {
   if (d.written.taken_up.empty()) return "";
   std::vector<std::string> left_out, far;
-  for (std::size_t c : d.written.taken_up)
-    left_out.push_back(fmt::format("{} at {}", d.causes.at(c).effect, d.causes.at(c).where));
+  for (std::size_t c : d.written.taken_up) left_out.push_back(cause_name(d.causes.at(c)));
   for (std::size_t i = 0; i < d.calibrated.size(); ++i) {
     const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
     const Estimate& e = d.calibrated[i];

@@ -5,10 +5,14 @@
 
 namespace driftwright::diagnosis {
 
-/// "14.3 W/(m^2 K)"; times as minutes.
+/// "14.3 W/(m^2 K)"; times as minutes. It has three digits, or more if its interval is narrower.
 [[nodiscard]] std::string value_text(const Estimate& estimate);
 /// "13.1 to 15.6", in the unit of value_text().
 [[nodiscard]] std::string interval_text(const Estimate& estimate);
+/// A cause by the scenario's effects that it changes, "motor_loss at head, line 7", else by its key: "sensor_bias at t1".
+/// @param where  the place as it is shown
+[[nodiscard]] std::string cause_name(const Cause& cause, const std::string& where);
+[[nodiscard]] std::string cause_name(const Cause& cause);
 /// All numbers of a cause with their intervals, or "" for one without.
 [[nodiscard]] std::string parameters_text(const Cause& cause);
 /// A channel with its quantity: "temperature t_head", "displacement drift_z", "tilt rx". @param unit  K, um or urad

@@ -17,7 +17,7 @@
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
 #include "effects/former_words.hpp"
-#include "scenarios/reader/absolute_paths.hpp"
+#include "scenarios/reader/moved_paths.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::diagnosis {
@@ -26,7 +26,7 @@ namespace {
 using effects::Effect;
 
 double rounded(double value) {
-  return std::isfinite(value) ? std::strtod(fmt::format("{:.8g}", value).c_str(), nullptr) : value;
+  return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr) : value;
 }
 
 double rounded(double value, const effects::Parameter& parameter) {
@@ -34,7 +34,8 @@ double rounded(double value, const effects::Parameter& parameter) {
   return rounded(value - zero) + zero;
 }
 
-/// Eight digits are accurate to a thousandth of a kelvin and readable.
+/// Six digits: numbers that follow from fitted ones, such as a factor from a power. Fitted ones come with fewer
+/// (written_numbers.hpp).
 Effect rounded(Effect e) {
   for (std::size_t p = 0; p < e.values.size(); ++p) e.values[p] = rounded(e.values[p], e.kind->parameters[p]);
   for (auto& [name, table] : e.tables) {
@@ -47,7 +48,7 @@ Effect rounded(Effect e) {
 }
 
 bool is_near(double a, double b) {
-  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
+  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-5 * std::max(std::abs(a), std::abs(b));
 }
 
 bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
@@ -65,17 +66,20 @@ bool reads_back(const Effect& a, const Effect& b) {
 
 class Writer {
  public:
-  Writer(const scenarios::Scenario& scenario, const Twin& twin, const std::vector<MeasuredRun>& runs)
+  Writer(const scenarios::Scenario& scenario, const Twin& twin, const std::vector<MeasuredRun>& runs,
+         std::filesystem::path to)
       : runs_(runs),
         yaml_(scenario.path),
-        folder_(std::filesystem::absolute(scenario.path).parent_path()),
+        from_(std::filesystem::absolute(scenario.path).parent_path()),
+        to_(std::move(to)),
         columns_(scenario.columns),
         list_(twin.as_written()) {
     effects_ = yaml_.root().find("effects");
     const std::size_t n = effects_ && effects_->is_list() ? effects_->items.size() : 0;
     if (n != list_.size()) throw InputError(fmt::format("{}: has changed while it was diagnosed", scenario.path));
     for (const Cyclogram& c : scenario.cyclograms) cyclograms_.push_back(c.name);
-    if (!scenarios::give_absolute_paths(yaml_, folder_).empty()) in_one_piece_ = true;
+    if (!scenarios::move_paths(yaml_, from_, to_).empty()) in_one_piece_ = true;
+    for (Effect& e : list_) give_path(e, from_);
   }
 
   /// @returns the changes, as sentences; empty if nothing differs
@@ -124,7 +128,10 @@ class Writer {
       std::vector<effects::FormerWord> former;  // in the user's text; they are kept
       const ConfigMap root =
           ConfigMap::of_tree(effects::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
-      for (const ConfigMap& one : root.maps("effects")) read.push_back(effects::read_effect(one));
+      for (const ConfigMap& one : root.maps("effects")) {
+        read.push_back(effects::read_effect(one));
+        if (!to_.empty()) give_path(read.back(), to_);
+      }
     } catch (const InputError&) {  // it is no longer valid YAML, or has an invalid effect
       return false;
     }
@@ -174,7 +181,7 @@ class Writer {
     const double number = std::strtod(text.c_str(), &unit);
     const bool keeps_unit = parameter.unit != "degC" && unit != text.c_str() && was != 0.0 && number != 0.0;
     const std::string other =
-        keeps_unit ? fmt::format("{:.8g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
+        keeps_unit ? fmt::format("{:.6g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
     if (!yaml_.replace(*scalar, other)) return false;
     notes_[scalar->line].push_back(fmt::format("{} was {}", parameter.name, text));
     return true;
@@ -202,7 +209,7 @@ class Writer {
     };
     std::error_code none;
     if (std::filesystem::is_regular_file(run.path, none)) {
-      const std::string csv = scenarios::absolute_path_text(std::filesystem::absolute(run.path).string(), "");
+      const std::string csv = scenarios::path_text(scenarios::moved_path(run.path, std::filesystem::current_path(), to_));
       const ConfigNode* columns = yaml_.root().find("columns");
       if (columns && is_read(columns_)) return fmt::format("{{csv: {}, columns: {}, measured: true}}", csv, anew(*columns));
       if (is_read(std::nullopt)) return fmt::format("{{csv: {}, measured: true}}", csv);
@@ -222,7 +229,20 @@ class Writer {
     done_.push_back(fmt::format("added the cyclogram {} from its record", name));
   }
 
-  /// A node on one line, with absolute paths.
+  /// Gives the file of an effect, if it has one, the path that the text has. @param from  what its path is relative to
+  void give_path(Effect& e, const std::filesystem::path& from) const {
+    for (const effects::Mention& m : e.kind->mentions) {
+      std::string& file = e.words.at(m.name);
+      if (m.of == effects::Mention::Of::kFile && !file.empty()) file = scenarios::moved_path(file, from, to_);
+    }
+  }
+
+  [[nodiscard]] std::string path_of(const std::string& path) const {
+    const bool stays = std::filesystem::path(path).is_absolute();
+    return scenarios::path_text(stays ? path : scenarios::moved_path(path, from_, to_));
+  }
+
+  /// A node on one line, with the paths that the text has.
   [[nodiscard]] std::string anew(const ConfigNode& node) const {
     if (!node.is_map() && !node.is_list()) return written(node);
     std::vector<std::string> parts;
@@ -234,7 +254,7 @@ class Writer {
       }
       const std::string& key = node.keys[i].text;
       const bool is_path = item.is_scalar() && scenarios::is_path_key(key);
-      parts.push_back(fmt::format("{}: {}", key, is_path ? scenarios::absolute_path_text(item.text, folder_) : anew(item)));
+      parts.push_back(fmt::format("{}: {}", key, is_path ? path_of(item.text) : anew(item)));
     }
     const std::string list = fmt::format("{}", fmt::join(parts, ", "));
     return node.is_map() ? fmt::format("{{{}}}", list) : fmt::format("[{}]", list);
@@ -242,7 +262,7 @@ class Writer {
 
   const std::vector<MeasuredRun>& runs_;
   YamlText yaml_;
-  std::filesystem::path folder_;
+  std::filesystem::path from_, to_;  ///< folder of the scenario, and of the text
   std::optional<ColumnMap> columns_;
   TwinState list_;  ///< effects of the text
   const ConfigNode* effects_ = nullptr;
@@ -264,9 +284,9 @@ std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::Vecto
 
 ExtendedScenario extended_scenario(const scenarios::Scenario& scenario, const Twin& twin,
                                    const std::vector<MeasuredRun>& runs, const std::vector<StatedChange>& changes,
-                                   std::vector<std::string> head) {
+                                   std::vector<std::string> head, const std::filesystem::path& folder) {
   ExtendedScenario result;
-  Writer writer(scenario, twin, runs);
+  Writer writer(scenario, twin, runs, folder);
   for (const StatedChange& change : changes) {
     const std::vector<std::string> done = writer.write(change);
     if (!done.empty()) result.written.push_back(fmt::format("{}: {}", change.name, fmt::join(done, "; ")));

@@ -1,6 +1,7 @@
 #pragma once
 // The user's scenario file with the findings written into it, ready to run.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,17 @@ struct ExtendedScenario {
 [[nodiscard]] std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::VectorXd& x);
 
 /// Makes all changes in order and edits the scenario's text: numbers in place, further effects after the others, as
-/// effects::yaml_of() writes them. Numbers have eight digits. Paths become absolute. For a change that happened in one of
+/// effects::yaml_of() writes them. Numbers have six digits at most. For a change that happened in one of
 /// several runs, a cyclogram with the run's name is added if there is none, from its record and by the scenario's
 /// `columns`. If the text cannot be edited in place (an alias, an entry that shares its line), the whole entry is
 /// replaced; if that is impossible, the file is written anew without its comments.
-/// @param runs  runs in which the changes were found
-/// @param head  comment lines for the top
+/// @param runs    runs in which the changes were found
+/// @param head    comment lines for the top
+/// @param folder  where the text will be written, which its paths become relative to; empty: they become absolute
 /// @throws InputError  if the file was removed or changed in the meantime
 [[nodiscard]] ExtendedScenario extended_scenario(const scenarios::Scenario& scenario, const Twin& twin,
                                                  const std::vector<MeasuredRun>& runs,
-                                                 const std::vector<StatedChange>& changes, std::vector<std::string> head);
+                                                 const std::vector<StatedChange>& changes, std::vector<std::string> head,
+                                                 const std::filesystem::path& folder = {});
 
 }  // namespace driftwright::diagnosis

@@ -191,12 +191,12 @@ double Judge::squares_over_noise(const std::vector<Prediction>& predicted) const
   return sum;
 }
 
-std::vector<double> Judge::over_noise_by_fold(const std::vector<Prediction>& predicted, Of channels) const {
+std::vector<double> Judge::over_noise_by_fold(const std::vector<Prediction>& predicted, const std::string& channel) const {
   std::vector<double> misses;
   for (std::size_t f = 0; f < folds_.size(); ++f) {
     double squares = 0.0, n = 0.0;
     for_each_miss_of(f, predicted[f], [&](const MeasuredChannel& c, double miss) {
-      if (channels == Of::kDisplacements && c.unit != "m") return;
+      if (!channel.empty() && c.name != channel) return;
       squares += std::pow(miss / noise_.at(c.name).total(), 2);
       n += 1.0;
     });

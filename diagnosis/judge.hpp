@@ -63,9 +63,9 @@ class Judge {
   [[nodiscard]] double over_noise(const std::vector<Prediction>& predicted) const;
   /// Squares of kept-out errors divided by those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const;
-  enum class Of { kAll, kDisplacements };
-  /// over_noise() of each fold, over all channels or displacements only.
-  [[nodiscard]] std::vector<double> over_noise_by_fold(const std::vector<Prediction>& predicted, Of channels) const;
+  /// over_noise() of each fold. @param channel  only this one; "": all
+  [[nodiscard]] std::vector<double> over_noise_by_fold(const std::vector<Prediction>& predicted,
+                                                       const std::string& channel) const;
   template <class Work>
   void for_each_miss(const std::vector<Prediction>& predicted, const Work& work) const {
     for (std::size_t f = 0; f < folds_.size(); ++f) for_each_miss_of(f, predicted[f], work);

@@ -67,7 +67,9 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
                        .step = step_of(known_to),
                        .low = parameter.low,
                        .high = parameter.high,
-                       .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; }});
+                       .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; },
+                       .own = e.kind->key,
+                       .line = e.where.line});
     }
   }
   const effects::DoubtScene scene = scene_of(twin, {});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/diagnosis_words.hpp"
 #include "diagnosis/inquiry.hpp"
 
 namespace driftwright::diagnosis {
@@ -36,7 +37,7 @@ std::string words(const Cause& c) {
     numbers.push_back(
         fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
   }
-  return fmt::format("{} at {} ({}){}{}", c.effect, place_words(c.where), c.law, numbers.empty() ? "" : ": ",
+  return fmt::format("{} ({}){}{}", cause_name(c, place_words(c.where)), c.law, numbers.empty() ? "" : ": ",
                      fmt::join(numbers, ", "));
 }
 
@@ -123,7 +124,7 @@ std::string reason_of(const Diagnosis& d) {
       text = fmt::format("suspected{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
-      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, place_words(a.where)));
+      for (const Cause& a : c.alternatives) others.push_back(cause_name(a, place_words(a.where)));
       text += fmt::format(
           fmt::runtime(c.odds.kind < kSure ? "; the data cannot distinguish it from {} (odds of its kind {:.0f} %)"
                                            : "; the data do not determine its place: or {} (odds of its place {:.0f} %)"),

@@ -1,9 +1,12 @@
 #include "effects/bearing_formulas.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "effects/law_steps.hpp"
 #include "effects/require.hpp"
 
 namespace driftwright::effects {
@@ -37,6 +40,18 @@ double walther_viscosity_mm2_s(double nu_40_mm2_s, double nu_100_mm2_s, double t
   const double at_40 = twice_lg(nu_40_mm2_s), at_100 = twice_lg(nu_100_mm2_s);
   const double share = std::log10(temperature_K / 313.15) / std::log10(373.15 / 313.15);
   return std::pow(10.0, std::pow(10.0, at_40 + share * (at_100 - at_40))) - 0.8;
+}
+
+std::string palmgren_viscous_formula(double f0, const std::string& nu_n, double mean_diameter_mm) {
+  const double scale = f0 * 1e-7 * std::pow(mean_diameter_mm, 3);
+  return fmt::format("{}*if({} < 2000, 160, {}^(2/3))", scale, nu_n, nu_n);
+}
+
+std::string walther_formula(double nu_40_mm2_s, double nu_100_mm2_s, const std::string& temperature) {
+  const auto twice_lg = [](double nu) { return std::log10(std::log10(nu + 0.8)); };
+  const double at_40 = twice_lg(nu_40_mm2_s), fall = (at_40 - twice_lg(nu_100_mm2_s)) / std::log10(373.15 / 313.15);
+  return fmt::format("if(abs({0} - 343.15) > 110, 0/0, 10^(10^({1} - {2}*log10({0}/313.15))) - 0.8)", temperature,
+                     written(at_40), fall);
 }
 
 double thermal_preload_N(double preload_N, double growth_N_K, double inner_K, double outer_K) {

@@ -1,6 +1,8 @@
 #pragma once
 // Friction of rolling bearings.
 
+#include <string>
+
 namespace driftwright::effects {
 
 /// Load-independent friction torque of a rolling bearing after Palmgren [N mm].
@@ -16,6 +18,8 @@ namespace driftwright::effects {
 /// Source: Palmgren, Grundlagen der Waelzlagertechnik, 1957; Harris, Rolling Bearing Analysis, eqs 14.4, 14.5.
 /// The two branches differ by 0.8 % where they meet.
 [[nodiscard]] double palmgren_viscous_torque_Nmm(double f0, double nu_mm2_s, double speed_rpm, double mean_diameter_mm);
+/// The same as a formula (law_steps.hpp). @param nu_n  formula of viscosity times speed [mm^2/s rpm]
+[[nodiscard]] std::string palmgren_viscous_formula(double f0, const std::string& nu_n, double mean_diameter_mm);
 
 /// Load-dependent friction torque after Palmgren [N mm]: M1 = f1 P1 d_m.
 /// @param f1  load factor [-] >= 0, about 0.001 (P0/C0)^0.33 for angular contact bearings
@@ -36,6 +40,8 @@ namespace driftwright::effects {
 /// Source: Ubbelohde 1935 after Walther 1931; DIN 51563. ASTM D341 writes 0.7 in place of 0.8: for ISO VG 10 to 100 that
 /// moves values between the two points by less than 0.7 % and those at 20 degC by less than 1.8 %.
 [[nodiscard]] double walther_viscosity_mm2_s(double nu_40_mm2_s, double nu_100_mm2_s, double temperature_K);
+/// The same as a formula (law_steps.hpp). @param temperature  name of the oil's temperature [K]
+[[nodiscard]] std::string walther_formula(double nu_40_mm2_s, double nu_100_mm2_s, const std::string& temperature);
 
 /// Preload of a bearing pair that the warmer inner ring tightens [N], never below zero: without preload the rings part.
 ///

@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <memory>
+
 #include "effects/axis.hpp"
 #include "effects/bearing_formulas.hpp"
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects::bearing_friction {
 
@@ -12,6 +17,21 @@ std::function<double(const Drive&)> speed_of(const Effect& e) {
   return [axis = static_cast<std::size_t>(turned_by[0] - 'x'), lead_m = 1e-3 * e["lead"]](const Drive& d) {
     return screw_speed_rpm(d.feed_m_s[axis], lead_m);
   };
+}
+
+/// The power as a formula of the drive and of the probes of contribute().
+std::string formula_of(const Effect& e) {
+  const bool thins = !e.has("viscosity"), tightens = e.has("preload_growth");
+  const std::string& turned_by = e.words.at("turned_by");
+  const std::string speed =
+      turned_by == kSpindle ? "n" : fmt::format("(v_{}*{})", turned_by, written(screw_speed_rpm(1.0, 1e-3 * e["lead"])));
+  const std::string nu = thins ? walther_formula(e["viscosity_40"], e["viscosity_100"], "T0") : written(e["viscosity"]);
+  const std::string load = tightens ? fmt::format("max(0, {} + {}*(T{} - T{}))", written(e["load"]),
+                                                  written(e["preload_growth"]), thins ? 1 : 0, thins ? 2 : 1)
+                                    : written(e["load"]);
+  return fmt::format("if({0} > 0, {1}*({2} + {3}*{4})*{0}, 0)", speed, written(e["count"] * friction_power_W(1.0, 1.0)),
+                     palmgren_viscous_formula(e["f0"], fmt::format("({}*{})", nu, speed), e["mean_diameter"]),
+                     written(e["f1"] * e["mean_diameter"]), load);
 }
 
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -35,7 +55,10 @@ void contribute(const Effect& e, HeatBalance& balance) {
         palmgren_viscous_torque_Nmm(f0, nu_now, speed_rpm, d_mm) + palmgren_load_torque_Nmm(f1, load_N, d_mm);
     return count * friction_power_W(torque_Nmm, speed_rpm);
   };
-  balance.heats.push_back({e.name(), e.body(), Law(power_W, probes)});
+  Law power(power_W, probes);
+  if (thins || tightens)
+    power.steps = [e = std::make_shared<const Effect>(e), n = probes.size()] { return law_steps(formula_of(*e), n); };
+  balance.heats.push_back({e.name(), e.body(), std::move(power)});
 }
 
 void check(const Effect& e, const ConfigMap& in) {

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "effects/lasting.hpp"
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects::changed_law {
 
@@ -24,6 +25,30 @@ bool acts(const Effect& e, const Inputs& u) {
   return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
 }
 
+/// What a law is multiplied by, as a formula of the speed and of the probes that change() adds after the first ones; ""
+/// for changes that depend on time or bend the law beyond a speed.
+std::string formula_of(const Effect& e, std::size_t n_first, bool is_over, bool follows_difference) {
+  if (!e.in.empty() || e.from_s != 0.0 || e.until_s != kNever_s || e["growth_beyond"] != 1.0) return "";
+  const std::string n = fmt::format("(n/{})", written(e["at_speed"]));
+  std::string text = fmt::format("{}*(", written(e["factor"]));
+  text += e["exponent"] != 0.0 ? fmt::format("if(n > 0, {}^{}, 1)", n, written(e["exponent"])) : "1";
+  if (e["growth"] != 0.0) text += fmt::format(" + {}*{}^{}", written(e["growth"]), n, written(e["growth_exponent"]));
+  text += ")";
+  if (e["factor_below"] != 1.0)
+    text += fmt::format("*if(n > 0, if(n < {}, {}, 1), 1)", written(e["below"]), written(e["factor_below"]));
+  std::size_t next = n_first;
+  if (is_over) {
+    text += fmt::format("*max(0, 1 - {}*(T{} - T{}))", written(e["decay"]), next, next + 1);
+    next += 2;
+  } else if (e["decay"] != 0.0) {
+    text += fmt::format("*exp({}*(T{} - {}))", written(-e["decay"]), next++, written(e["at_temperature"]));
+  }
+  if (follows_difference)
+    text += fmt::format("*(max({}, abs(T{} - T{}))/{})^{}", kLeastDifference_K, next, next + 1, written(e["at_difference"]),
+                        written(e["difference_exponent"]));
+  return text;
+}
+
 /// @param other  body at the other end of an exchange; nullptr for a heat, or for an exchange with a medium or across a
 ///               joint
 void change(const Effect& e, const Body& body, const Body* other, Law& law) {
@@ -36,11 +61,22 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const bool thins = decay_1_K != 0.0, follows_difference = of_difference != 0.0 && other;
   const auto over = e.references.find("over");
   const bool is_over = thins && over != e.references.end();  // another body's temperature, not a given one
+  const std::string by = law.steps ? formula_of(e, law.probes.size(), is_over, follows_difference) : "";
   if (thins) law.probes.push_back(body);
   if (is_over) law.probes.push_back(over->second);
   if (follows_difference) {
     law.probes.push_back(body);
     law.probes.push_back(*other);
+  }
+  if (by.empty()) {
+    law.steps = nullptr;
+  } else {
+    law.steps = [by, own = law.steps, n_probes = law.probes.size()] {
+      std::vector<Expression::Step> steps = own();
+      for (const Expression::Step& s : law_steps(by, n_probes)) steps.push_back(s);
+      steps.push_back({.op = Op::kMultiply});
+      return steps;
+    };
   }
   law.value = [=, value = law.value](const Inputs& u) {
     Inputs own;
@@ -81,6 +117,7 @@ std::string of_medium(const std::string& exchange) {
 /// The additional heat that a warmer medium brings with the same exchange.
 HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
   Law heat = x.coefficient;
+  heat.steps = nullptr;
   heat.value = [coefficient = x.coefficient.value, warmer_K = e["warmer"], e](const Inputs& u) {
     return acts(e, u) ? warmer_K * coefficient(u) : 0.0;
   };

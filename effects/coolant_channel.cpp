@@ -10,6 +10,7 @@
 #include "effects/coolant_tank.hpp"
 #include "effects/flow_path.hpp"
 #include "effects/lasting.hpp"
+#include "effects/law_steps.hpp"
 #include "effects/recorded_column.hpp"
 
 namespace driftwright::effects::coolant_channel {
@@ -118,6 +119,53 @@ double rise_K(const std::vector<Passage>& passages, std::size_t n_sections, cons
   return rise;
 }
 
+/// The heats of contribute() as formulas. They are linear in the temperatures of the sections before: what the liquid has
+/// taken up by section i is the sum over j < i of share_j (T_j - inlet), each less what the sections between took from
+/// it.
+struct HeatFormula {
+  std::shared_ptr<const Stream> stream;
+  bool has_tank = false;
+  double set_point_K = 0.0;
+
+  /// @param weight_W_K  of the rise at each section
+  [[nodiscard]] std::vector<Expression::Step> steps(const std::vector<double>& weight_W_K, std::size_t n_probes) const {
+    const std::size_t first_wall = has_tank ? 1 : 0;
+    const std::vector<Passage>& p = stream->constant;
+    std::vector<Expression::Step> steps;
+    const auto number = [&](double value) { steps.push_back({.op = Op::kNumber, .number = value}); };
+    const auto probe = [&](std::size_t i) { steps.push_back({.op = Op::kName, .name = kDriveNames + i}); };
+    const auto apply = [&](std::initializer_list<Op> ops) {
+      for (const Op op : ops) steps.push_back({.op = op});
+    };
+    if (stream->with_spindle) {  // if(n > 0, sum, 0)
+      steps.push_back({.op = Op::kName, .name = 0});
+      number(0.0);
+      apply({Op::kGreater});
+    }
+    number(0.0);
+    for (std::size_t j = 0; j + first_wall < n_probes; ++j) {
+      double heat_W_K = 0.0, left = p[j].share;
+      for (std::size_t i = j + 1; i < weight_W_K.size(); ++i) {
+        heat_W_K += weight_W_K[i] * left;
+        left *= 1.0 - p[i].share;
+      }
+      number(heat_W_K);
+      probe(j + first_wall);
+      if (has_tank) {
+        probe(0);
+      } else {
+        number(set_point_K);
+      }
+      apply({Op::kSubtract, Op::kMultiply, Op::kAdd});
+    }
+    if (stream->with_spindle) {
+      number(0.0);
+      apply({Op::kIf});
+    }
+    return steps;
+  }
+};
+
 /// Each section exchanges with the temperature of the inlet, which is symmetric; what it took up before comes back as
 /// heat, a law of the sections before. So the liquid has no unknowns, and is quasi-steady: it passes in seconds.
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -132,6 +180,17 @@ void contribute(const Effect& e, HeatBalance& balance) {
     std::vector<Body> probes(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(n_sections));
     if (has_tank) probes.insert(probes.begin(), tank);
     return probes;
+  };
+  const HeatFormula formula{stream, has_tank, set_point_K};
+  /// A law whose heat is what the rise at each section, times its conductance and a sign, brings or takes.
+  const auto with_formula = [&](Law law, std::size_t first, std::size_t last, double sign) {
+    if (stream->column) return law;
+    law.steps = [=, n_probes = law.probes.size()] {
+      std::vector<double> weight_W_K(last + 1, 0.0);
+      for (std::size_t i = first; i <= last; ++i) weight_W_K[i] = sign * stream->constant[i].conductance_W_K;
+      return formula.steps(weight_W_K, n_probes);
+    };
+    return law;
   };
   for (std::size_t i = 0; i < walls.size(); ++i) {
     Exchange passage{.name = exchange_name(e, i),
@@ -150,32 +209,35 @@ void contribute(const Effect& e, HeatBalance& balance) {
     balance.exchanges.push_back(std::move(passage));
     if (i == 0) continue;
     balance.heats.push_back({"medium of " + exchange_name(e, i), walls[i],
-                             Law(
-                                 [=](const Inputs& u) {
-                                   std::vector<Passage> own;
-                                   const std::vector<Passage>& p = stream->at(u, own);
-                                   return p[i].conductance_W_K * rise_K(p, i, u.probe_K, first_wall, inlet_K(u));
-                                 },
-                                 looks_at(i))});
+                             with_formula(Law(
+                                              [=](const Inputs& u) {
+                                                std::vector<Passage> own;
+                                                const std::vector<Passage>& p = stream->at(u, own);
+                                                return p[i].conductance_W_K *
+                                                       rise_K(p, i, u.probe_K, first_wall, inlet_K(u));
+                                              },
+                                              looks_at(i)),
+                                          i, i, 1.0)});
   }
   if (!has_tank) return;
   if (walls.size() > 1) {  // what came back to the walls has not reached the tank
     const std::size_t before_last = walls.size() - 1;
     balance.heats.push_back({"medium of " + exchange_name(e, 0), tank,
-                             Law(
-                                 [=](const Inputs& u) {
-                                   std::vector<Passage> own;
-                                   const std::vector<Passage>& p = stream->at(u, own);
-                                   double kept_W = 0.0, rise = 0.0;
-                                   for (std::size_t i = 0; i < p.size(); ++i) {
-                                     kept_W += p[i].conductance_W_K * rise;
-                                     if (i < before_last) {
-                                       rise += p[i].share * (u.probe_K[first_wall + i] - inlet_K(u) - rise);
-                                     }
-                                   }
-                                   return -kept_W;
-                                 },
-                                 looks_at(before_last))});
+                             with_formula(Law(
+                                              [=](const Inputs& u) {
+                                                std::vector<Passage> own;
+                                                const std::vector<Passage>& p = stream->at(u, own);
+                                                double kept_W = 0.0, rise = 0.0;
+                                                for (std::size_t i = 0; i < p.size(); ++i) {
+                                                  kept_W += p[i].conductance_W_K * rise;
+                                                  if (i < before_last) {
+                                                    rise += p[i].share * (u.probe_K[first_wall + i] - inlet_K(u) - rise);
+                                                  }
+                                                }
+                                                return -kept_W;
+                                              },
+                                              looks_at(before_last)),
+                                          0, before_last, -1.0)});
   }
   if (e.has("volume")) {
     add_tank(

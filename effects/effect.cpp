@@ -45,6 +45,7 @@ void keep_time(const Effect& effect, HeatBalance& balance) {
   if (ends) balance.change_times_s.push_back(effect.until_s);
   if (!begins && !ends && effect.in.empty()) return;
   balance.for_each_law([&](const std::string&, Law& law) {
+    law.steps = nullptr;
     law.value = [value = law.value, from_s = effect.from_s, until_s = effect.until_s, in = effect.in](const Inputs& u) {
       const bool acts = u.time_s >= from_s && u.time_s < until_s && (in.empty() || u.run == in);
       return acts ? value(u) : 0.0;

@@ -1,5 +1,7 @@
 #include "effects/film_formulas.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,31 +20,46 @@ double churchill_chu(double at_rest, double prandtl_scale, double rayleigh, doub
   return std::pow(at_rest + 0.387 * std::pow(rayleigh, 1.0 / 6.0) / prandtl_part, 2);
 }
 
-constexpr double kStillAirNusselt = 0.96;
+constexpr double kStillAirNusselt = 0.96, kGravity_m_s2 = 9.80665;
+
+/// The properties of air every kAirStep_K from kFirstAir_K to kLastAir_K.
+struct AirRow {
+  double conductivity_mW_mK, viscosity_mm2_s, diffusivity_mm2_s;
+};
+constexpr double kFirstAir_K = 200.0, kAirStep_K = 50.0, kLastAir_K = 500.0;
+constexpr std::array<AirRow, 7> kAirRows = {{{18.1, 7.590, 10.3},
+                                             {22.3, 11.44, 15.9},
+                                             {26.3, 15.89, 22.5},
+                                             {30.0, 20.92, 29.9},
+                                             {33.8, 26.41, 38.3},
+                                             {37.3, 32.39, 47.2},
+                                             {40.7, 38.79, 56.7}}};
+
+/// A property over the temperature by a formula: a line, and a bend at each row.
+std::string column_formula(double AirRow::*column, double scale, const std::string& temperature) {
+  std::string text = fmt::format("{}*({}", scale, kAirRows[0].*column);
+  double slope = 0.0;
+  for (std::size_t i = 0; i + 1 < kAirRows.size(); ++i) {
+    const double next = (kAirRows[i + 1].*column - kAirRows[i].*column) / kAirStep_K;
+    text +=
+        fmt::format(" + ({})*max(0, {} - {})", next - slope, temperature, kFirstAir_K + kAirStep_K * static_cast<double>(i));
+    slope = next;
+  }
+  return text + ")";
+}
 
 }  // namespace
 
 Air air_at(double temperature_K) {
-  struct Row {
-    double conductivity_mW_mK, viscosity_mm2_s, diffusivity_mm2_s;
-  };
-  constexpr double kFirst_K = 200.0, kStep_K = 50.0, kLast_K = 500.0;
-  constexpr std::array<Row, 7> kRows = {{{18.1, 7.590, 10.3},
-                                         {22.3, 11.44, 15.9},
-                                         {26.3, 15.89, 22.5},
-                                         {30.0, 20.92, 29.9},
-                                         {33.8, 26.41, 38.3},
-                                         {37.3, 32.39, 47.2},
-                                         {40.7, 38.79, 56.7}}};
-  require(temperature_K >= kFirst_K && temperature_K <= kLast_K, "air temperature [K]", temperature_K);
-  const double position = (temperature_K - kFirst_K) / kStep_K;
-  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), kRows.size() - 2);
+  require(temperature_K >= kFirstAir_K && temperature_K <= kLastAir_K, "air temperature [K]", temperature_K);
+  const double position = (temperature_K - kFirstAir_K) / kAirStep_K;
+  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), kAirRows.size() - 2);
   const double share = position - static_cast<double>(i);
-  const auto between = [&](double Row::*column) {
-    return kRows[i].*column + share * (kRows[i + 1].*column - kRows[i].*column);
+  const auto between = [&](double AirRow::*column) {
+    return kAirRows[i].*column + share * (kAirRows[i + 1].*column - kAirRows[i].*column);
   };
-  return {1e-3 * between(&Row::conductivity_mW_mK), 1e-6 * between(&Row::viscosity_mm2_s),
-          1e-6 * between(&Row::diffusivity_mm2_s)};
+  return {1e-3 * between(&AirRow::conductivity_mW_mK), 1e-6 * between(&AirRow::viscosity_mm2_s),
+          1e-6 * between(&AirRow::diffusivity_mm2_s)};
 }
 
 double nusselt_vertical_plate(double rayleigh, double prandtl) {
@@ -64,7 +81,6 @@ double nusselt_plate_stable(double rayleigh) {
 }
 
 double natural_convection_htc_W_m2K(Orientation looks, double length_m, double surface_K, double air_K) {
-  constexpr double kGravity_m_s2 = 9.80665;
   require(length_m > 0.0, "length [m]", length_m);
   const double film_K = 0.5 * (surface_K + air_K);
   const Air air = air_at(film_K);
@@ -84,6 +100,37 @@ double natural_convection_htc_W_m2K(Orientation looks, double length_m, double s
     throw std::logic_error("natural_convection_htc_W_m2K: no such orientation");
   };
   return nusselt() * air.conductivity_W_mK / length_m;
+}
+
+std::string natural_convection_formula(Orientation looks, double length_m, double factor) {
+  const std::string film = "(0.5*(T0 + T1))";
+  const std::string viscosity = column_formula(&AirRow::viscosity_mm2_s, 1e-6, film),
+                    diffusivity = column_formula(&AirRow::diffusivity_mm2_s, 1e-6, film);
+  const std::string rayleigh =
+      fmt::format("({}*abs(T0 - T1)/({}*({})*({})))", kGravity_m_s2 * std::pow(length_m, 3), film, viscosity, diffusivity);
+  const auto churchill_chu_formula = [&](double at_rest, double scale) {
+    return fmt::format("({} + 0.387*{}^(1/6)/(1 + ({}*({})/({}))^(9/16))^(8/27))^2", at_rest, rayleigh, scale, diffusivity,
+                       viscosity);
+  };
+  const std::string unstable =
+                        fmt::format("max({}, max(0.54*{}^0.25, 0.15*{}^(1/3)))", kStillAirNusselt, rayleigh, rayleigh),
+                    stable = fmt::format("max({}, 0.27*{}^0.25)", kStillAirNusselt, rayleigh);
+  const auto nusselt = [&] {
+    switch (looks) {
+      case Orientation::kVertical:
+        return churchill_chu_formula(0.825, 0.492);
+      case Orientation::kUp:
+        return fmt::format("if(T0 < T1, {}, {})", stable, unstable);
+      case Orientation::kDown:
+        return fmt::format("if(T0 < T1, {}, {})", unstable, stable);
+      case Orientation::kHorizontalCylinder:
+        return churchill_chu_formula(0.60, 0.559);
+    }
+    throw std::logic_error("natural_convection_formula: no such orientation");
+  };
+  return fmt::format("if(abs({0} - {1}) > {2}, 0/0, {3}*({4})*({5}))", film, 0.5 * (kFirstAir_K + kLastAir_K),
+                     0.5 * (kLastAir_K - kFirstAir_K), factor / length_m, nusselt(),
+                     column_formula(&AirRow::conductivity_mW_mK, 1e-3, film));
 }
 
 double rotating_cylinder_htc_W_m2K(double diameter_m, double speed_rpm) {

@@ -1,6 +1,8 @@
 #pragma once
 // Film coefficients in air. Nusselt numbers are space means.
 
+#include <string>
+
 namespace driftwright::effects {
 
 /// Dry air at 1013 hPa.
@@ -62,6 +64,9 @@ enum class Orientation { kVertical, kUp, kDown, kHorizontalCylinder };
 /// @param length_m  height of a vertical plate, area / perimeter of a horizontal one, diameter of a cylinder; > 0
 /// @throws RangeError  when a temperature of the film lies outside 200 K to 500 K, or Ra outside the formula's range
 [[nodiscard]] double natural_convection_htc_W_m2K(Orientation looks, double length_m, double surface_K, double air_K);
+/// The same times a factor as a formula of T0, the surface, and T1, the air (law_steps.hpp). No value outside 200 K to
+/// 500 K; the range of Ra is not looked at.
+[[nodiscard]] std::string natural_convection_formula(Orientation looks, double length_m, double factor);
 
 /// Film coefficient on a horizontal cylinder that turns in still air [W/(m^2 K)].
 ///

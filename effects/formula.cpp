@@ -15,6 +15,7 @@
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
 #include "effects/expression_units.hpp"
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects {
 namespace formula {
@@ -165,11 +166,28 @@ std::shared_ptr<const Bound> bound(const Effect& e) {
   return std::make_shared<const Bound>(std::move(b));
 }
 
+/// The steps of a formula with the names of a law. The drive's are the first of both lists.
+std::vector<Expression::Step> as_law_steps(const Bound& b) {
+  const std::size_t first_body = b.kind->first_parameter() + b.kind->parameters.size();
+  std::vector<Expression::Step> steps = b.steps;
+  for (Expression::Step& s : steps) {
+    if (s.op != Op::kName || s.name < kDriveNames) continue;
+    if (s.name < std::size(kGiven)) {
+      s = {.op = Op::kNumber, .number = kGiven[s.name].value({})};
+    } else {
+      s.name = kDriveNames + s.name - first_body;
+    }
+  }
+  return steps;
+}
+
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto& kind = static_cast<const DeclaredKind&>(*e.kind);
   std::vector<Body> probes;
   for (const std::string& name : kind.bodies) probes.push_back(e.references.at(name));
-  Law law([b = bound(e)](const Inputs& u) { return (*b)(u.drive, std::nullopt, 0.0, u.probe_K.data()); }, std::move(probes));
+  const std::shared_ptr<const Bound> b = bound(e);
+  Law law([b](const Inputs& u) { return (*b)(u.drive, std::nullopt, 0.0, u.probe_K.data()); }, std::move(probes));
+  law.steps = [b] { return as_law_steps(*b); };
   if (kind.result == "power") {
     balance.heats.push_back({e.name(), e.body(), std::move(law)});
   } else if (e.place_kind == Place::kJoint) {

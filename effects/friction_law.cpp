@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "effects/effect.hpp"
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects::friction_law {
 
@@ -13,8 +16,14 @@ void contribute(const Effect& e, HeatBalance& balance) {
     const double cold_W = power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
     return thins ? cold_W * std::exp(-decay_1_K * (u.probe_K.at(0) - t0_K)) : cold_W;
   };
-  const std::vector<Body> probes = thins ? std::vector<Body>{e.body()} : std::vector<Body>{};
-  balance.heats.push_back({e.name(), e.body(), Law(law, probes)});
+  Law power(law, thins ? std::vector<Body>{e.body()} : std::vector<Body>{});
+  power.steps = [=] {
+    const std::string thinned = fmt::format("*exp({}*(T0 - {}))", written(-decay_1_K), written(t0_K));
+    return law_steps(fmt::format("if(n > 0, {}*(n/{})^{}{}, 0)", written(power_W), written(n0_rpm), written(exponent),
+                                 thins ? thinned : ""),
+                     thins ? 1 : 0);
+  };
+  balance.heats.push_back({e.name(), e.body(), std::move(power)});
 }
 
 EffectKind kind() {

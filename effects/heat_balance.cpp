@@ -1,7 +1,11 @@
 #include "effects/heat_balance.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
+
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -40,10 +44,12 @@ HeatBalance with_radiation_as_films(HeatBalance balance) {
       const double t_K = u.probe_K[0], around_K = u.probe_K[1];
       return kStefanBoltzmann_W_m2K4 * emissivity * (t_K * t_K + around_K * around_K) * (t_K + around_K);
     };
-    films.exchanges.push_back({.name = r.name,
-                               .body = surface(r.surface),
-                               .coefficient = Law(coefficient_W_m2K, {surface(r.surface), node(r.surrounding)}),
-                               .surrounding = r.surrounding});
+    Law film(coefficient_W_m2K, {surface(r.surface), node(r.surrounding)});
+    film.steps = [emissivity = r.emissivity] {
+      return law_steps(fmt::format("{}*(T0^2 + T1^2)*(T0 + T1)", written(kStefanBoltzmann_W_m2K4 * emissivity)), 2);
+    };
+    films.exchanges.push_back(
+        {.name = r.name, .body = surface(r.surface), .coefficient = std::move(film), .surrounding = r.surrounding});
   }
   balance.radiations.clear();
   balance.append(std::move(films));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/cyclogram.hpp"
+#include "effects/expression.hpp"
 #include "effects/surface_field.hpp"
 
 namespace driftwright::effects {
@@ -56,6 +57,9 @@ struct Law {
   std::function<double(const Inputs&)> value;
   std::vector<Body> probes;  ///< the bodies whose mean temperatures the law uses
   std::string thermostat;    ///< the law is zero while this thermostat is off; "" for none
+  /// The same as a formula, for programs that cannot call `value`; names as law_names() (law_steps.hpp). Empty: none is
+  /// known. Who replaces `value` must replace or clear it.
+  std::function<std::vector<Expression::Step>()> steps;
 
   Law() = default;
   template <class F>

@@ -1,7 +1,11 @@
+#include "effects/learned.hpp"
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "effects/doubt.hpp"
+#include "effects/reading_chain.hpp"
 #include "effects/recorded_column.hpp"
 
 namespace driftwright::effects::learned {
@@ -118,3 +122,64 @@ EffectKind kind() {
 }
 
 }  // namespace driftwright::effects::learned
+
+namespace driftwright::effects {
+
+LearnedStream::LearnedStream(const std::vector<Effect>& effects, const std::string& displacement) {
+  for (const Effect& e : effects) {
+    if (e.kind->key != "learned" || e.place_kind != Place::kDisplacement || e.place != displacement) continue;
+    effects_.push_back(e);
+    if (const std::string& table = learned::table_of(e); !table.empty())
+      state_.x.resize(state_.x.size() + e.tables.at(table).time_s.size());
+  }
+}
+
+void LearnedStream::begin(double displacement, double ambient_K) {
+  state_.first = displacement;
+  state_.first_ambient_K = ambient_K;
+  std::fill(state_.x.begin(), state_.x.end(), 0.0);
+}
+
+void LearnedStream::advance(double step_s, const Drive& during, double ambient_before_K, double ambient_K) {
+  auto x = state_.x.begin();
+  for (const Effect& e : effects_) {
+    const std::string& table = learned::table_of(e);
+    if (table.empty()) continue;
+    const bool is_ambient = e.words.at("follows") == "ambient";
+    const double before = is_ambient ? ambient_before_K - state_.first_ambient_K : learned::law_of(e)(during),
+                 now = is_ambient ? ambient_K - state_.first_ambient_K : before;
+    for (const double lag_min : e.tables.at(table).time_s) {
+      const double lag_s = 60.0 * lag_min;
+      if (!(lag_s > 0.0)) {
+        *x = now;
+      } else if (step_s > 0.0) {  // exact for a signal that is linear from `before` to `now`
+        const double share = -std::expm1(-step_s / lag_s);
+        *x += (before - *x) * share + (now - before) * (1.0 - lag_s / step_s * share);
+      }
+      ++x;
+    }
+  }
+}
+
+double LearnedStream::with_learned(double displacement, const Drive& now) const {
+  double keeps = 1.0, added = 0.0;
+  auto x = state_.x.begin();
+  for (const Effect& e : effects_) {
+    keeps *= e["keeps"];
+    const std::string& table = learned::table_of(e);
+    if (table.empty()) continue;
+    const bool is_ambient = e.words.at("follows") == "ambient";
+    const TimeSeries& terms = e.tables.at(table);
+    for (std::size_t k = 0; k < terms.time_s.size(); ++k, ++x)
+      added += 1e-6 * terms.value[k] * (terms.time_s[k] > 0.0 || is_ambient ? *x : learned::law_of(e)(now));
+  }
+  return state_.first + keeps * (displacement - state_.first) + added;
+}
+
+void LearnedStream::recall(const State& state) {
+  if (state.x.size() != state_.x.size())
+    throw InputError("the state is of a machine with other effects `learned`: another number of terms");
+  state_ = state;
+}
+
+}  // namespace driftwright::effects

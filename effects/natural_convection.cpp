@@ -1,5 +1,6 @@
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
+#include "effects/law_steps.hpp"
 
 namespace driftwright::effects::natural_convection {
 
@@ -17,7 +18,9 @@ void contribute(const Effect& e, HeatBalance& balance) {
   const auto htc = [=](const Inputs& u) {
     return factor * natural_convection_htc_W_m2K(looks, length_m, u.probe_K.at(0), u.probe_K.at(1));
   };
-  balance.exchanges.push_back(make_film(e.name(), e.place, Law(htc, {e.body(), node(surrounding)}), surrounding));
+  Law film(htc, {e.body(), node(surrounding)});
+  film.steps = [=] { return law_steps(natural_convection_formula(looks, length_m, factor), 2); };
+  balance.exchanges.push_back(make_film(e.name(), e.place, std::move(film), surrounding));
 }
 
 EffectKind kind() {

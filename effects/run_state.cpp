@@ -15,6 +15,7 @@ bool is_meant(const Effect& e, const Exchange& x) {
 void change_laws(const Effect& e, HeatBalance& balance) {
   if (e["factor"] == 1.0) return;
   const auto change = [&](Law& law) {
+    law.steps = nullptr;
     law.value = [value = law.value, factor = e["factor"], in = e.in](const Inputs& u) {
       return (in.empty() || u.run == in ? factor : 1.0) * value(u);
     };

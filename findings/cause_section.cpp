@@ -59,10 +59,21 @@ void add_certainty(Section& section, const diagnosis::Diagnosis& d, std::size_t 
     add(section, sentence("What else it could be: nothing else in the catalogue explains these records nearly as well."));
 }
 
+/// Measured, simulated without this cause, simulated with it; nothing if that was not simulated.
+void add_figure(Section& section, const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, std::size_t i) {
+  const diagnosis::Prediction& with = d.search.fit.prediction;
+  if (i >= d.without_cause.size() || with.size() != m.runs.size()) return;
+  const std::optional<ShownChannel> channel = clearest_channel(m, d, d.without_cause[i], &with, instruments_of(d, i));
+  if (!channel) return;
+  add(section, channel_figure(m, *channel, fmt::format("Cause {}: {}", i + 1, channel_words(m, *channel)),
+                              {{"simulated without this cause, all else mended", &d.without_cause[i]},
+                               {"simulated with this cause mended too", &with}}));
+}
+
 /// The statistics of one cause.
 Section one_cause_statistics(const diagnosis::Diagnosis& d, std::size_t i) {
   const diagnosis::Cause& c = d.causes[i];
-  Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where)};
+  Section section{.title = fmt::format("Cause {}, {}: {}", i + 1, diagnosis::word(c.standing), diagnosis::cause_name(c))};
   if (!is_moved_number(d, i) && d.ended_at.empty())
     add(section,
         Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
@@ -114,21 +125,19 @@ const diagnosis::Prediction* with_causes(const studies::MeasuredTwin& m, const d
 }
 
 std::string with_causes_text(const diagnosis::Diagnosis& d) {
-  if (d.search.findings.empty()) return "simulated with its numbers fitted";
-  return d.search.findings.size() == 1 ? "simulated with the cause" : "simulated with the causes";
+  if (d.causes.empty()) return "simulated with its numbers fitted";
+  return d.causes.size() == 1 ? "simulated with the cause" : "simulated with the causes";
 }
 
-std::optional<ShownChannel> channel_of_cause(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                                             std::size_t cause, const std::vector<ShownChannel>& but) {
+std::optional<ShownChannel> channel_of_lead(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d) {
   const diagnosis::Prediction* after = with_causes(m, d);
-  if (!after) return std::nullopt;
-  return clearest_channel(m, d, after, instruments_of(d, cause), but);
+  return after ? clearest_channel(m, d, d.as_written, after, instruments_of(d, lead_cause(d))) : std::nullopt;
 }
 
 std::string alternatives_text(const diagnosis::Cause& cause, std::size_t most) {
   std::vector<std::string> list;
   for (const diagnosis::Cause& a : cause.alternatives) {
-    if (list.size() < most) list.push_back(fmt::format("{} at {} ({:.0f} %)", a.effect, a.where, 100.0 * a.share));
+    if (list.size() < most) list.push_back(fmt::format("{} ({:.0f} %)", diagnosis::cause_name(a), 100.0 * a.share));
   }
   if (list.empty()) return "";
   const std::size_t n_more = cause.alternatives.size() - list.size();
@@ -136,20 +145,12 @@ std::string alternatives_text(const diagnosis::Cause& cause, std::size_t most) {
                      n_more > 0 ? fmt::format(" and {}", counted(n_more, "other", "others")) : "");
 }
 
-Section causes_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                       const std::optional<ShownChannel>& shown) {
+Section causes_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d) {
   Section section{.title = d.causes.size() == 1 ? "The cause" : "The causes, one by one"};
-  std::vector<ShownChannel> drawn;
-  if (shown) drawn.push_back(*shown);
   const std::size_t n_shown = std::min(kMostCauses, d.causes.size());
   for (std::size_t i = 0; i < n_shown; ++i) {
     Section cause = one_cause(d, i);
-    const bool is_at_top = shown && i == lead_cause(d);
-    const std::optional<ShownChannel> channel = is_at_top ? std::nullopt : channel_of_cause(m, d, i, drawn);
-    if (channel && std::find(drawn.begin(), drawn.end(), *channel) == drawn.end()) {
-      add(cause, channel_figure(m, d, *channel, with_causes(m, d), with_causes_text(d)));
-      drawn.push_back(*channel);
-    }
+    if (d.causes.size() > 1) add_figure(cause, m, d, i);
     add_certainty(cause, d, i);
     section.sections.push_back(std::move(cause));
   }

@@ -184,8 +184,9 @@ std::string cause_sentence(const diagnosis::Diagnosis& d, std::size_t cause) {
       ++n_left_out;
   }
   if (n_left_out > 0) numbers.push_back(counted(n_left_out, "more number", "more numbers"));
-  return fmt::format("{}: {}{}{}.", difference_text(quantity_of_cause(d, cause), c.where), law.text,
-                     numbers.empty() ? "" : "; ", fmt::join(numbers, ", "));
+  return fmt::format("{}{}: {}{}{}.", difference_text(quantity_of_cause(d, cause), c.where),
+                     c.own.empty() ? "" : fmt::format(" ({})", c.own), law.text, numbers.empty() ? "" : "; ",
+                     fmt::join(numbers, ", "));
 }
 
 std::string sure_text(double probability) {

@@ -10,7 +10,8 @@ namespace driftwright::findings {
 
 /// What is different, without full stop: "The reading of thermometer t_column is wrong".
 [[nodiscard]] std::string difference_text(std::optional<diagnosis::StatedQuantity> quantity, const std::string& where);
-/// The same with law and numbers, a sentence: "The reading of thermometer th3 is wrong: constant error; bias 1.52 K."
+/// The same with law and numbers, a sentence: "The reading of thermometer th3 is wrong: constant error; bias 1.52 K.",
+/// "The heat in head is not what the scenario says (motor_loss at head, line 7): another power; power 165 W."
 [[nodiscard]] std::string cause_sentence(const diagnosis::Diagnosis& d, std::size_t cause);
 
 /// What to look at on the machine, a sentence: "Look at thermometer t_column: ...".

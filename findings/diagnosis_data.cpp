@@ -18,6 +18,7 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   Section item{.key = key, .item = output::Item{"effect", c.effect}};
   put(item, "standing", diagnosis::word(c.standing));
   put(item, "where", effects::where_in_files(c.where));
+  if (!c.own.empty()) put(item, "own", c.own);
   put(item, "law", c.law);
   output::Table parameters{.key = "parameters",
                            .columns = {{.key = "name"}, {.key = "value"}, {.key = "unit"}, {.key = "ci95"}}};

@@ -40,7 +40,7 @@ Table causes_table(const diagnosis::Diagnosis& d) {
                           {.title = "or"}}};
   for (std::size_t i = 0; i < d.causes.size(); ++i) {
     const diagnosis::Cause& c = d.causes[i];
-    table.rows.push_back({fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing),
+    table.rows.push_back({diagnosis::cause_name(c), diagnosis::word(c.standing),
                           is_moved_number(d, i) ? Datum() : Datum(c.probability), diagnosis::parameters_text(c),
                           alternatives_text(c, kMostBeside)});
   }
@@ -55,8 +55,9 @@ Section courses_section(const diagnosis::Diagnosis& d) {
     if (section.blocks.size() == kMost) break;
     if (s.course.empty()) continue;
     const auto [unit, scale] = shown_unit(s);
-    Plot plot{.title = fmt::format("{} at {}, if it alone is wrong", diagnosis::word(s.says.quantity),
-                                   fmt::join(s.says.place, " and ")),
+    const bool has_place = s.says.quantity != diagnosis::StatedQuantity::kAmbient;
+    Plot plot{.title = fmt::format("{}{}, if it alone is wrong", diagnosis::word(s.says.quantity),
+                                   has_place ? fmt::format(" at {}", fmt::join(s.says.place, " and ")) : ""),
               .x_label = "time [min]",
               .y_label = fmt::format("{} [{}]", diagnosis::word(s.says.quantity), unit),
               .series = {}};
@@ -120,7 +121,7 @@ void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
     auto known =
         std::find_if(by_reason.begin(), by_reason.end(), [&](const auto& r) { return r.first == c.why_not_written; });
     if (known == by_reason.end()) known = by_reason.insert(by_reason.end(), {c.why_not_written, {}});
-    known->second.push_back(fmt::format("{} at {}", c.effect, c.where));
+    known->second.push_back(diagnosis::cause_name(c));
   }
   for (const auto& [why, causes] : by_reason)
     add(body, Text{fmt::format("{} {} not written into extended.yaml: {}.", fmt::join(causes, ", "),
@@ -227,7 +228,7 @@ void add_judgement(Section& numbers, const DiagnosisFindings& found) {
   numbers.sections.push_back(compared_data(found.measured.runs));
   numbers.sections.push_back(d.unexplained ? unexplained_section(d) : Section{.blocks = {Value{.key = "unexplained"}}});
   numbers.sections.push_back(data_section(d));
-  numbers.sections.push_back(gain_section(d, found.file));
+  numbers.sections.push_back(gain_section(d, found.file, found.remainder));
 }
 
 /// What only an expert needs, folded: where the model errs, every channel of every record, ISO 230-3.
@@ -252,7 +253,11 @@ void add_evidence(Section& experts, const DiagnosisFindings& found, const std::s
 Section picture_section(const DiagnosisFindings& found, const std::optional<ShownChannel>& shown,
                         const diagnosis::Prediction* after, const std::string& words) {
   Section section;
-  if (shown) add(section, channel_figure(found.measured, found.diagnosis, *shown, after, words));
+  if (!shown) return section;
+  std::vector<ShownCurve> curves = {{"simulated with the scenario as it is", &found.diagnosis.as_written}};
+  if (after) curves.push_back({words, after});
+  add(section,
+      channel_figure(found.measured, *shown, channel_words(found.measured, *shown) + ": measured and simulated", curves));
   return section;
 }
 
@@ -270,10 +275,10 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
 
   const diagnosis::Prediction* after = with_causes(m, d);
   const std::optional<ShownChannel> shown =
-      d.causes.empty() ? clearest_channel(m, d, nullptr) : channel_of_cause(m, d, lead_cause(d));
+      d.causes.empty() ? clearest_channel(m, d, d.as_written, nullptr) : channel_of_lead(m, d);
   body.sections.push_back(picture_section(found, shown, after, with_causes_text(d)));
   body.sections.push_back(output::next_section(next_steps(m, d, compared, made_by)));
-  if (!d.causes.empty()) body.sections.push_back(causes_section(m, d, shown));
+  if (!d.causes.empty()) body.sections.push_back(causes_section(m, d));
   if (d.experiment)
     body.sections.push_back(experiment_section(*d.experiment));
   else
@@ -319,7 +324,8 @@ output::Document calibration_document(const DiagnosisFindings& found, const outp
   add(body, Value{.key = "discriminating_experiment"});
 
   const diagnosis::Prediction* after = d.written.keeps_numbers ? &d.extended : nullptr;
-  body.sections.push_back(picture_section(found, clearest_channel(m, d, after), after, "simulated with its numbers fitted"));
+  body.sections.push_back(
+      picture_section(found, clearest_channel(m, d, d.as_written, after), after, "simulated with its numbers fitted"));
   body.sections.push_back(output::next_section(steps_after_calibration(m, d, warning, made_by)));
   add_causes_data(body, d.causes);
 

@@ -4,7 +4,7 @@
 
 #include "diagnosis/extended_scenario.hpp"
 #include "output/document.hpp"
-#include "studies/measured_twin.hpp"
+#include "studies/remainder.hpp"
 
 namespace driftwright::findings {
 
@@ -13,8 +13,9 @@ struct DiagnosisFindings {
   const studies::MeasuredTwin& measured;
   const diagnosis::Diagnosis& diagnosis;
   const diagnosis::ExtendedScenario& extended;
-  std::string difference = {};  ///< text of the .diff
-  std::string file = {};        ///< name of the scenario written
+  std::string difference = {};                    ///< text of the .diff
+  std::string file = {};                          ///< name of the scenario written
+  const studies::Remainder* remainder = nullptr;  ///< what could be learned beside it; null: nobody tried
 };
 
 /// The document whose JSON is diagnosis.json.

@@ -20,9 +20,42 @@ using output::Value;
 
 constexpr output::Digits kNumbersDigits = output::significant(3);
 
+/// A number of the scenario with the line of its effect.
+std::string number_name(const diagnosis::Estimate& e) {
+  return e.line > 0 ? fmt::format("{}, line {}", e.name, e.line) : e.name;
+}
+
 const char* limit_words(diagnosis::HeatWander::Limit limit) {
   using Limit = diagnosis::HeatWander::Limit;
   return limit == Limit::kAtMost ? "at most" : limit == Limit::kAtLeast ? "at least" : "about";
+}
+
+/// What could be learned beside the file, and the command that does so.
+void add_remainder(Section& section, const studies::Remainder& remainder, const std::string& file) {
+  if (!remainder.why_not.empty()) {
+    add(section, Text{fmt::format("Nothing was learned beside {}: {}", file, remainder.why_not)});
+    return;
+  }
+  Table table{.key = "remainder",
+              .title = fmt::format("What could be learned beside {}", file),
+              .caption = fmt::format(
+                  "Root mean squares on rows that were kept out of what was learned, of each kind in turn (runs or eighths, "
+                  "speeds, the end, the beginning, the warmest and the coldest rows). {} was fitted to these rows, too. "
+                  "Regression: on drive and ambient after lags. `driftwright identify --prior {}` with the same records "
+                  "writes what is learned, and says what it follows.",
+                  file, file),
+              .columns = {{.key = "name", .title = "channel"},
+                          {.key = "unit", .title = "unit"},
+                          {.key = "rmse_file", .title = file, .digits = kNumbersDigits},
+                          {.key = "rmse_with_remainder", .title = "with what is learned", .digits = kNumbersDigits},
+                          {.key = "rmse_regression", .title = "regression", .digits = kNumbersDigits},
+                          {.key = "noise_floor", .title = "noise floor", .digits = kNumbersDigits},
+                          {.key = "learned", .title = "learned"}},
+              .detail = true};
+  for (const studies::RemainderGain& g : remainder.channels)
+    table.rows.push_back(
+        {g.name, g.unit, g.rmse_file, g.rmse_with_remainder, g.rmse_regression, g.noise, g.is_learned ? "yes" : "no"});
+  add(section, std::move(table));
 }
 
 }  // namespace
@@ -72,7 +105,7 @@ Section wander_section(const diagnosis::HeatWander& wander) {
   return section;
 }
 
-Section gain_section(const diagnosis::Diagnosis& d, const std::string& file) {
+Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, const studies::Remainder* remainder) {
   Section section{.key = "gain", .title = fmt::format("What {} gains: measured minus simulated", file)};
   add(section, Value{.key = "holdout", .words = "held out:", .datum = d.holdout});
   Table table{.key = "channels",
@@ -129,6 +162,7 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file) {
   if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty())
     add(section, Text{.words = taken_up, .key = "taken_up"});
   if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});
+  if (remainder) add_remainder(section, *remainder, file);
   return section;
 }
 
@@ -158,7 +192,8 @@ Table moved_most(const diagnosis::Diagnosis& d) {
                           {.title = "95 % interval"},
                           {.key = "unit", .title = "unit"},
                           {.title = "moved [sigmas]", .digits = output::signed_decimals(2)}}};
-  for (const auto* e : list) table.rows.push_back({e->name, e->value, diagnosis::interval_text(*e), e->unit, e->deviation});
+  for (const auto* e : list)
+    table.rows.push_back({number_name(*e), e->value, diagnosis::interval_text(*e), e->unit, e->deviation});
   return table;
 }
 
@@ -176,6 +211,7 @@ Section numbers_section(const diagnosis::Diagnosis& d) {
                   {.key = "value", .title = "fitted", .digits = output::significant(4)},
                   {.title = "95 % interval"},
                   {.key = "unit", .title = "unit"},
+                  {.title = "line"},
                   {.title = "in the file"},
                   {.title = "known to"},
                   {.key = "sigmas_of_prior", .title = "moved [sigmas]", .digits = output::signed_decimals(2)},
@@ -184,9 +220,10 @@ Section numbers_section(const diagnosis::Diagnosis& d) {
                   {.key = "known_to_unit"},
                   {.key = "written"}}};
   for (const diagnosis::Estimate& e : d.calibrated) {
-    table.rows.push_back({e.name, e.value, diagnosis::interval_text(e), e.unit, e.is_written ? "yes" : "no",
-                          known_to_text(e), e.deviation, std::vector<double>{e.low, e.high}, e.known_to,
-                          e.is_share ? "of its logarithm" : e.unit, e.is_written});
+    table.rows.push_back({e.name, e.value, diagnosis::interval_text(e), e.unit,
+                          e.line > 0 ? output::Datum(static_cast<std::int64_t>(e.line)) : output::Datum(),
+                          e.is_written ? "yes" : "no", known_to_text(e), e.deviation, std::vector<double>{e.low, e.high},
+                          e.known_to, e.is_share ? "of its logarithm" : e.unit, e.is_written});
   }
   add(section, std::move(table));
   return section;

@@ -3,14 +3,16 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "output/document.hpp"
+#include "studies/remainder.hpp"
 
 namespace driftwright::findings {
 
 /// @pre something is unexplained
 [[nodiscard]] output::Section unexplained_section(const diagnosis::Diagnosis& d);
 [[nodiscard]] output::Section wander_section(const diagnosis::HeatWander& wander);
-/// @param file  that was written
-[[nodiscard]] output::Section gain_section(const diagnosis::Diagnosis& d, const std::string& file);
+/// @param file  that was written  @param remainder  what could be learned beside it, or null
+[[nodiscard]] output::Section gain_section(const diagnosis::Diagnosis& d, const std::string& file,
+                                           const studies::Remainder* remainder);
 [[nodiscard]] output::Section data_section(const diagnosis::Diagnosis& d);
 /// The numbers that the fit moved most, for people.
 [[nodiscard]] output::Table moved_most(const diagnosis::Diagnosis& d);

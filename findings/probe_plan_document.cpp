@@ -198,11 +198,16 @@ Table points_table(const studies::PointChoice& choice) {
 
 std::vector<std::string> what_next(const ProbePlan& plan) {
   std::vector<std::string> sentences;
+  if (plan.touch)
+    sentences.emplace_back(
+        "The programs in control/ touch the gauge and add the offset (docs/how-to/touch_cycle.md). Those for Siemens and "
+        "Heidenhain have not been run on a control: run them with the gauge taken away first.");
   if (!plan.best || plan.best->probings.empty()) return sentences;
   const ProbePlace& first = plan.job.places[plan.best->probings.front().place];
   sentences.push_back(
       fmt::format("Probe {} first {:.0f} min from the start of the job ({}, part {}), then as the table says.", plan.target,
                   first.time_s / 60.0, place_words(first), first.part));
+  if (plan.touch) return sentences;
   sentences.emplace_back(
       "Give each value to `follow` (docs/how-to/probing.md). If it says that the errors of this run are larger than usual, "
       "probe earlier than planned.");
@@ -235,6 +240,12 @@ output::Document document_of(const ProbePlan& plan, const scenarios::Scenario& s
   add(numbers, named_value("probe_lag_s", "lag of the probe", plan.axis.probe.lag_s, "s", output::significant(3)));
   add(numbers, named_value("probing_min", "time of a probing", plan.axis.probing_s / 60.0, "min", output::significant(3)));
   add(numbers, named_value("known_at_start", "the drift counts from the start of the job", plan.axis.is_known_at_start));
+  if (plan.touch) {
+    add(numbers, named_value("first_step_um", "touch cycle: largest first offset", plan.touch->first_um, "um",
+                             output::significant(4)));
+    add(numbers, named_value("step_um", "touch cycle: largest step", plan.touch->step_um, "um", output::significant(4)));
+    add(numbers, named_value("most_um", "touch cycle: largest offset", plan.touch->most_um, "um", output::significant(4)));
+  }
   add(numbers, probings_table(plan));
   add(numbers, probe_curve_table(plan));
   if (plan.points) add(numbers, points_table(*plan.points));

@@ -41,9 +41,9 @@ ShownScale shown_scale(const studies::MeasuredTwin& m, const MeasuredChannel& ch
 }
 
 std::optional<ShownChannel> clearest_channel(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                                             const diagnosis::Prediction* after, const std::vector<std::string>& only,
-                                             const std::vector<ShownChannel>& but) {
-  if (!has_all_runs(m, d.as_written) || (after && !has_all_runs(m, *after))) return std::nullopt;
+                                             const diagnosis::Prediction& before, const diagnosis::Prediction* after,
+                                             const std::vector<std::string>& only) {
+  if (!has_all_runs(m, before) || (after && !has_all_runs(m, *after))) return std::nullopt;
   const auto is_named = [&](const std::string& name) { return std::find(only.begin(), only.end(), name) != only.end(); };
   bool has_named = false;
   for (const auto& run : m.runs) {
@@ -54,22 +54,24 @@ std::optional<ShownChannel> clearest_channel(const studies::MeasuredTwin& m, con
   for (std::size_t r = 0; r < m.runs.size(); ++r) {
     for (std::size_t k = 0; k < m.runs[r].channels.size(); ++k) {
       const MeasuredChannel& c = m.runs[r].channels[k];
-      const ShownChannel at{r, k};
       const auto noise = d.noise.find(c.name);
       if (noise == d.noise.end() || (has_named && !is_named(c.name))) continue;
-      if (!has_named && std::find(but.begin(), but.end(), at) != but.end()) continue;
-      const double gained = squares_of(c, d.as_written[r], noise->second.total()) -
+      const double gained = squares_of(c, before[r], noise->second.total()) -
                             (after ? squares_of(c, (*after)[r], noise->second.total()) : 0.0);
       if (best && !(gained > most)) continue;
       most = gained;
-      best = at;
+      best = {r, k};
     }
   }
   return best;
 }
 
-output::Plot channel_figure(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, const ShownChannel& shown,
-                            const diagnosis::Prediction* after, const std::string& words) {
+std::string channel_words(const studies::MeasuredTwin& m, const ShownChannel& shown) {
+  return fmt::format("{} in {}", m.runs[shown.run].channels[shown.channel].name, m.runs[shown.run].name);
+}
+
+output::Plot channel_figure(const studies::MeasuredTwin& m, const ShownChannel& shown, std::string title,
+                            const std::vector<ShownCurve>& simulated) {
   const diagnosis::MeasuredRun& run = m.runs[shown.run];
   const MeasuredChannel& c = run.channels[shown.channel];
   const ShownScale as = shown_scale(m, c);
@@ -80,15 +82,14 @@ output::Plot channel_figure(const studies::MeasuredTwin& m, const diagnosis::Dia
     for (Eigen::Index i = 0; i < values.size(); ++i) series.y.push_back(as.zero + as.scale * values[i]);
     return series;
   };
-  output::Plot plot{.title = fmt::format("{} in {}: measured and simulated", c.name, run.name),
+  output::Plot plot{.title = std::move(title),
                     .x_label = "time [min]",
                     .y_label = fmt::format("{} [{}]", c.name, output::shown_unit(as.unit)),
-                    .series = {curve("measured", c.value),
-                               curve("simulated with the scenario as it is", d.as_written[shown.run].row(c.output))},
+                    .series = {curve("measured", c.value)},
                     .marks = section_marks(run.cyclogram)};
   plot.series.front().style = Series::Style::kPoints;
-  plot.series.front().width = 1.2;
-  if (after) plot.series.push_back(curve(words, (*after)[shown.run].row(c.output)));
+  plot.series.front().width = 2.6;  // wider than the curves, which are drawn over it
+  for (const ShownCurve& s : simulated) plot.series.push_back(curve(s.label, (*s.readings)[shown.run].row(c.output)));
   return plot;
 }
 

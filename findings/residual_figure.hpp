@@ -13,21 +13,25 @@ struct ShownChannel {
 };
 
 /// The channel that shows best what a change of the model does: in which the squares of measured minus simulated, in units
-/// of the noise, fall most from the scenario as written to `after`. Without `after`, the channel that is missed most.
-/// @param after   readings of all runs, or null
-/// @param only    names of channels to choose from, where a record has one of them; empty: all
-/// @param but     channels that are shown already
-/// @return none if the records have no other channel
+/// of the noise, fall most from `before` to `after`. Without `after`, the channel that is missed most.
+/// @param before, after  readings of all runs; `after` may be null
+/// @param only  names of channels to choose from, where a record has one of them; empty: all
+/// @return none if there are no such readings
 [[nodiscard]] std::optional<ShownChannel> clearest_channel(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
+                                                           const diagnosis::Prediction& before,
                                                            const diagnosis::Prediction* after,
-                                                           const std::vector<std::string>& only = {},
-                                                           const std::vector<ShownChannel>& but = {});
+                                                           const std::vector<std::string>& only = {});
 
-/// @param after  readings of all runs, or null
-/// @param words  the name of these in the legend
-[[nodiscard]] output::Plot channel_figure(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d,
-                                          const ShownChannel& shown, const diagnosis::Prediction* after,
-                                          const std::string& words);
+/// A simulated curve: its name in the legend, and readings of all runs.
+struct ShownCurve {
+  std::string label;
+  const diagnosis::Prediction* readings = nullptr;
+};
+/// "nose in monday", for titles.
+[[nodiscard]] std::string channel_words(const studies::MeasuredTwin& m, const ShownChannel& shown);
+/// The channel as measured, and simulated curves of it.
+[[nodiscard]] output::Plot channel_figure(const studies::MeasuredTwin& m, const ShownChannel& shown, std::string title,
+                                          const std::vector<ShownCurve>& simulated);
 
 /// Readings of a channel in the units of pages: degC, um or urad.
 struct ShownScale {

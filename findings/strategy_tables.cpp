@@ -383,7 +383,9 @@ Table probe_faults_table(const StrategyMatrix& m) {
     if (good.n == 0.0) continue;
     const auto shown = [](const std::optional<int>& at) { return at ? Datum(*at) : Datum(); };
     // of the first probing: four deviations of a residual of which nothing is known
-    const double bound_um = PROBE_REFUSED * std::hypot(s.fitted.residual->deviation_um, s.fitted.probe.noise_um);
+    ProbeFeedback unprobed(*s.fitted.residual, s.fitted.probe, false);
+    unprobed.row(0.0, 0.0, 0.0);
+    const double bound_um = PROBE_REFUSED * std::hypot(unprobed.deviation_um(), s.fitted.probe.noise_um);
     table.rows.push_back(
         {s.fitted.name, good.peak_um, stuck.peak_um, shown(stuck_at), biased.peak_um, shown(biased_at), bound_um});
   }

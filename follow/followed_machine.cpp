@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "base/quantity.hpp"
+#include "effects/learned.hpp"
+#include "effects/recorded_column.hpp"
 #include "follow/state_json.hpp"
 #include "machine/simulated_run.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -29,8 +31,12 @@ void require_streamable(const MachineModel& machine) {
     };
     if (effects::changes_drive(e))
       refuse("changes what the record of the drive or of the ambient says, by what comes before or after a row");
-    if (effects::changes_readings(e) && e.place_kind != effects::Place::kSensor)
+    const bool is_learned = e.kind->key == "learned";
+    if (effects::changes_readings(e) && e.place_kind != effects::Place::kSensor && !is_learned)
       refuse("changes what instruments say of displacements, by all that came before");
+    if (is_learned && e.place_kind != effects::Place::kSensor && e.words.at("follows") == "column" &&
+        !effects::is_drive_channel(e.words.at("column")))
+      refuse(fmt::format("follows the recorded column '{}'", e.words.at("column")));
     if (e.kind->key == "heat_source" && e.has("fades")) refuse("fades from the start of a record");
     if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));
     if (e.from_s > 0.0 || e.until_s < effects::kNever_s) refuse("holds for a part of a run");
@@ -76,6 +82,7 @@ class FollowedMachine final : public Followed {
       const auto at = std::find(outputs.name.begin(), outputs.name.end(), d.name);
       if (at == outputs.name.end()) throw std::logic_error("a displacement is no output of the model");
       output_.push_back(at - outputs.name.begin());
+      learned_.emplace_back(machine_.effects, d.name);
       axes_.push_back({.name = d.name, .interval_um = {}, .deviation_um = {}});
       stages_.emplace_back(settings);
     }
@@ -102,12 +109,13 @@ class FollowedMachine final : public Followed {
     const double now_s = run_->run().readings.time_s.back();
     if (is_first) {
       begin_state();
+      const Eigen::VectorXd first = observed();
+      for (std::size_t a = 0; a < axes_.size(); ++a) learned_[a].begin(first[output_[a]], run_->ambient_K());
     } else {
       advance(now_s, ambient_before_K);
     }
-    const Eigen::VectorXd outputs = observed();
+    show_predicted();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-      axes_[a].predicted_um = 1e6 * outputs[output_[a]];
       if (is_too_fast_) {
         stages_[a].wait(step_s);  // the correction is held, and fades if that lasts
       } else {
@@ -144,9 +152,17 @@ class FollowedMachine final : public Followed {
     Json stages = Json::array();
     for (const OutputStage& stage : stages_) stages.push_back(state_json(stage.state()));
     if (!has_begun()) return {{"run", nullptr}, {"stages", std::move(stages)}};
-    return {{"run", state_json(run_->state())},
-            {"state", numbers_json({state_.begin(), state_.end()})},
-            {"stages", std::move(stages)}};
+    Json j = {{"run", state_json(run_->state())},
+              {"state", numbers_json({state_.begin(), state_.end()})},
+              {"stages", std::move(stages)}};
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      if (learned_[a].empty()) continue;
+      const effects::LearnedStream::State& learned = learned_[a].state();
+      std::vector<double> numbers = {learned.first, learned.first_ambient_K};
+      numbers.insert(numbers.end(), learned.x.begin(), learned.x.end());
+      j[kLearned][axes_[a].name] = numbers_json(numbers);
+    }
+    return j;
   }
   void recall(const Json& j) override {
     const Json stages = output::list(j, "stages");
@@ -157,11 +173,24 @@ class FollowedMachine final : public Followed {
     run_->recall(live_run_of(run));
     const std::vector<double> state = numbers_of(j, "state");
     state_ = Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
-    const Eigen::VectorXd outputs = observed();
-    for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].predicted_um = 1e6 * outputs[output_[a]];
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      if (learned_[a].empty()) continue;
+      const std::vector<double> numbers = numbers_of(output::value<Json>(j, kLearned), axes_[a].name.c_str());
+      if (numbers.size() < 2) throw InputError(fmt::format("key `learned` has too few numbers of '{}'", axes_[a].name));
+      learned_[a].recall({numbers[0], numbers[1], {numbers.begin() + 2, numbers.end()}});
+    }
+    show_predicted();
   }
 
  private:
+  static constexpr const char* kLearned = "learned";  // key of the state
+
+  void show_predicted() {
+    const Eigen::VectorXd outputs = observed();
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      axes_[a].predicted_um = 1e6 * learned_[a].with_learned(outputs[output_[a]], run_->drive());
+  }
+
   /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
     const double warmer_K = scenarios::warmer_start_K(machine_, TimeSeries{{0.0}, {run_->ambient_K()}});
@@ -171,6 +200,8 @@ class FollowedMachine final : public Followed {
   /// Advances the state over the last step. The time before it is one section, which is not computed again.
   void advance(double now_s, double ambient_before_K) {
     const double before_s = now_s - run_->run().cyclogram.sections.back().duration_s;
+    for (effects::LearnedStream& learned : learned_)
+      learned.advance(now_s - before_s, run_->drive_before(), ambient_before_K, run_->ambient_K());
     Cyclogram cyclogram{.name = "stream", .sections = {}};
     if (before_s > 0.0) cyclogram.sections.push_back({before_s, run_->drive_before()});
     cyclogram.sections.push_back({now_s - before_s, run_->drive_before()});
@@ -206,7 +237,8 @@ class FollowedMachine final : public Followed {
   std::optional<solver::Propagator> exact_;  // for a linear reduced model
   std::optional<LiveRows> run_;
   Eigen::VectorXd state_;
-  std::vector<Eigen::Index> output_;  // index of each axis
+  std::vector<Eigen::Index> output_;             // index of each axis
+  std::vector<effects::LearnedStream> learned_;  // of each axis
   std::vector<AxisCorrection> axes_;
   std::vector<OutputStage> stages_;
 };

@@ -12,7 +12,7 @@ namespace driftwright::follow {
 
 /// Opens the model that predictions run on.
 /// @throws InputError  for a machine that a stream does not describe fully: thermostats, effects that change recorded
-/// drives or displacements, laws of recorded columns, laws that hold for a part of a run
+/// drives or displacements (`learned` excepted), laws of recorded columns, laws that hold for a part of a run
 [[nodiscard]] std::unique_ptr<Followed> followed_machine(const scenarios::Scenario& scenario, const FollowOptions& options,
                                                          const Listener& listener);
 

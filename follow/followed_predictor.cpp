@@ -212,7 +212,12 @@ class FollowedPredictor final : public Followed {
         throw InputError("it was saved without a watch; add --no-watch, or begin a new state");
       watch_->recall(numbers_of(j, "watch"));
     }
-    if (probing_) probing_->recall(numbers_of(j, "probing"));  // a state of the same columns has it
+    if (probing_) {  // a state of the same columns has it
+      const std::vector<double> memory = numbers_of(j, "probing");
+      if (memory.size() != probing_->memory().size())
+        throw InputError("its probings were saved by another version of the program");
+      probing_->recall(memory);
+    }
     trust_ = output::finite(j, "trust");
     axis_.predicted_um = output::finite(j, "predicted_um");
     if (probing_) predicted_um_ = probing_->predicted_um();

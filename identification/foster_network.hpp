@@ -64,6 +64,12 @@ struct NetworkBody {
 };
 [[nodiscard]] std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient, double rise_K);
 
+/// A fold as a mask over the rows of all records, one after the other.
+struct HiddenRows {
+  std::string kind;
+  std::vector<bool> hidden;
+};
+
 /// The linear least squares problem of records and a structure.
 class FosterProblem {
  public:

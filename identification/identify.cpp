@@ -232,31 +232,6 @@ Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, con
   return {std::move(now), std::move(gains)};
 }
 
-/// Geometric mean of a channel's errors over the folds of a kind; NaN without a judged row.
-double missed(const Loss& loss, const std::vector<HiddenRows>& folds, const std::string& kind, std::size_t channel) {
-  double logs = 0.0, there = 0.0;
-  for (std::size_t f = 0; f < folds.size(); ++f) {
-    const double log = std::log(loss.rms(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(channel)));
-    if (folds[f].kind != kind || !std::isfinite(log)) continue;
-    logs += log;
-    there += 1.0;
-  }
-  return there > 0.0 ? std::exp(logs / there) : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Geometric mean over the kinds.
-double missed(const Loss& loss, const std::vector<HiddenRows>& folds, std::span<const KeptOutKind> kinds,
-              std::size_t channel) {
-  double sum = 0.0, n = 0.0;
-  for (const KeptOutKind& kind : kinds) {
-    const double of_kind = missed(loss, folds, kind.kind, channel);
-    if (!std::isfinite(of_kind)) continue;
-    sum += std::log(of_kind);
-    n += 1.0;
-  }
-  return n > 0.0 ? std::exp(sum / n) : std::numeric_limits<double>::quiet_NaN();
-}
-
 Identified network_of(std::span<const Record> records, const RecordRoles& roles, std::span<const Record> simulated,
                       const Listener& listener) {
   Identified result;
@@ -279,6 +254,7 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
   for (const HiddenRows& f : jury.folds()) {
     if (kinds.insert(f.kind).second) result.kinds.push_back({f.kind, {}});
   }
+  result.folds = jury.folds();
   const std::optional<Loss> scenario = result.is_extension ? std::optional(jury.of_scenario(now)) : std::nullopt;
   const bool is_extended = scenario && surely_above(missed_more(*scenario, now.loss)) > 0.0;
   for (std::size_t c = 0; c < problem.channels().size(); ++c) {
@@ -292,7 +268,7 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
       channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0;
       const ChannelFit alone = problem.scenario_alone(normal, c, now.smoothness[c]);
       channel.scenario_simulated = problem.rms(all, c, alone, false);
-      channel.scenario_kept_out = missed(*scenario, jury.folds(), result.kinds, c);
+      channel.scenario_kept_out = missed(scenario->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
       if (!channel.is_extended) {
         channel.fit = alone;
         loss = &*scenario;
@@ -303,8 +279,9 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     channel.ledger = ledger(problem, c, channel.fit);
     channel.swing = deviation(problem.measured(c));
     channel.missed_own = problem.rms(all, c, channel.fit);
-    for (KeptOutKind& kind : result.kinds) kind.rms.push_back(missed(*loss, jury.folds(), kind.kind, c));
-    channel.missed_kept_out = missed(*loss, jury.folds(), result.kinds, c);
+    for (KeptOutKind& kind : result.kinds)
+      kind.rms.push_back(missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds(), kind.kind));
+    channel.missed_kept_out = missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
     channel.missed_simulated = problem.rms(all, c, channel.fit, false);
     if (channel.fit.standard_deviation.size() > 0)
       channel.fit.standard_deviation *= channel.missed_own * std::sqrt(rows_as_one(std::span(&channel.misses, 1)));
@@ -314,6 +291,30 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
 }
 
 }  // namespace
+
+double missed(const Eigen::VectorXd& rms, std::span<const HiddenRows> folds, const std::string& kind) {
+  double logs = 0.0, there = 0.0;
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    const double log = std::log(rms[static_cast<Eigen::Index>(f)]);
+    if (folds[f].kind != kind || !std::isfinite(log)) continue;
+    logs += log;
+    there += 1.0;
+  }
+  return there > 0.0 ? std::exp(logs / there) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double missed(const Eigen::VectorXd& rms, std::span<const HiddenRows> folds) {
+  std::set<std::string> kinds;
+  for (const HiddenRows& f : folds) kinds.insert(f.kind);
+  double sum = 0.0, n = 0.0;
+  for (const std::string& kind : kinds) {
+    const double of_kind = missed(rms, folds, kind);
+    if (!std::isfinite(of_kind)) continue;
+    sum += std::log(of_kind);
+    n += 1.0;
+  }
+  return n > 0.0 ? std::exp(sum / n) : std::numeric_limits<double>::quiet_NaN();
+}
 
 Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener) {
   return network_of(records, record_roles(records, hints), {}, listener);

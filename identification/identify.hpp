@@ -2,6 +2,8 @@
 // Chooses the network with the best predictions: the laws of its heat, the number of bodies, the smoothness, judged on
 // kept-out rows.
 
+#include <cmath>
+
 #include "base/listener.hpp"
 #include "base/mean_error.hpp"
 #include "identification/foster_network.hpp"
@@ -14,6 +16,11 @@ struct KeptOutKind {
   std::string kind;         ///< same as compensation::Fold::kind
   std::vector<double> rms;  ///< per channel; geometric mean over the folds of the kind; NaN without a judged row
 };
+
+/// Geometric mean of errors over the folds of a kind; NaN without a judged row. @param rms  one per fold
+[[nodiscard]] double missed(const Eigen::VectorXd& rms, std::span<const HiddenRows> folds, const std::string& kind);
+/// The same over the kinds.
+[[nodiscard]] double missed(const Eigen::VectorXd& rms, std::span<const HiddenRows> folds);
 
 /// A body of the chosen network.
 struct IdentifiedBody {
@@ -35,9 +42,11 @@ struct IdentifiedChannel {
   Eigen::VectorXd misses;        ///< residuals of all rows; NaN without a reading
   std::vector<Driver> ledger;    ///< the driver with the largest share first
   // If a scenario is extended:
-  bool is_extended = false;         ///< false: the scenario is unchanged for this channel
-  double scenario_simulated = 0.0;  ///< error of the unchanged scenario on the same rows, as missed_simulated
-  double scenario_kept_out = 0.0;   ///< the same on kept-out rows, as missed_kept_out
+  bool is_extended = false;                   ///< false: the scenario is unchanged for this channel
+  double scenario_simulated = 0.0;            ///< error of the unchanged scenario on the same rows, as missed_simulated
+  double scenario_kept_out = 0.0;             ///< the same on kept-out rows, as missed_kept_out
+  double regression_kept_out = std::nan("");  ///< error of a plain regression on the kept-out rows, fitted without them
+  double noise = std::nan("");                ///< of the readings
   MeanError missed_more_without;  ///< logarithm of the ratio of errors, unchanged over extended scenario, on kept-out folds
 };
 
@@ -49,6 +58,7 @@ struct Identified {
   std::vector<IdentifiedBody> bodies;       ///< in the order of bodies_of()
   std::vector<IdentifiedChannel> channels;  ///< thermometers, then displacements
   std::vector<KeptOutKind> kinds;
+  std::vector<HiddenRows> folds;    ///< over stored rows
   std::vector<std::size_t> blocks;  ///< for each record, this many rows are averaged into one in stored rows
   bool is_extension = false;        ///< it extends a scenario; the bodies are those that the scenario lacks
 };

@@ -6,12 +6,6 @@
 
 namespace driftwright::identification {
 
-/// A fold as a mask over the rows of all records, one after the other.
-struct HiddenRows {
-  std::string kind;
-  std::vector<bool> hidden;
-};
-
 /// Errors on kept-out rows: one row per fold, one column per channel.
 struct Loss {
   Eigen::MatrixXd log_rms, rms;  ///< log_rms: logarithm, with a lower limit; rms: without

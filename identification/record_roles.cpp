@@ -20,7 +20,6 @@
 namespace driftwright::identification {
 namespace {
 
-constexpr std::size_t kFewestRows = 30;  // per record
 constexpr double kAmbientFollows = 0.5;  // share of its squares that drives explain; an ambient has less
 constexpr double kHole = 10.0;           // in usual time steps
 constexpr std::array kDriveUnits = {"W", "V", "percent", "W_m2", "1", "mm_min", "count"};

@@ -9,6 +9,8 @@
 
 namespace driftwright::identification {
 
+inline constexpr std::size_t kFewestRows = 30;  ///< of a record from which something is learned
+
 /// The role of each column.
 struct RecordRoles {
   std::string speed;                       ///< channel in rpm, or ""

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.hpp"
+
 namespace driftwright::mesh {
 namespace {
 
@@ -40,11 +42,11 @@ FittedCylinder kasa_circle(const Eigen::Matrix3Xd& points_m, const Eigen::Vector
     a.row(i) << 2.0 * x, 2.0 * y, 1.0;
     b[i] = x * x + y * y;
   }
-  const Eigen::Vector3d s = a.colPivHouseholderQr().solve(b);
+  const Eigen::Vector3d s = dense::least_squares(a, b);
   return {mean_m + s[0] * u + s[1] * v, axis, std::sqrt(std::max(0.0, s[2] + s[0] * s[0] + s[1] * s[1])), 0.0};
 }
 
-FittedCylinder moved(const FittedCylinder& c, const Across& at, const Eigen::Matrix<double, 5, 1>& step) {
+FittedCylinder moved(const FittedCylinder& c, const Across& at, const Eigen::VectorXd& step) {
   return {c.through_m + step[0] * at.u + step[1] * at.v, (c.axis + step[2] * at.u + step[3] * at.v).normalized(),
           c.radius_m + step[4], 0.0};
 }
@@ -54,15 +56,15 @@ FittedCylinder improved(FittedCylinder c, const Eigen::Matrix3Xd& points_m, doub
   Eigen::VectorXd r = distances_m(c, points_m);
   for (int step = 0; step < kMostFitSteps && damping < 1e6; ++step) {
     const Across at = across(c.axis);
-    Eigen::Matrix<double, Eigen::Dynamic, 5> jacobian(points_m.cols(), 5);
+    Eigen::MatrixXd jacobian(points_m.cols(), 5);
     for (Eigen::Index i = 0; i < points_m.cols(); ++i) {
       const Eigen::Vector3d d = points_m.col(i) - c.through_m, e = radial_of(c, points_m.col(i)).normalized();
       const double along_m = c.axis.dot(d), eu = e.dot(at.u), ev = e.dot(at.v);
       jacobian.row(i) << -eu, -ev, -along_m * eu / scale_m, -along_m * ev / scale_m, -1.0;
     }
-    Eigen::Matrix<double, 5, 5> normal = jacobian.transpose() * jacobian;
+    Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     normal.diagonal().array() += damping * normal.diagonal().maxCoeff();
-    Eigen::Matrix<double, 5, 1> by = normal.ldlt().solve(-jacobian.transpose() * r);
+    Eigen::VectorXd by = dense::solve_symmetric(normal, -jacobian.transpose() * r);
     by[2] /= scale_m;
     by[3] /= scale_m;
     const FittedCylinder next = moved(c, at, by);
@@ -88,7 +90,7 @@ std::optional<FittedCylinder> fit_cylinder(const Eigen::Matrix3Xd& points_m, con
   const Eigen::Vector3d mean_m = points_m.rowwise().mean();
   const double scale_m = (points_m.colwise() - mean_m).colwise().norm().maxCoeff();
   if (!(scale_m > 0.0)) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(normals * normals.transpose());
+  const dense::SymmetricEigen spread(normals * normals.transpose());
   std::optional<FittedCylinder> best;
   for (int k : {0, 1}) {  // where the normals turn little, two directions have few of them
     const FittedCylinder start = kasa_circle(points_m, mean_m, spread.eigenvectors().col(k));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "effects/law_steps.hpp"
+
 namespace driftwright::solver {
 namespace {
 
@@ -38,6 +40,7 @@ Law sum_of(const std::vector<const Law*>& laws) {
     }
     return total;
   };
+  sum.steps = effects::sum_of_steps(laws);
   return sum;
 }
 

@@ -17,12 +17,25 @@ const schema::Map& holder_of_columns() {
 
 }  // namespace
 
+std::map<std::string, std::string> units_of_columns(const std::vector<std::string>& said) {
+  std::map<std::string, std::string> units;
+  for (const std::string& text : said) {
+    const std::size_t at = text.rfind('=');
+    if (at == std::string::npos || at == 0 || at + 1 == text.size())
+      throw InputError("--unit " + text +
+                       ": a column and its unit are required, such as t1=degC; t1=none leaves the column out");
+    units[text.substr(0, at)] = text.substr(at + 1);
+  }
+  return units;
+}
+
 LoggerImport import_logger(const std::string& path, const std::string& by, const GuessHints& hints) {
   LoggerImport import;
   if (by.empty()) {
     GuessedColumns guessed = guess_columns(path, hints);
     import.map = std::move(guessed.map);
     import.guesses = std::move(guessed.guesses);
+    import.without_unit = std::move(guessed.without_unit);
   } else {
     import.read_by = by;
     import.map = scenarios::read_columns(ConfigMap::read_file(by).described_by(holder_of_columns()).map("columns"));

@@ -12,10 +12,14 @@ namespace driftwright::studies {
 
 struct LoggerImport {
   ColumnMap map;
-  std::string read_by;               ///< file with the map; empty: the map was guessed
-  std::vector<std::string> guesses;  ///< assumptions about what the file does not say
+  std::vector<std::string> without_unit;  ///< as GuessedColumns
+  std::string read_by;                    ///< file with the map; empty: the map was guessed
+  std::vector<std::string> guesses;       ///< assumptions about what the file does not say
   ReadRecord read;
 };
+
+/// Units of columns, from "t1=degC". @throws InputError  for a text without a column or a unit
+[[nodiscard]] std::map<std::string, std::string> units_of_columns(const std::vector<std::string>& said);
 
 /// @param by  YAML with the key `columns`: a scenario, or a file that an import has written; empty: the map is guessed
 /// @throws InputError  as read_columns(), guess_columns() and read_record()

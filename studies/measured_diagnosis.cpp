@@ -15,6 +15,7 @@
 #include "diagnosis/happening.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/output_error.hpp"
+#include "diagnosis/written_numbers.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -32,12 +33,17 @@ void require_candidates(const MeasuredTwin& m, const std::vector<std::string>& w
   }
 }
 
-/// The causes of a diagnosis as changes of the scenario.
-std::vector<StatedChange> stated_causes(const Diagnosis& d) {
+/// A number's interval, in the comment of its line, which has the number itself.
+std::string interval_comment(const std::string& name, const diagnosis::Estimate& e) {
+  return fmt::format("{} 95 %: {}{}", name, diagnosis::interval_text(e),
+                     e.unit == "1" || e.unit.empty() ? "" : " " + e.unit);
+}
+
+/// The causes of a diagnosis as changes of the scenario. @param x  as diagnosis::written_x() gives it
+std::vector<StatedChange> stated_causes(const Diagnosis& d, const Eigen::VectorXd& x) {
   std::vector<StatedChange> changes;
   if (!d.written.keeps_numbers) return changes;
-  const diagnosis::Fit& fit = d.written.fit;
-  Eigen::Index first = fit.x.size();
+  Eigen::Index first = x.size();
   for (const diagnosis::Claim& c : d.written.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
   for (std::size_t c = 0; c < d.written.hypothesis.size(); ++c) {
     const diagnosis::Claim& claim = d.written.hypothesis[c];
@@ -45,50 +51,53 @@ std::vector<StatedChange> stated_causes(const Diagnosis& d) {
     const diagnosis::Cause& cause = d.causes.at(d.written.causes.at(c));
     std::vector<std::string> numbers = {
         fmt::format("{}, evidence gain {:.1f} nats", diagnosis::word(cause.standing), cause.log_evidence_gain)};
-    for (const diagnosis::Estimate& p : cause.parameters)
-      numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, diagnosis::value_text(p), diagnosis::interval_text(p)));
+    for (const diagnosis::Estimate& p : cause.parameters) {
+      if (p.low != p.high) numbers.push_back(interval_comment(p.name, p));
+    }
     if (d.written.causes_alone) numbers.emplace_back("written as fitted beside the scenario's own numbers as they are");
-    changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
-                       fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
-                       diagnosis::change_of(claim, fit.x.segment(first, n))});
+    const std::string name = diagnosis::cause_name(cause);
+    changes.push_back(
+        {name, fmt::format("{}: {}", name, fmt::join(numbers, "; ")), diagnosis::change_of(claim, x.segment(first, n))});
     first += n;
   }
   return changes;
 }
 
-/// The scenario's own numbers as fitted, as changes of the scenario.
+/// The scenario's own numbers as fitted, as changes of the scenario. @param x  as diagnosis::written_x() gives it
 /// @param causes_only  only numbers that moved so far that the diagnosis reports them as causes
-std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only) {
-  constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
+std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only, const Eigen::VectorXd& x) {
   std::vector<StatedChange> changes;
   if (!d.written.keeps_numbers || d.written.causes_alone) return changes;
   const std::vector<diagnosis::Knob>& knobs = d.scatter;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);
     const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
-    if (std::abs(e.deviation) < kUnmoved || (causes_only && !is_cause)) continue;
-    changes.push_back({e.name,
-                       fmt::format("{} {}, 95 %: {}", knobs[i].name, diagnosis::value_text(e), diagnosis::interval_text(e)),
-                       [knob = knobs[i], value = e.value](diagnosis::TwinState& state) { knob.set(state, value); },
-                       is_cause ? "diagnosis" : "calibration"});
+    const double at = x[static_cast<Eigen::Index>(i)];
+    if (at == 0.0 || (causes_only && !is_cause)) continue;  // at 0 the scenario's value is as good as the fitted one
+    changes.push_back(
+        {e.name, interval_comment(knobs[i].name, e),
+         [knob = knobs[i], value = knobs[i].value(at)](diagnosis::TwinState& state) { knob.set(state, value); },
+         is_cause ? "diagnosis" : "calibration"});
   }
   return changes;
 }
 
 void add_records(std::vector<std::string>& head, const MeasuredTwin& m) {
-  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + clean_name(run.path));
+  for (const diagnosis::MeasuredRun& run : m.runs) head.push_back("  measured: " + name_in_comments(run.path));
 }
 
 std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosis& d, bool causes_only) {
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
-                                               clean_name(m.scenario.path), diagnosis::word(d.verdict))};
+                                               name_in_comments(m.scenario.path), diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
-    head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
-                               c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
-                               c.parameters.empty() ? "" : ": ", diagnosis::parameters_text(c)));
+    head.push_back(fmt::format("  {}{}: {} ({}){}{}", diagnosis::word(c.standing), c.is_written ? "" : ", not written in",
+                               diagnosis::cause_name(c), c.law, c.parameters.empty() ? "" : ": ",
+                               diagnosis::parameters_text(c)));
     if (!c.is_written) head.push_back(fmt::format("    not written, since {}", c.why_not_written));
-    for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
+    for (const diagnosis::Cause& a : c.alternatives) head.push_back("    or " + diagnosis::cause_name(a));
   }
+  const bool names_lines = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& c) { return !c.own.empty(); });
+  if (names_lines) head.push_back(fmt::format("  lines are those of {}", name_in_comments(m.scenario.path)));
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   if (const std::string taken_up = diagnosis::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
   add_records(head, m);
@@ -103,7 +112,7 @@ std::vector<std::string> head_of_diagnosis(const MeasuredTwin& m, const Diagnosi
 
 std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagnosis& d) {
   std::vector<std::string> head = {
-      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(m.scenario.path))};
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", name_in_comments(m.scenario.path))};
   add_records(head, m);
   if (const std::string warning = diagnosis::calibration_warning(d); !warning.empty()) head.push_back("WARNING: " + warning);
   head.emplace_back("");
@@ -133,8 +142,9 @@ MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& reques
       diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, how, listener), {}};
   listener.begin("writing");
   if (request.causes_only) diagnosis::leave_numbers(result.found);
-  std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only);  // the fit's order
-  for (StatedChange& cause : stated_causes(result.found)) changes.push_back(std::move(cause));
+  const Eigen::VectorXd x = diagnosis::written_x(result.found, request.causes_only);
+  std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only, x);  // the fit's order
+  for (StatedChange& cause : stated_causes(result.found, x)) changes.push_back(std::move(cause));
   result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file);
   predict_as_written(m, result.written, result.found);
   return result;
@@ -144,7 +154,8 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
   MeasuredDiagnosis result{
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
   listener.begin("writing");
-  result.written = written_scenario(m, stated_numbers(result.found, false), head_of_calibration(m, result.found), file);
+  const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
+  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file);
   predict_as_written(m, result.written, result.found);
   return result;
 }

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
-
 #include "base/errors.hpp"
 #include "base/yaml_text.hpp"
-#include "scenarios/reader/absolute_paths.hpp"
+#include "scenarios/reader/moved_paths.hpp"
 
 namespace driftwright::studies {
 
@@ -19,9 +17,9 @@ std::string sensor_entry(const std::string& name, const Spot& spot) {
 }
 
 std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries,
-                         const std::vector<std::string>& head) {
+                         const std::vector<std::string>& head, const std::filesystem::path& folder) {
   YamlText yaml(scenario_path);
-  const auto left = scenarios::give_absolute_paths(yaml, std::filesystem::absolute(scenario_path).parent_path());
+  const auto left = scenarios::move_paths(yaml, std::filesystem::absolute(scenario_path).parent_path(), folder);
   if (!left.empty())
     throw InputError(
         left.front()->where(""),

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/normal.hpp"
+#include "compensation/control/probe_feedback.h"
 
 namespace driftwright::studies {
 namespace {
@@ -197,6 +198,22 @@ const ProbeSequence* ProbePlan::equal() const {
   if (!best) return nullptr;
   const auto row = std::find_if(curve.begin(), curve.end(), [&](const auto& r) { return r.n == best->probings.size(); });
   return row == curve.end() ? nullptr : &row->equal;
+}
+
+TouchBounds touch_bounds(const ProbePlan& plan) {
+  const double s_um = plan.axis.process.deviation_um * plan.axis.factor / kNormal95;
+  const double s2 = s_um * s_um, r2 = plan.axis.probe.noise_um * plan.axis.probe.noise_um;
+  const std::vector<PlannedProbing>& probings = plan.shown().probings;
+  double longest_s = 0.0, next_s = plan.job.work.back().until_s;
+  for (auto p = probings.rbegin(); p != probings.rend(); ++p) {
+    const double at_s = plan.job.places[p->place].time_s;
+    longest_s = std::max(longest_s, next_s - at_s);
+    next_s = at_s;
+  }
+  if (probings.empty()) longest_s = next_s;
+  longest_s += plan.axis.probing_s;
+  const double changed = -std::expm1(-longest_s / plan.axis.process.time_constant_s);
+  return {PROBE_REFUSED * std::sqrt(s2 + r2), PROBE_REFUSED * std::sqrt(2.0 * r2 + 2.0 * s2 * changed)};
 }
 
 ProbePlan plan_probings(ProbeJob job, const ProbedAxis& axis, double tolerance_um, double kept_free) {

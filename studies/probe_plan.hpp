@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/frames/axis_programs.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "studies/probe_points.hpp"
 
@@ -135,7 +136,8 @@ struct ProbePlan {
   std::optional<ProbeSequence> nearest = {};
   /// For 0, 1, 2 ... probings, as far as more help, and without `best` up to `nearest`; every so many for more than 40.
   std::vector<ProbeCurveRow> curve = {};
-  std::optional<PointChoice> points = {};  ///< what to probe, where records with errors of points were given
+  std::optional<compensation::AxisProgram> touch = {};  ///< the touch cycle that was written for controls
+  std::optional<PointChoice> points = {};               ///< what to probe, where records with errors of points were given
 
   [[nodiscard]] double allowed_um() const { return tolerance_um * (1.0 - kept_free); }
   /// `best`, or `nearest` without it.
@@ -143,6 +145,17 @@ struct ProbePlan {
   /// Probings at equal intervals, as many as in `best`; null without it.
   [[nodiscard]] const ProbeSequence* equal() const;
 };
+
+/// How far a touch may be from the offset in force, for a program that holds the last probing.
+struct TouchBounds {
+  double first_um = 0.0;  ///< where none is in force
+  double step_um = 0.0;   ///< later
+};
+
+/// PROBE_REFUSED deviations, as `follow` has it. Deviation s of the process (widened as the plan's interval is), noise r:
+/// the first touch is sqrt(s² + r²) from 0. Two touches h apart differ by sqrt(2 r² + 2 s² (1 - exp(-h / T))); h is the
+/// longest time of the plan from one probing to the next or to the end of the work, with the time of a probing.
+[[nodiscard]] TouchBounds touch_bounds(const ProbePlan& plan);
 
 /// @param tolerance_um  > 0 @param kept_free  0 to below 1
 [[nodiscard]] ProbePlan plan_probings(ProbeJob job, const ProbedAxis& axis, double tolerance_um, double kept_free);

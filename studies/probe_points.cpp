@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "studies/table_study.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -30,7 +31,16 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& all, std::span<const std::size_t>
   return part;
 }
 
-/// Covariance of the points that count after a probing.
+/// The coordinates of points.
+Points coordinates_of(const PointErrors& errors, std::span<const std::size_t> points) {
+  Points list;
+  for (std::size_t point : points) {
+    for (std::size_t k = 0; k < errors.n_coordinates; ++k) list.push_back(point * errors.n_coordinates + k);
+  }
+  return list;
+}
+
+/// Covariance of the coordinates that count after a probing of others.
 Eigen::MatrixXd after_probing(const PointErrors& errors, const Points& probed, std::span<const std::size_t> counting,
                               double noise_um) {
   const Eigen::MatrixXd& c = errors.covariance_um2;
@@ -99,15 +109,39 @@ PointErrors point_errors(std::span<const Record> records) {
   return errors;
 }
 
+PointErrors table_point_errors(const scenarios::Scenario& scenario, std::span<const Record> records) {
+  PointErrors errors{.names = {}, .covariance_um2 = {}, .n_coordinates = 3};
+  for (const scenarios::TableRing& ring : scenario.table->rings) errors.names.push_back(ring.name);
+  const std::size_t n_judged = static_cast<std::size_t>(scenario.table->n_x) * static_cast<std::size_t>(scenario.table->n_y);
+  for (std::size_t p = 1; p <= n_judged; ++p) errors.names.push_back(fmt::format("table_{}", p));
+  const auto n = static_cast<Eigen::Index>(errors.n_coordinates * errors.names.size());
+  errors.covariance_um2 = Eigen::MatrixXd::Zero(n, n);
+  for (const Record& record : records) {
+    const TableCourse course = table_course(scenario, record);
+    for (std::size_t row = 0; row < course.rings_m.size(); ++row) {
+      Eigen::VectorXd um(n);
+      um << 1e6 * course.rings_m[row].reshaped(), 1e6 * course.table.error_m[row].reshaped();
+      if (!um.allFinite()) continue;
+      errors.covariance_um2 += um * um.transpose();
+      ++errors.n_rows;
+    }
+  }
+  if (errors.n_rows == 0)
+    throw InputError(fmt::format("{}: no row has a value of each point of the table", records.front().source));
+  errors.covariance_um2 /= static_cast<double>(errors.n_rows);
+  return errors;
+}
+
 PointSet judged_points(const PointErrors& errors, Points probed, std::span<const std::size_t> counting, double noise_um) {
   std::sort(probed.begin(), probed.end());
-  const Eigen::MatrixXd before = part_of(errors.covariance_um2, counting, counting);
-  const Eigen::MatrixXd after = after_probing(errors, probed, counting, noise_um);
+  const Points what_counts = coordinates_of(errors, counting);
+  const Eigen::MatrixXd before = part_of(errors.covariance_um2, what_counts, what_counts);
+  const Eigen::MatrixXd after = after_probing(errors, coordinates_of(errors, probed), what_counts, noise_um);
   PointSet set{.points = std::move(probed)};
   Eigen::Index worst = 0;
   set.left_um = std::sqrt(std::max(0.0, after.diagonal().mean()));
   set.worst_um = std::sqrt(std::max(0.0, after.diagonal().maxCoeff(&worst)));
-  set.worst = counting[static_cast<std::size_t>(worst)];
+  set.worst = counting[static_cast<std::size_t>(worst) / errors.n_coordinates];
   const double floor_um2 = std::max(kLeastVariance * before.diagonal().maxCoeff(), 1e-12);
   set.nats = half_log_determinant(before, floor_um2) - half_log_determinant(after, floor_um2);
   return set;

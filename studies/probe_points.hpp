@@ -17,19 +17,25 @@
 #include <vector>
 
 #include "base/record.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::studies {
 
 /// Errors at points, in um.
 struct PointErrors {
   std::vector<std::string> names;
-  Eigen::MatrixXd covariance_um2;  ///< points x points, about zero
+  Eigen::MatrixXd covariance_um2;  ///< of the coordinates, about zero: those of the first point, of the second ...
   std::size_t n_rows = 0;          ///< rows with a value at each point
+  std::size_t n_coordinates = 1;   ///< of a point; one probing reads all of them
 };
 
 /// From the displacements (um) that all records have; each row counts as much.
 /// @throws InputError  for fewer than two common displacements, and without a row that has all of them
 [[nodiscard]] PointErrors point_errors(std::span<const Record> records);
+
+/// Of a table's rings, then of its judged points "table_1", "table_2" ..., each in x, y and z: the errors that a frame
+/// corrects (studies/table_study.hpp). @throws InputError  for a channel of the table that a record does not have
+[[nodiscard]] PointErrors table_point_errors(const scenarios::Scenario& scenario, std::span<const Record> records);
 
 enum class PointCriterion { kMeanVariance, kDeterminant };  ///< A- and D-optimal
 
@@ -61,7 +67,8 @@ struct PointChoice {
   std::vector<PointSet> by_variance = {}, by_determinant = {};  ///< of 1, 2 ... points
 };
 
-/// @param probable, counting  names of points; empty: all @param n_most  largest number of points
+/// @param probable, counting  names of points; empty: all
+/// @param n_most  largest number of points
 /// @throws InputError  for a name that the records do not share
 [[nodiscard]] PointChoice choose_points(PointErrors errors, const std::vector<std::string>& probable,
                                         const std::vector<std::string>& counting, std::size_t n_most, double noise_um);

@@ -10,6 +10,7 @@
 #include "base/quantity.hpp"
 #include "base/record_channel.hpp"
 #include "base/shown_units.hpp"
+#include "diagnosis/plain_regression.hpp"
 
 namespace driftwright::studies {
 namespace {
@@ -56,6 +57,52 @@ bool changes(const std::vector<Record>& records, const std::string& channel) {
 bool may_drive(const std::string& unit) {
   static const char* const kUnits[] = {"W", "V", "percent", "count", "1", "W_m2", "mm_min"};
   return std::find(std::begin(kUnits), std::end(kUnits), unit) != std::end(kUnits);
+}
+
+/// The runs without the readings that a fold hides, and those alone.
+struct Halves {
+  std::vector<diagnosis::MeasuredRun> fitted, hidden;
+  std::vector<char> is_whole;  ///< of each run: all its rows are hidden
+};
+
+Halves halves(const std::vector<diagnosis::MeasuredRun>& runs, const std::vector<std::size_t>& blocks,
+              const std::vector<bool>& hidden) {
+  Halves h{runs, runs, std::vector<char>(runs.size(), 1)};
+  std::size_t first = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::size_t n = runs[r].time_s.size(), n_blocks = n / blocks[r];
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool is_stored = i / blocks[r] < n_blocks;  // rows after the last whole block are in no fold
+      const bool is_hidden = is_stored && hidden[first + i / blocks[r]];
+      if (is_stored && !is_hidden) h.is_whole[r] = 0;
+      for (std::size_t c = 0; c < runs[r].channels.size(); ++c) {
+        const auto at = static_cast<Eigen::Index>(i);
+        (is_hidden ? h.fitted : h.hidden)[r].channels[c].value[at] = std::nan("");
+        if (!is_stored) h.fitted[r].channels[c].value[at] = std::nan("");
+      }
+    }
+    first += n_blocks;
+  }
+  return h;
+}
+
+/// Root mean square of a channel's hidden readings less a prediction, in the units of a record.
+double missed_of(const Halves& h, const diagnosis::Prediction& predicted, const std::string& channel) {
+  double squares = 0.0, n = 0.0;
+  for (std::size_t r = 0; r < h.hidden.size(); ++r) {
+    const diagnosis::MeasuredChannel* c = h.hidden[r].find(channel);
+    if (!c) continue;
+    const bool counts_from_start = c->unit != "K" || c->recorded_unit == "K";
+    const Eigen::VectorXd less = (c->unit == "K" ? 1.0 : 1e6) * (c->value - predicted[r].row(c->output).transpose());
+    double zero = h.is_whole[r] && counts_from_start ? std::nan("") : 0.0;
+    for (double v : less) {
+      if (!std::isfinite(v)) continue;
+      if (std::isnan(zero)) zero = v;
+      squares += (v - zero) * (v - zero);
+      n += 1.0;
+    }
+  }
+  return n > 0.0 ? std::sqrt(squares / n) : std::nan("");
 }
 
 }  // namespace
@@ -130,6 +177,57 @@ double missed(const BesideRecords& beside, const std::string& channel) {
     }
   }
   return n > 0.0 ? std::sqrt(squares / n) : std::nan("");
+}
+
+LearnedBeside learn_beside(const MeasuredTwin& m, const diagnosis::TwinState& state, const Listener& listener) {
+  const diagnosis::Prediction read = read_of(m, state);
+  LearnedBeside learned{beside(m.runs, read, m.twin->reference_K()), {}};
+  identification::Identified& network = learned.network;
+  network = identification::extend(learned.records.measured, learned.records.roles, learned.records.simulated, listener);
+  listener.begin("a plain regression of the same rows");
+  const auto n_outputs = static_cast<int>(read.front().rows());
+  const auto n_folds = static_cast<Eigen::Index>(network.folds.size());
+  Eigen::MatrixXd rms(n_folds, static_cast<Eigen::Index>(network.channels.size()));
+  for (Eigen::Index f = 0; f < n_folds; ++f) {
+    listener.share(static_cast<double>(f) / static_cast<double>(n_folds));
+    const Halves h = halves(m.runs, network.blocks, network.folds[static_cast<std::size_t>(f)].hidden);
+    const diagnosis::Prediction predicted =
+        diagnosis::plain_regression(m.runs, h.fitted, n_outputs, diagnosis::Regressors::kDrive);
+    for (Eigen::Index c = 0; c < rms.cols(); ++c)
+      rms(f, c) = missed_of(h, predicted, network.channels[static_cast<std::size_t>(c)].name);
+  }
+  const auto noise = diagnosis::estimate_noise(m.runs, read, m.how.floor);
+  for (std::size_t c = 0; c < network.channels.size(); ++c) {
+    identification::IdentifiedChannel& channel = network.channels[c];
+    channel.regression_kept_out = identification::missed(rms.col(static_cast<Eigen::Index>(c)), network.folds);
+    channel.noise = (is_temperature_unit(channel.unit) ? 1.0 : 1e6) * noise.at(channel.name).total();
+  }
+  return learned;
+}
+
+Remainder remainder_of(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const WrittenScenario& written,
+                       const Listener& listener) {
+  Remainder remainder;
+  const bool is_too_short = std::any_of(m.runs.begin(), m.runs.end(), [](const diagnosis::MeasuredRun& run) {
+    return run.time_s.size() < identification::kFewestRows;
+  });
+  if (!d.ended_at.empty() || listener.wants_end()) {
+    remainder.why_not = "The diagnosis was ended before.";
+  } else if (d.verdict == diagnosis::Verdict::kInsufficientData || is_too_short) {
+    remainder.why_not = "The readings are too few.";
+  } else if (!written.is_readable()) {
+    remainder.why_not = "The file cannot be read back.";
+  }
+  if (!remainder.why_not.empty()) return remainder;
+  try {
+    const LearnedBeside learned = learn_beside(m, written.effects, listener);
+    for (const identification::IdentifiedChannel& c : learned.network.channels)
+      remainder.channels.push_back({c.name, c.unit == "um" || c.unit == "urad" ? c.unit : "K", c.scenario_kept_out,
+                                    c.missed_kept_out, c.regression_kept_out, c.noise, c.is_extended});
+  } catch (const InputError& e) {
+    remainder.why_not = fmt::format("{}.", e.what());
+  }
+  return remainder;
 }
 
 std::vector<effects::Effect> learned_effects(const identification::Identified& extension) {

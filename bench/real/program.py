@@ -60,14 +60,15 @@ def why(log):
     return next((line for line in reversed(lines) if "error" in line), lines[-1] if lines else "no output")
 
 
-def by_strategies(case, program, folder):
-    """The strategy that `validate` chose by the training runs, its RMS with fail-safe and without, the share of rows that its interval contains [%], and all strategies' RMS."""
+def by_strategies(case, program, folder, options=()):
+    """The strategy that `validate` chose by the training runs, its RMS with fail-safe and without, the share of rows that its interval contains [%], and all strategies' RMS;
+    `validation` of the summary. options: further ones of `validate`."""
     train, test = training_and_judged(case, folder)
     scenario = os.path.join(folder, "study.yaml")
     with open(scenario, "w", encoding="utf-8") as out:
         out.write(f"name: scoreboard\nstudy:\n  target: {records.base(case.target)}\n  sensors_to_choose: {max(1, min(case.sensors_to_choose, len(case.thermometers)))}\n"
                   f"  count_from_start: {str(case.from_start).lower()}\n  tolerance: 10 um\n")
-    arguments = [program, "validate", scenario, "-o", os.path.join(folder, "validate")]
+    arguments = [program, "validate", scenario, "-o", os.path.join(folder, "validate"), *options]
     for file in train:
         arguments += ["--train", file]
     for file in test:
@@ -93,7 +94,8 @@ def by_strategies(case, program, folder):
     mine = next((s for s in strategies if s["name"] == chosen and chosen in left), None)
     if not mine:
         return {"why": "no strategy was chosen: too little can be left out of the training runs"}
-    return {"name": chosen, "guarded": left[chosen][0], "bare": left[chosen][1], "covered": mine["covered_percent"], "all": {name: of[0] for name, of in left.items()}}
+    return {"name": chosen, "guarded": left[chosen][0], "bare": left[chosen][1], "covered": mine["covered_percent"], "all": {name: of[0] for name, of in left.items()},
+            "validation": validation}
 
 
 def converted(case, source, path):

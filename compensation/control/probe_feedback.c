@@ -25,47 +25,112 @@ int probe_is_valid(const probe_process* process) {
          probe_is_above(process->noise_um, 0.0) && process->lag_s >= 0.0 && isfinite(process->lag_s);
 }
 
+/* Factors of s and T, and the first weight of each filter of a size: exp(-(ln factor)^2 / (pi^2 / 4)) over the sum of all. */
+static const double kProbeSizes[PROBE_SIZES] = {1.0 / 3.0, 1.0, 3.0, 9.0}, kProbeTimes[PROBE_TIMES] = {0.25, 1.0, 4.0, 16.0};
+static const double kProbeFirst[PROBE_SIZES] = {0.0647425292435455, 0.10559133412205336, 0.0647425292435455,
+                                                0.014923607390855635};
+
+static double probe_size_um(const probe_process* process, int k) {
+  return kProbeSizes[k / PROBE_TIMES] * process->deviation_um;
+}
+
+static void probe_begin(const probe_process* process, probe_estimate* bank) {
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double size_um = probe_size_um(process, k);
+    bank[k].residual_um2 = process->is_known_at_start ? 0.0 : size_um * size_um;
+    bank[k].weight = kProbeFirst[k / PROBE_TIMES];
+  }
+}
+
+static void probe_wait(const probe_process* process, probe_estimate* bank, double step_s) {
+  const double same = exp(-step_s / PROBE_REDRAW_S);
+  double kept[PROBE_TIMES];
+  int k;
+  for (k = 0; k < PROBE_TIMES; ++k) kept[k] = exp(-step_s / (kProbeTimes[k] * process->time_constant_s));
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double by = kept[k % PROBE_TIMES], size_um = probe_size_um(process, k);
+    bank[k].residual_um *= by;
+    bank[k].both_um2 *= by;
+    bank[k].residual_um2 = by * by * bank[k].residual_um2 + (1.0 - by * by) * size_um * size_um;
+    bank[k].weight = same * bank[k].weight + (1.0 - same) * kProbeFirst[k / PROBE_TIMES];
+  }
+}
+
+static double probe_sum_um(const probe_estimate* e) {
+  return e->level_um + e->residual_um;
+}
+
 static double probe_sum_um2(const probe_estimate* e) {
   return e->level_um2 + 2.0 * e->both_um2 + e->residual_um2;
 }
 
-static void probe_wait(const probe_process* process, probe_estimate* e, double step_s) {
-  const double kept = exp(-step_s / process->time_constant_s);
-  e->residual_um *= kept;
-  e->both_um2 *= kept;
-  e->residual_um2 = kept * kept * e->residual_um2 + (1.0 - kept * kept) * process->deviation_um * process->deviation_um;
+/* Mean of the bank, and the variance of the mixture about it. */
+static double probe_mean_um(const probe_estimate* bank) {
+  double um = 0.0;
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) um += bank[k].weight * probe_sum_um(&bank[k]);
+  return um;
 }
 
-double probe_scale(const probe_state* state) {
-  const double scale = (1.0 + state->sum_squares) / (1.0 + state->n_taken);
-  return scale > 1.0 ? scale : 1.0;
-}
-
-/* Variance of what a probing reads minus what is expected, before scaling. */
-static double probe_off_um2(const probe_process* process, const probe_estimate* e) {
-  return probe_sum_um2(e) + process->noise_um * process->noise_um;
+static double probe_mixture_um2(const probe_estimate* bank) {
+  const double mean_um = probe_mean_um(bank);
+  double um2 = 0.0;
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double apart_um = probe_sum_um(&bank[k]) - mean_um;
+    um2 += bank[k].weight * (probe_sum_um2(&bank[k]) + apart_um * apart_um);
+  }
+  return um2 > 0.0 ? um2 : 0.0;
 }
 
 /* By how much a probing is off what is expected, and by how much it may be. */
-static double probe_off_um(const probe_process* process, const probe_state* state, const probe_estimate* e, double read_um,
-                           double* bound_um) {
-  *bound_um = PROBE_REFUSED * sqrt(probe_scale(state) * probe_off_um2(process, e));
-  return read_um - (e->level_um + e->residual_um);
+static double probe_off_um(const probe_process* process, const probe_estimate* bank, double read_um, double* bound_um) {
+  *bound_um = PROBE_REFUSED * sqrt(probe_mixture_um2(bank) + process->noise_um * process->noise_um);
+  return read_um - probe_mean_um(bank);
 }
 
-static void probe_learn_scale(const probe_process* process, probe_state* state, const probe_estimate* e, double off_um) {
-  const double square = off_um * off_um / probe_off_um2(process, e);
-  state->sum_squares += square < PROBE_REFUSED * PROBE_REFUSED ? square : PROBE_REFUSED * PROBE_REFUSED;
+/* See probe_state. */
+static double probe_loss(const probe_process* process, const probe_estimate* bank, double read_um, double bound_um) {
+  const double most = 0.5 * PROBE_REFUSED * PROBE_REFUSED + log(bound_um / PROBE_REFUSED);
+  double density = 0.0, loss;
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double um2 = probe_sum_um2(&bank[k]) + process->noise_um * process->noise_um;
+    const double off_um = read_um - probe_sum_um(&bank[k]);
+    density += bank[k].weight * exp(-0.5 * off_um * off_um / um2) / sqrt(um2);
+  }
+  loss = -log(density); /* infinite where all exponentials vanish */
+  return loss < most ? loss : most;
 }
 
-static void probe_learn(const probe_process* process, probe_estimate* e, double off_um) {
-  const double level = e->level_um2 + e->both_um2, residual = e->both_um2 + e->residual_um2;
-  const double all = level + residual + process->noise_um * process->noise_um;
-  e->level_um += level / all * off_um;
-  e->residual_um += residual / all * off_um;
-  e->level_um2 -= level * level / all;
-  e->both_um2 -= level * residual / all;
-  e->residual_um2 -= residual * residual / all;
+/* Weights by the density of what was read. */
+static void probe_weigh(const probe_process* process, probe_estimate* bank, double read_um) {
+  double logarithm[PROBE_BANK], most = 0.0, sum = 0.0; /* most: so that no exponential vanishes for all */
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) {
+    const double um2 = probe_sum_um2(&bank[k]) + process->noise_um * process->noise_um;
+    const double off_um = read_um - probe_sum_um(&bank[k]);
+    logarithm[k] = -0.5 * (off_um * off_um / um2 + log(um2));
+    if (k == 0 || logarithm[k] > most) most = logarithm[k];
+  }
+  for (k = 0; k < PROBE_BANK; ++k) sum += bank[k].weight *= exp(logarithm[k] - most);
+  for (k = 0; k < PROBE_BANK; ++k) bank[k].weight /= sum;
+}
+
+static void probe_learn(const probe_process* process, probe_estimate* bank, double read_um) {
+  int k;
+  probe_weigh(process, bank, read_um);
+  for (k = 0; k < PROBE_BANK; ++k) {
+    probe_estimate* e = &bank[k];
+    const double level = e->level_um2 + e->both_um2, residual = e->both_um2 + e->residual_um2;
+    const double all = level + residual + process->noise_um * process->noise_um, off_um = read_um - probe_sum_um(e);
+    e->level_um += level / all * off_um;
+    e->residual_um += residual / all * off_um;
+    e->level_um2 -= level * level / all;
+    e->both_um2 -= level * residual / all;
+    e->residual_um2 -= residual * residual / all;
+  }
 }
 
 /* The level has jumped: what is read is its first and only news, whatever it was before. */
@@ -75,6 +140,11 @@ static void probe_begin_jumped(const probe_process* process, probe_estimate* e, 
   e->both_um2 = -e->residual_um2;
 }
 
+static void probe_copy(probe_estimate* to, const probe_estimate* from) {
+  int k;
+  for (k = 0; k < PROBE_BANK; ++k) to[k] = from[k];
+}
+
 void probe_row(const probe_process* process, probe_state* state, double prediction_um, double correction_um, double dt_s) {
   const double spacing_s = process->lag_s / (PROBE_PASTS - 2);
   double before_s, after_s;
@@ -82,15 +152,15 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
   if (!probe_is_valid(process)) return;
   if (!state->has_begun) {
     state->has_begun = 1;
-    state->now.residual_um2 = process->is_known_at_start ? 0.0 : process->deviation_um * process->deviation_um;
+    probe_begin(process, state->now);
   } else {
     before_s = state->time_s - process->lag_s;
     state->time_s += probe_time_s(dt_s);
     after_s = state->time_s - process->lag_s;
     if (before_s < 0.0) before_s = 0.0; /* a probing of times before the first row is not taken */
     if (after_s > before_s) {
-      probe_wait(process, &state->now, after_s - before_s);
-      probe_wait(process, &state->jumped, after_s - before_s);
+      probe_wait(process, state->now, after_s - before_s);
+      if (state->has_jumped) probe_wait(process, state->jumped, after_s - before_s);
     }
   }
   /* The newest of the past rows is this one. It is written over while it is near the one before it: then the ring reaches back over
@@ -142,33 +212,36 @@ static int probe_accept(probe_state* state, int verdict) {
 
 int probe_residual(const probe_process* process, probe_state* state, double residual_um) {
   double jumped_bound_um;
-  int is_third = 0;
+  int is_third = 0, k;
   state->off_um = 0.0;
   state->bound_um = 0.0;
   if (!probe_is_valid(process) || !isfinite(residual_um)) return probe_refuse(state, PROBE_NO_NUMBER);
   if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
-  state->off_um = probe_off_um(process, state, &state->now, residual_um, &state->bound_um);
+  state->off_um = probe_off_um(process, state->now, residual_um, &state->bound_um);
+  state->loss = probe_loss(process, state->now, residual_um, state->bound_um);
   if (fabs(state->off_um) <= state->bound_um) {
-    probe_learn_scale(process, state, &state->now, state->off_um);
-    probe_learn(process, &state->now, state->off_um);
+    probe_learn(process, state->now, residual_um);
     return probe_accept(state, PROBE_TAKEN);
   }
   if (state->has_jumped) {
-    const double off_um = probe_off_um(process, state, &state->jumped, residual_um, &jumped_bound_um);
-    is_third = state->n_in_row + 1 >= PROBE_IN_ROW;
-    if (is_third || fabs(off_um) <= jumped_bound_um) probe_learn_scale(process, state, &state->jumped, off_um);
+    const double off_um = probe_off_um(process, state->jumped, residual_um, &jumped_bound_um);
     if (fabs(off_um) <= jumped_bound_um) {
-      state->now = state->jumped;
-      probe_learn(process, &state->now, off_um);
+      probe_copy(state->now, state->jumped);
+      probe_learn(process, state->now, residual_um);
       return probe_accept(state, PROBE_JUMP);
     }
+    is_third = state->n_in_row + 1 >= PROBE_IN_ROW;
+    if (is_third) {
+      probe_weigh(process, state->jumped, residual_um);
+      for (k = 0; k < PROBE_BANK; ++k) state->now[k].weight = state->jumped[k].weight;
+    }
   }
-  state->jumped = state->now;
-  probe_begin_jumped(process, &state->jumped, residual_um);
+  probe_copy(state->jumped, state->now);
+  for (k = 0; k < PROBE_BANK; ++k) probe_begin_jumped(process, &state->jumped[k], residual_um);
   state->has_jumped = 1;
   ++state->n_in_row;
   if (is_third) {
-    state->now = state->jumped;
+    probe_copy(state->now, state->jumped);
     return probe_accept(state, PROBE_JUMP);
   }
   return probe_refuse(state, PROBE_UNLIKELY);
@@ -184,28 +257,25 @@ int probe_left(const probe_process* process, probe_state* state, double left_um)
   return probe_residual(process, state, left_um + at.correction_um - at.prediction_um);
 }
 
-/* The estimate ahead_s from now. */
-static probe_estimate probe_ahead(const probe_process* process, const probe_state* state, double ahead_s) {
-  probe_estimate e = state->now;
+/* The bank ahead_s from now. */
+static void probe_ahead(const probe_process* process, const probe_state* state, double ahead_s, probe_estimate* bank) {
   const double since_s = state->time_s < process->lag_s ? state->time_s : process->lag_s; /* of the estimate */
-  probe_wait(process, &e, since_s + probe_time_s(ahead_s));
-  return e;
+  probe_copy(bank, state->now);
+  probe_wait(process, bank, since_s + probe_time_s(ahead_s));
 }
 
 double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s) {
-  probe_estimate e;
+  probe_estimate bank[PROBE_BANK];
   if (!state->has_begun || !probe_is_valid(process)) return 0.0;
-  e = probe_ahead(process, state, ahead_s);
-  return e.level_um + e.residual_um;
+  probe_ahead(process, state, ahead_s, bank);
+  return probe_mean_um(bank);
 }
 
 double probe_deviation_um(const probe_process* process, const probe_state* state, double ahead_s) {
-  probe_estimate e;
-  double um2;
+  probe_estimate bank[PROBE_BANK];
   if (!state->has_begun || !probe_is_valid(process)) return 0.0;
-  e = probe_ahead(process, state, ahead_s);
-  um2 = probe_scale(state) * probe_sum_um2(&e);
-  return um2 > 0.0 ? sqrt(um2) : 0.0;
+  probe_ahead(process, state, ahead_s, bank);
+  return sqrt(probe_mixture_um2(bank));
 }
 
 double probe_corrected_um(const probe_process* process, const probe_state* state, double prediction_um, double lowest_um,

@@ -1,37 +1,39 @@
-/* What a correction leaves, estimated from probings: a touch probe measures now and then by how much an axis is off, and the
- * correction takes up what it found and forgets it as fast as errors of the model come and go. This very file is compiled
- * into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and keeps all
- * that it remembers in a struct of the caller, which is all zero before the first row.
+/* What a correction leaves, estimated from probings: a touch probe measures now and then by how much an axis is off, and
+ * the correction takes up what it found and forgets it as fast as errors of the model come and go. This very file is
+ * compiled into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and
+ * keeps all that it remembers in a struct of the caller, which is all zero before the first row.
  *
  *   drift = prediction + level + r,   dr = -r / T dt + s sqrt(2 / T) dW   (Ornstein-Uhlenbeck: deviation s, time constant T)
  *   a probing reads level + r as they were lag_s ago, + noise
  *
- * Errors of this run may be larger than those of the runs of the fit. All variances, s^2 and noise^2 among them, are
- * therefore those above times a scale, known beforehand as well as from one probing (a unit of information), and from the n
- * that were taken:
+ * Errors of this run may be smaller or larger, faster or slower than those of the runs of the fit. So PROBE_BANK filters of
+ * Kalman run side by side, with s times 1/3, 1, 3, 9 and T times 1/4, 1, 4, 16, and answer by their mean with weights w:
  *
- *   scale = max(1, (1 + sum min(u^2, PROBE_REFUSED^2)) / (1 + n)),   u = (read - expected) / deviation of it before scaling
+ *   before a probing   w ~ exp(-(ln factor of s)^2 / (pi^2 / 4))
+ *   in time            dw / dt = (w before a probing - w) / PROBE_REDRAW_S
+ *   a probing          w ~ w exp(-u^2 / 2) / d,   u = (read - expected) / d,   d: deviation of read - expected
  *
- * the conjugate estimate of a variance, but never below that of the fit: a calm axis says nothing of the next cut. What is
- * expected after given probings does not depend on the scale; the interval and the bound beyond which a probing is refused
- * do.
+ * w is then the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a day, on
+ * average: a calm axis does not say that the next cut is calm. pi / sqrt(8) is the deviation of the logarithm of |x| of a
+ * normal x: the size is known beforehand as well as from one value. Time constants are equally likely beforehand. The
+ * deviation of the answer is that of the mixture: before the first probing it is 2.75 times s.
  *
- * `level` is 0 until a jump. The filter is the one of Kalman for these two numbers. It runs lag_s late, and its answer is
+ * `level` is 0 until a jump. Each filter is the one of Kalman for level and r. It runs lag_s late, and its answer is
  * continued over lag_s: with a constant lag that is exact.
  *
  * A probing that is further than PROBE_REFUSED deviations from what is expected is refused (a chip, another tool). From
- * there a second filter starts, for which the level has jumped to a value of which nothing was known before. The next
- * probing that the first filter refuses is taken if the second one expects it: two probings that agree with each other,
- * within PROBE_REFUSED deviations sqrt(scale (2 noise^2 + 2 s^2 (1 - exp(-h / T)))) at a distance h in time, are a jump of
- * the axis. It does not fade, as a collision or another clamping does not; later probings correct it. A probing that the
- * first filter expects ends the second one. The third refused probing in a row is taken as a jump, too, though it agrees
- * with none: errors are then larger than was known, and it adds to the scale. If no more than 4 % of all probings are bad,
- * three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 / 16,000).
+ * there a second bank starts, for which the level has jumped to a value of which nothing was known before. The next probing
+ * that the first bank refuses is taken if the second one expects it: two probings that agree with each other, within
+ * PROBE_REFUSED times the deviation of their difference (of each filter sqrt(2 noise^2 + 2 s^2 (1 - exp(-h / T))) at a
+ * distance h in time), are a jump of the axis. It does not fade, as a collision or another clamping does not; later
+ * probings correct it. A probing that the first bank expects ends the second one. The third refused probing in a row is
+ * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it. If no
+ * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 /
+ * 16,000).
  *
- * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a jump as a second filter:
- * Willsky & Jones, IEEE Trans. Autom. Control 21 (1976) 108; a variance that is learned with the state: West & Harrison,
- * Bayesian Forecasting
- * and Dynamic Models (1997), 4.5; a unit of information: Kass & Wasserman, J. Am. Stat. Assoc. 90 (1995) 928. */
+ * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a bank of filters with their
+ * probabilities: Magill, IEEE Trans. Autom. Control 10 (1965) 434; a jump as a second filter: Willsky & Jones, IEEE Trans.
+ * Autom. Control 21 (1976) 108; a unit of information: Kass & Wasserman, J. Am. Stat. Assoc. 90 (1995) 928. */
 #ifndef DRIFTWRIGHT_PROBE_FEEDBACK_H
 #define DRIFTWRIGHT_PROBE_FEEDBACK_H
 
@@ -42,6 +44,10 @@ extern "C" {
 #define PROBE_REFUSED 4.0 /* deviations; one of 16,000 good probings is refused at most */
 #define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
+#define PROBE_SIZES 4     /* factors of s: 3^-1 to 3^2 */
+#define PROBE_TIMES 4     /* factors of T: 4^-1 to 4^2 */
+#define PROBE_BANK (PROBE_SIZES * PROBE_TIMES)
+#define PROBE_REDRAW_S 86400.0 /* a day */
 
 typedef struct {
   double deviation_um;    /* s of the residual; > 0 */
@@ -61,10 +67,11 @@ enum {
   PROBE_NO_NUMBER = 5  /* refused: the probe missed, or a setting is out of its range */
 };
 
-/* Mean and covariance of level and r; covariances before scaling. */
+/* Of one filter of the bank: mean and covariance of level and r, and its weight; the sum of the weights is 1. */
 typedef struct {
   double level_um, residual_um;
   double level_um2, both_um2, residual_um2;
+  double weight;
 } probe_estimate;
 
 /* A row that has passed. */
@@ -74,17 +81,18 @@ typedef struct {
 
 /* What is remembered; all zero before the first row. */
 typedef struct {
-  int has_begun, has_jumped;  /* has_jumped: `jumped` is in use */
-  int n_pasts, newest;        /* of the ring `past` */
-  double time_s;              /* since the first row */
-  probe_estimate now, jumped; /* lag_s ago */
+  int has_begun, has_jumped;                          /* has_jumped: `jumped` is in use */
+  int n_pasts, newest;                                /* of the ring `past` */
+  double time_s;                                      /* since the first row */
+  probe_estimate now[PROBE_BANK], jumped[PROBE_BANK]; /* lag_s ago */
   probe_past past[PROBE_PASTS];
   int verdict;     /* of the last probing, one of PROBE_... */
   double off_um;   /* of the last probing: read minus expected */
   double bound_um; /* by which they may differ */
+  double loss;     /* -ln of the density of the reading times sqrt(2 pi) um; of a normal one it is u^2 / 2 + ln d, of which
+                      PROBE_REFUSED deviations count at most, so that a chip does not decide among predictors */
   int n_taken, n_refused, n_jumps;
-  int n_in_row;       /* unlikely ones since the last that was taken */
-  double sum_squares; /* of their u */
+  int n_in_row; /* unlikely ones since the last that was taken */
 } probe_state;
 
 /* Whether all settings are in their ranges. Otherwise the residual stays 0, and all probings are refused. */
@@ -98,9 +106,6 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
 int probe_residual(const probe_process* process, probe_state* state, double residual_um); /* drift minus prediction */
 int probe_drift(const probe_process* process, probe_state* state, double drift_um); /* of the axis without correction */
 int probe_left(const probe_process* process, probe_state* state, double left_um);   /* of the corrected axis */
-
-/* Factor of all variances that probings of this run have taught; at least 1. */
-double probe_scale(const probe_state* state);
 
 /* The residual that is expected after ahead_s [um], and its deviation, 1 sigma [um]. */
 double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s);

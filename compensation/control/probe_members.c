@@ -16,12 +16,6 @@ double probe_member_um(double correction_um, double trust, double blend_um, doub
   return correction_um + trust * (member_um - blend_um);
 }
 
-double probe_loss(const probe_state* state) {
-  const double deviation_um = state->bound_um / PROBE_REFUSED, u = state->off_um / deviation_um;
-  const double square = u * u < PROBE_REFUSED * PROBE_REFUSED ? u * u : PROBE_REFUSED * PROBE_REFUSED;
-  return 0.5 * square + log(deviation_um);
-}
-
 double probe_share(int n, double time_s) {
   const double others = n - 1.0;
   return n < 2 ? 0.0 : others / n * (1.0 - exp(-n * time_s / (others * PROBE_SHIFT_S)));
@@ -73,7 +67,7 @@ static int probe_members_read(const probe_process* processes, probe_member* memb
     if (verdict == PROBE_TOO_EARLY || verdict == PROBE_NO_NUMBER)
       is_heard = 0;
     else
-      members[i].loss = probe_loss(state);
+      members[i].loss = state->loss;
   }
   if (is_heard) (void)probe_weights_learn(members, n);
   if (members[leading].probing.verdict >= PROBE_UNLIKELY) ++members[0].n_refused;

@@ -5,9 +5,9 @@
  *
  *   correction = sum_i w_i (prediction_i + expected residual_i)
  *   in time    dw_i / dt = (1 - w_i - (n - 1) w_i) / ((n - 1) S)     the best member changes once in S = PROBE_SHIFT_S on average
- *   a probing  w_i ~ w_i exp(-l_i),   l_i = min(u_i^2, PROBE_REFUSED^2) / 2 + ln d_i,   u_i = (read - expected_i) / d_i
+ *   a probing  w_i ~ w_i exp(-l_i),   l_i = -ln of the density of the reading by the filters of member i (probe_feedback.h)
  *
- * with the expected deviation d_i of a reading by member i: l is the negative logarithm of its normal density, of which four
+ * Of a normal density l is u^2 / 2 + ln d, with the expected deviation d and u = (read - expected) / d, of which four
  * deviations count at most, so that a chip does not decide. w_i is then the probability that member i is the best one. Over a time h
  * the share a = (n - 1) / n (1 - exp(-n h / ((n - 1) S))) of each weight goes to the others in equal parts. After T losses the
  * sum of -ln(sum_i w_i exp(-l_i)) exceeds that along any sequence of members with k changes by at most
@@ -59,8 +59,7 @@ const probe_state* probe_leading(const probe_member* members, int n);
 double probe_members_expected_um(const probe_process* processes, const probe_member* members, int n, double ahead_s);
 double probe_members_deviation_um(const probe_process* processes, const probe_member* members, int n, double ahead_s);
 
-/* The parts of the weights. l of a member after a probing that was neither too early nor no number. */
-double probe_loss(const probe_state* state);
+/* The parts of the weights. */
 double probe_share(int n, double time_s);
 void probe_weights_share(probe_member* members, int n, double share);
 /* By `loss` of each; returns -ln(sum_i w_i exp(-l_i)). */

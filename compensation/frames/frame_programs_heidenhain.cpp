@@ -5,6 +5,67 @@
 #include "compensation/frames/frame_programs_text.hpp"
 
 namespace driftwright::compensation {
+namespace {
+
+std::string numbered(const std::vector<std::string>& blocks) {
+  std::string text;
+  for (std::size_t i = 0; i < blocks.size(); ++i) text += fmt::format("{} {}\n", i, blocks[i]);
+  return text;
+}
+
+}  // namespace
+
+// The cycle measures against the datum shift in force, which FN 18 reads: their sum does not depend on it. The change is
+// added to this shift, so that one of the program's own stays.
+std::vector<ProgramFile> heidenhain_axis(const AxisProgram& p) {
+  const char letter = letter_of(p);
+  const int kept = 46 + p.axis, shift = 50 + p.axis;
+  const auto place = [&](int axis, double m) {
+    return fmt::format("FN 2: Q{} = {:+.4f} - +Q{}", 53 + axis, 1e3 * m, 50 + axis);
+  };
+  const Eigen::Vector3d& at = p.at_m;
+  std::vector<std::string> blocks = {
+      fmt::format("BEGIN PGM PROBE{} MM", letter),
+      "; " + p.made_by,
+      "; " + gauge_words(p),
+      "; " + bound_words(p),
+      fmt::format("; By PGM CALL, with the probe called and the preset at machine zero, without rotation. Q{} keeps the "
+                  "offset in force: a program that is selected anew",
+                  kept),
+      fmt::format("; adds it once, after datum shifts of its own: CYCL DEF 7.0 DATUM SHIFT, CYCL DEF 7.1 I{}+Q{}", letter,
+                  kept),
+      "; Q59 is 0, or 1 where a touch was refused; then, and where the control itself stops in a touch, the last good "
+      "offset "
+      "stays",
+      "FN 0: Q59 = +1",
+      "FN 18: SYSREAD Q50 = ID220 NR2 IDX1",
+      "FN 18: SYSREAD Q51 = ID220 NR2 IDX2",
+      "FN 18: SYSREAD Q52 = ID220 NR2 IDX3",
+      place(0, at[0]),
+      place(1, at[1]),
+      place(2, at[2]),
+      fmt::format("FN 1: Q56 = +Q55 + {:+.4f}", 1e3 * p.clearance_m),
+      fmt::format("TCH PROBE 427 MEASURE COORDINATE ~\n    Q263=+Q53 ~\n    Q264=+Q54 ~\n    Q261=+Q55 ~\n"
+                  "    Q320={:+.3f} ~\n    Q272={:+d} ~\n    Q267={:+d} ~\n    Q260=+Q56 ~\n    Q281=+0 ~\n    Q288=+0 ~\n"
+                  "    Q289=+0 ~\n    Q309=+0 ~\n    Q330=+0",
+                  1e3 * kBeforeTouch_m, p.axis + 1, p.toward > 0.0 ? 1 : -1),
+      fmt::format("Q57 = Q160 + Q{} - ( {} ) - Q{}", shift, mm(at[p.axis]), kept),
+      "Q58 = ABS Q57",
+      fmt::format("FN 0: Q60 = {:+.5f}", 1e-3 * p.step_um),
+      fmt::format("FN 10: IF +Q{} NE +0 GOTO LBL 1", kept),
+      fmt::format("FN 0: Q60 = {:+.5f}", 1e-3 * p.first_um),
+      "LBL 1",
+      "FN 11: IF +Q58 GT +Q60 GOTO LBL 99",
+      fmt::format("Q61 = ABS ( Q{} + Q57 )", kept),
+      fmt::format("FN 11: IF +Q61 GT {:+.5f} GOTO LBL 99", 1e-3 * p.most_um),
+      fmt::format("FN 1: Q{0} = +Q{0} + +Q57", kept),
+      "CYCL DEF 7.0 DATUM SHIFT",
+      fmt::format("CYCL DEF 7.1 I{}+Q57", letter),
+      "FN 0: Q59 = +0",
+      "LBL 99",
+      fmt::format("END PGM PROBE{} MM", letter)};
+  return {{fmt::format("heidenhain/PROBE{}.H", letter), numbered(blocks)}};
+}
 
 std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
@@ -53,9 +114,7 @@ std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
         "CYCL DEF 26.1 XQ42 YQ42 CCX+0 CCYQ46", "LBL 97", "FN 9: IF +Q44 EQU +0 GOTO LBL 100", "FN 14: ERROR = 1000",
         "LBL 100", "END PGM THERMFRAME MM"})
     add(block);
-  std::string text;
-  for (std::size_t i = 0; i < blocks.size(); ++i) text += fmt::format("{} {}\n", i, blocks[i]);
-  return {{"heidenhain/THERMFRAME.H", text}};
+  return {{"heidenhain/THERMFRAME.H", numbered(blocks)}};
 }
 
 }  // namespace driftwright::compensation

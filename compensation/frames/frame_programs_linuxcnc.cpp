@@ -15,6 +15,15 @@ std::string refusal(std::size_t label, const std::string& condition, const std::
       condition, way_out, words, label);
 }
 
+// Tool length and a system without offsets. G59.2 in inches tells the unit of the machine.
+constexpr const char* kProbingSystem =
+    "G43\n"
+    "(#160: mm in the unit of the machine, which #5221 is in)\n"
+    "G10 L2 P8 X25.4\n"
+    "#160 = [25.4 / #5361]\n"
+    "G10 L2 P8 X0 Y0 Z0 R0\n"
+    "G59.2\n";
+
 // Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6.
 std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::size_t base) {
   const auto& at = ring.at_m;
@@ -56,13 +65,7 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "G21 G90 G94 G17 G40\n";
   text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is required");
   text += refusal(91, "#5210 EQ 1", "", "G92 is in force, G92.1 first");
-  text +=
-      "G43\n"
-      "(#160: mm in the unit of the machine, which #5221 is in)\n"
-      "G10 L2 P8 X25.4\n"
-      "#160 = [25.4 / #5361]\n"
-      "G10 L2 P8 X0 Y0 Z0 R0\n"
-      "G59.2\n";
+  text += kProbingSystem;
   for (std::size_t r = 0; r < 2; ++r) text += ring_touches(p, p.rings[r], 100 + 20 * r);
   text += fmt::format("(TEMP_SCALE)\n#150 = [[#125 - #105] / {}]\n", mm(b[0] - a[0]));
   text += refusal(200, fmt::format("ABS[#150 - 1] GT {:.6f}", kMostScale), "",
@@ -99,7 +102,87 @@ std::string joint_trims(const FrameProgram& p) {
   return text;
 }
 
+// The end of the subprogram where a touch is refused. The program that calls it goes on, and may look at #<_value>.
+std::string touch_refusal(const AxisProgram& p, int label, const std::string& condition, const std::string& way_out,
+                          int status, const std::string& words) {
+  return fmt::format(
+      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}M66 E0 L0\n(DEBUG, probing refused: {}. The last good offset stays)\n"
+      "o<probe_{}> return [{}]\no{} endif\n",
+      label, condition, way_out, words, small_letter_of(p), status, label);
+}
+
+// The offset into G59.1, and into G59.3 with the user's G54.
+std::string offset_update(const AxisProgram& p, const std::string& way_out) {
+  std::string text = fmt::format(
+      "(the offset in force, and what it may change by)\n#<now> = [#160 * #{}]\n#<bound> = {}\no110 if [#<now> EQ 0]\n"
+      "#<bound> = {}\no110 endif\n#<new> = [#<read> - {}]\n#<step_um> = [[#<new> - #<now>] * 1000]\n",
+      5341 + p.axis, mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(p.at_m[p.axis]));
+  text += touch_refusal(p, 111, "ABS[#<new> - #<now>] GT #<bound>", way_out, 4,
+                        "too far from what is expected, by #<step_um> um, chips, another tool, or the axis was knocked. "
+                        "Clean and probe again");
+  text += touch_refusal(p, 112, fmt::format("ABS[#<new>] GT {}", mm(1e-6 * p.most_um, 5)), way_out, 4,
+                        "the offset would pass its limit. Look at G59.1");
+  text += fmt::format("G10 L2 P7 {}#<new>\nG10 L2 P9", letter_of(p));
+  for (int axis = 0; axis < 3; ++axis) text += fmt::format(" {}[#160 * [#{} + #{}]]", "XYZ"[axis], 5221 + axis, 5341 + axis);
+  return text + fmt::format(" R#5230\n{}(DEBUG, probing taken: {} by #<step_um> um)\n", way_out, letter_of(p));
+}
+
+// The value to the component; its verdict: 1 taken, 2 a jump, else refused. Strobe and value of the axes x, y, z are apart.
+std::string value_for_component(const AxisProgram& p, const std::string& way_out) {
+  std::string text = fmt::format(
+      "#<left_um> = [[{} - #<read>] * 1000]\nM68 E{} Q#<left_um>\nM64 P{}\nG4 P0.1\nM65 P{}\nM66 E0 L0\n#<verdict> = 1\n"
+      "o110 if [#<_task> EQ 1]\n#<verdict> = #<_hal[thermal.probe-verdict]>\no110 endif\n",
+      mm(p.at_m[p.axis]), p.axis, p.axis, p.axis);
+  text += touch_refusal(p, 111, "[#<verdict> LT 1] OR [#<verdict> GT 2]", way_out, 4,
+                        "by the component, verdict #<verdict>, off by #<left_um> um. Clean and probe again");
+  return text + fmt::format("{}(DEBUG, probing taken: {} was off by #<left_um> um)\n", way_out, letter_of(p));
+}
+
 }  // namespace
+
+std::vector<ProgramFile> linuxcnc_axis(const AxisProgram& p) {
+  const char letter = letter_of(p);
+  const char small = small_letter_of(p);
+  const Eigen::Vector3d from_m = before_touch_m(p);
+  const std::string up = fmt::format("G0 Z{}\n", mm(p.at_m[2] + p.clearance_m));
+  const std::string way_out = p.axis == 2 ? up : fmt::format("G1 {}{} F2000\n{}", letter, mm(from_m[p.axis]), up);
+  std::string text = fmt::format("(Driftwright: touches a gauge along {}, and keeps its offset true)\n({})\n({})\n", letter,
+                                 p.made_by, gauge_words(p));
+  text += p.to_component
+              ? fmt::format(
+                    "(the component `thermal` of the model gets what is left: net left motion.analog-out-0{} => "
+                    "thermal.probe-um, net touched motion.digital-out-0{} => thermal.probe-strobe)\n",
+                    p.axis, p.axis)
+              : fmt::format(
+                    "({})\n(G59.1 has the offsets in force; G59.3 becomes G54 with them, and G54 stays. Programs to be "
+                    "corrected run in G59.3; after a change of G54 run this anew)\n",
+                    bound_words(p));
+  text += fmt::format(
+      "(G59.2 is used for probing. By o<probe_{0}> call, after T and M6 of the probe. #<_value>: 0 taken, 1 no probe, 2 "
+      "G92, "
+      "3 no gauge, 4 refused)\n"
+      "o<probe_{0}> sub\nM73\nG21 G90 G94 G17 G40\n",
+      small);
+  if (p.to_component) text += fmt::format("M65 P{}\n", p.axis);
+  text += touch_refusal(p, 100, "#5400 LE 0", "", 1, "no probe in the spindle, its length is required");
+  text += touch_refusal(p, 101, "#5210 EQ 1", "", 2, "G92 is in force, G92.1 first");
+  text += kProbingSystem;
+  text += fmt::format("{}G0 X{} Y{}\nG1 Z{} F2000\n", up, mm(from_m[0]), mm(from_m[1]), mm(from_m[2]));
+  const auto touch = [&](double share, int label) {
+    return fmt::format("G38.3 {}{} F{:g}\n", letter, mm(beyond_touch_m(p)), share * p.feed_mm_min) +
+           touch_refusal(p, label, "#5070 EQ 0", way_out, 3, "no gauge");
+  };
+  text += touch(1.0, 102);
+  text += fmt::format("(once more, slowly)\nG91 G1 {}{} F2000\nG90\n", letter, mm(-p.toward * kBackOff_m));
+  text += touch(kSlowTouch, 103);
+  text += fmt::format(
+      "(a touch reads the place of the joint; the external offset of the axis is not its own)\n#<led> = 0\n"
+      "o104 if [#<_task> EQ 1]\n#<led> = #<_hal[axis.{}.eoffset]>\no104 endif\n#<read> = [#{} - #160 * #<led>]\n",
+      small, 5061 + p.axis);
+  text += p.to_component ? value_for_component(p, way_out) : offset_update(p, way_out);
+  return {{fmt::format("linuxcnc/probe_{}.ngc", small),
+           text + fmt::format("o<probe_{0}> endsub [0]\no<probe_{0}> call\nM2\n", small)}};
+}
 
 std::vector<ProgramFile> linuxcnc_frame(const FrameProgram& p) {
   return {{"linuxcnc/thermframe.ngc", linuxcnc_therm_frame(p)}, {"linuxcnc/joint_0.comp", joint_trims(p)}};

@@ -6,6 +6,21 @@
 namespace driftwright::compensation {
 namespace {
 
+// Where the tip of the probe is measured: no frame is in force. A program with SAVE has its caller's frames back at its end.
+constexpr const char* kWithoutFrames =
+    "IF $P_TOOL==0 GOTOF NOLENGTH\n"
+    "G500 G90 G71 G94\n"
+    "TRANS\n"
+    "$P_BFRAME=CTRANS()\n"
+    "IF ($P_ACTFRAME[X,TR]<>0) OR ($P_ACTFRAME[Y,TR]<>0) OR ($P_ACTFRAME[Z,TR]<>0) GOTOF OTHERFRAME\n"
+    "IF ($P_ACTFRAME[Z,RT]<>0) OR ($P_ACTFRAME[Y,RT]<>0) OR ($P_ACTFRAME[X,SC]<>1) GOTOF OTHERFRAME\n";
+
+// A label that a program jumps to where it refuses.
+std::string refusal_at(const std::string& status, const char* label, int alarm, const char* words, const char* next) {
+  return fmt::format("{}:\n{}={}\nSETAL({})                            ; {}\n{}\n", label, status, alarm, alarm, words,
+                     next);
+}
+
 // Names start with TF_, because X1, Y1, Z1, I and TURN are names of axes, interpolation and helices. No SAVE here, because
 // it would remove the new frame at the return; RINGMEAS has it, so that no G function of the caller changes.
 std::string siemens_therm_frame(const FrameProgram& p) {
@@ -52,8 +67,7 @@ std::string siemens_therm_frame(const FrameProgram& p) {
       "RET\n",
       kMostScale);
   const auto refusal = [](const char* label, int alarm, const char* words) {
-    return fmt::format("{}:\nTF_STATUS={}\nSETAL({})                            ; {}\nGOTOF REFUSED\n", label, alarm, alarm,
-                       words);
+    return refusal_at("TF_STATUS", label, alarm, words, "GOTOF REFUSED");
   };
   text += refusal("IDENTICAL", 65010, "rings identical") + refusal("SWAPPED", 65011, "rings swapped") +
           refusal("NOHEAT", 65012, "no temperature does that");
@@ -76,13 +90,8 @@ std::string ring_measurement(const FrameProgram& p) {
       p.made_by);
   text +=
       "DEF REAL TF_WALL[4]\n"
-      "TF_STATUS=0\n"
-      "IF $P_TOOL==0 GOTOF NOLENGTH\n"
-      "G500 G90 G71 G94\n"
-      "TRANS\n"
-      "$P_BFRAME=CTRANS()\n"
-      "IF ($P_ACTFRAME[X,TR]<>0) OR ($P_ACTFRAME[Y,TR]<>0) OR ($P_ACTFRAME[Z,TR]<>0) GOTOF OTHERFRAME\n"
-      "IF ($P_ACTFRAME[Z,RT]<>0) OR ($P_ACTFRAME[Y,RT]<>0) OR ($P_ACTFRAME[X,SC]<>1) GOTOF OTHERFRAME\n";
+      "TF_STATUS=0\n";
+  text += kWithoutFrames;
   text += fmt::format("G0 Z=TF_CZ+{}\nG0 X=TF_CX Y=TF_CY\nG1 Z=TF_CZ-{} F2000\n", mm(p.clearance_m, 3), mm(p.depth_m, 3));
   const char* sides[4] = {"X=TF_CX+", "X=TF_CX-", "Y=TF_CY+", "Y=TF_CY-"};
   for (int i = 0; i < 4; ++i) {
@@ -101,8 +110,7 @@ std::string ring_measurement(const FrameProgram& p) {
       1e3 * kMostRise_m);
   text += "TF_FX=(TF_WALL[0]+TF_WALL[1])/2\nTF_FY=(TF_WALL[2]+TF_WALL[3])/2\nTF_FZ=$AA_MW[Z]\nGOTOF AWAY\n";
   const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
-    return fmt::format("{}:\nTF_STATUS={}\nSETAL({})                            ; {}\n{}\n", label, alarm, alarm, words,
-                       next);
+    return refusal_at("TF_STATUS", label, alarm, words, next);
   };
   text += refusal("NORING", 65013, "ring missing", "GOTOF AWAY") +
           refusal("WRONGSIDE", 65014, "touched at the wrong side", "GOTOF AWAY") +
@@ -144,7 +152,75 @@ std::string setting_data(const FrameProgram& p) {
   return text;
 }
 
+// The touch, with SAVE: frames and G functions of the caller come back. The position of the tip is in TA_READ.
+std::string siemens_touch(const AxisProgram& p) {
+  const char letter = letter_of(p);
+  const Eigen::Vector3d from_m = before_touch_m(p);
+  const std::string to = fmt::format("{}={}", letter, mm(beyond_touch_m(p)));
+  std::string text = fmt::format("PROC TOUCH{}(VAR REAL TA_READ, VAR INT TA_STATUS) SAVE DISPLOF\n; {}\n; {}\nTA_STATUS=0\n",
+                                 letter, p.made_by, gauge_words(p));
+  text += kWithoutFrames;
+  text += fmt::format("G0 Z={}\nG0 X={} Y={}\nG1 Z={} F2000\n", mm(p.at_m[2] + p.clearance_m), mm(from_m[0]), mm(from_m[1]),
+                      mm(from_m[2]));
+  const auto touch = [&](double share) {
+    return fmt::format("MEAS=1 G1 {} F{:g}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NOGAUGE\n", to, share * p.feed_mm_min);
+  };
+  text += touch(1.0) + fmt::format("G91 G1 {}={} F2000\nG90\n; once more, slowly\n", letter, mm(-p.toward * kBackOff_m)) +
+          touch(kSlowTouch) + fmt::format("TA_READ=$AA_MW[{}]\nGOTOF AWAY\n", letter);
+  text += refusal_at("TA_STATUS", "NOGAUGE", 65018, "no gauge", "GOTOF AWAY") +
+          refusal_at("TA_STATUS", "NOLENGTH", 65015, "no D number: the length of the probe is required", "RET") +
+          refusal_at("TA_STATUS", "OTHERFRAME", 65016, "a global, system or external frame is in force", "RET");
+  if (p.axis == 2) return text + fmt::format("AWAY:\nG0 Z={}\nRET\n", mm(p.at_m[2] + p.clearance_m));
+  return text +
+         fmt::format("AWAY:\nG1 {}={} F2000\nG0 Z={}\nRET\n", letter, mm(from_m[p.axis]), mm(p.at_m[2] + p.clearance_m));
+}
+
+// The offset is written after all checks, to data management first: a reset before that loads the last good one.
+std::string siemens_update(const AxisProgram& p) {
+  const char letter = letter_of(p);
+  std::string text = fmt::format("PROC PROBE{}(VAR INT PA_STATUS) DISPLOF\n; {}\n; {}\n", letter, p.made_by, bound_words(p));
+  text += fmt::format(
+      "; Call with the probe in the spindle and its D number active. PA_STATUS: 0, or the alarm; then the last good offset "
+      "stays.\n"
+      "; The caller declares it: EXTERN PROBE{0}(VAR INT), DEF INT STATUS, PROBE{0}(STATUS), IF STATUS<>0 ...\n"
+      "; The offset is the fine part of the base frame, added to its coarse part: $P_UBFR[{0},FI]. MD18600 must be 1.\n"
+      "EXTERN TOUCH{0}(VAR REAL, VAR INT)\n"
+      "DEF REAL PA_READ, PA_NEW, PA_NOW, PA_STEP, PA_BOUND\n"
+      "DEF FRAME PA_FRAME\n"
+      "STOPRE\n"
+      "PA_FRAME=$P_BFRAME\n"
+      "PA_NOW=$P_UBFR[{0},FI]\n"
+      "TOUCH{0}(PA_READ, PA_STATUS)\n"
+      "IF PA_STATUS<>0 GOTOF REFUSED\n"
+      "PA_NEW=PA_READ-({1})\n"
+      "PA_BOUND={2}\n"
+      "IF PA_NOW<>0 GOTOF INFORCE\n"
+      "PA_BOUND={3}                            ; none is in force\n"
+      "INFORCE:\n"
+      "PA_STEP=PA_NEW-PA_NOW\n"
+      "MSG(\"touch of {0}: \"<<PA_STEP<<\" mm from the offset in force\")\n"
+      "IF ABS(PA_STEP)>PA_BOUND GOTOF TOOFAR\n"
+      "IF ABS(PA_NEW)>{4} GOTOF TOOMUCH\n"
+      "STOPRE\n"
+      "$P_UBFR[{0},FI]=PA_NEW                   ; data management: the next G54 would lose it else\n"
+      "PA_FRAME[{0},FI]=PA_NEW\n"
+      "$P_BFRAME=PA_FRAME\n"
+      "STOPRE\n"
+      "RET\n",
+      letter, mm(p.at_m[p.axis]), mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(1e-6 * p.most_um, 5));
+  text += refusal_at("PA_STATUS", "TOOFAR", 65019,
+                     "too far from what is expected: chips, another tool, or the axis was knocked. Clean and probe again",
+                     "GOTOF REFUSED") +
+          refusal_at("PA_STATUS", "TOOMUCH", 65020, "the offset would pass its limit", "GOTOF REFUSED");
+  return text + "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nRET\n";
+}
+
 }  // namespace
+
+std::vector<ProgramFile> siemens_axis(const AxisProgram& p) {
+  return {{fmt::format("siemens/PROBE{}.SPF", letter_of(p)), siemens_update(p)},
+          {fmt::format("siemens/TOUCH{}.SPF", letter_of(p)), siemens_touch(p)}};
+}
 
 std::vector<ProgramFile> siemens_frame(const FrameProgram& p) {
   return {{"siemens/THERMFRAME.SPF", siemens_therm_frame(p)},

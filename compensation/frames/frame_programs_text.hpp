@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "compensation/frames/axis_programs.hpp"
 #include "compensation/frames/frame_programs.hpp"
 
 namespace driftwright::compensation {
@@ -32,5 +33,18 @@ inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< degrees per r
 /// The second touch of a height starts this far above the first [m] and uses this share of the feed: the error of a probe
 /// that reports late by a servo cycle is then a tenth.
 inline constexpr double kBackOff_m = 0.5e-3, kSlowTouch = 0.1;
+
+/// The touch of one axis begins this far before the gauge and ends this far beyond it [m].
+inline constexpr double kBeforeTouch_m = 5e-3, kBeyondTouch_m = 3e-3;
+
+/// Where a touch of one axis begins [m].
+[[nodiscard]] Eigen::Vector3d before_touch_m(const AxisProgram& program);
+
+/// The coordinate of the axis at which the touch ends without contact [m].
+[[nodiscard]] double beyond_touch_m(const AxisProgram& program);
+
+/// Lines that say where the gauge is, and the limits.
+[[nodiscard]] std::string gauge_words(const AxisProgram& program);
+[[nodiscard]] std::string bound_words(const AxisProgram& program);
 
 }  // namespace driftwright::compensation

@@ -76,16 +76,18 @@ probe_process probe_process_of(const ResidualProcess& process, const Probe& prob
 
 namespace {
 
-constexpr std::size_t kNumbersOfEstimate = 5, kNumbersOfPast = 3, kNumbersOfMember = 5;
-constexpr std::size_t kNumbersOfProbings = 13 + 2 * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
+constexpr std::size_t kNumbersOfEstimate = 6, kNumbersOfPast = 3, kNumbersOfMember = 5;
+constexpr std::size_t kNumbersOfProbings = 13 + 2 * PROBE_BANK * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
 
 void add_numbers_of(const probe_state& s, std::vector<double>& m) {
   m.insert(m.end(), {static_cast<double>(s.has_begun), static_cast<double>(s.has_jumped), static_cast<double>(s.n_pasts),
                      static_cast<double>(s.newest), s.time_s, static_cast<double>(s.verdict), s.off_um, s.bound_um,
                      static_cast<double>(s.n_taken), static_cast<double>(s.n_refused), static_cast<double>(s.n_jumps),
-                     static_cast<double>(s.n_in_row), s.sum_squares});
-  for (const probe_estimate& e : {s.now, s.jumped})
-    m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2});
+                     static_cast<double>(s.n_in_row), s.loss});
+  for (const auto* bank : {&s.now, &s.jumped}) {
+    for (const probe_estimate& e : *bank)
+      m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2, e.weight});
+  }
   for (const probe_past& p : s.past) m.insert(m.end(), {p.time_s, p.prediction_um, p.correction_um});
 }
 
@@ -105,11 +107,13 @@ probe_state probe_state_of(std::span<const double> m) {
   s.n_refused = static_cast<int>(m[9]);
   s.n_jumps = static_cast<int>(m[10]);
   s.n_in_row = static_cast<int>(m[11]);
-  s.sum_squares = m[12];
+  s.loss = m[12];
   const double* at = m.data() + 13;
-  for (probe_estimate* e : {&s.now, &s.jumped}) {
-    *e = {at[0], at[1], at[2], at[3], at[4]};
-    at += kNumbersOfEstimate;
+  for (auto* bank : {&s.now, &s.jumped}) {
+    for (probe_estimate& e : *bank) {
+      e = {at[0], at[1], at[2], at[3], at[4], at[5]};
+      at += kNumbersOfEstimate;
+    }
   }
   for (probe_past& p : s.past) {
     p = {at[0], at[1], at[2]};

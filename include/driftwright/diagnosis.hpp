@@ -51,7 +51,7 @@ struct Diagnosis {
   std::vector<Estimate> calibrated;  ///< the scenario's own numbers, as fitted
   std::string holdout;               ///< how rows were kept out
   std::vector<ChannelGain> gain;
-  std::string extended_scenario;         ///< what the program writes; empty if it could not be read back as a scenario
+  std::string extended_scenario;         ///< what the program writes, with absolute paths; empty if it cannot be read back
   std::vector<std::string> not_written;  ///< in that case, the reason
 };
 

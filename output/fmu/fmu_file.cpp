@@ -20,7 +20,8 @@ bool is_wanted(const std::string& name, const FmuOrder& order) {
   const bool is_2 = order.version == FmiVersion::k2, is_observer = order.model.observer.has_value();
   if (name.starts_with("fmi2")) return is_2;
   if (name.starts_with("fmi3")) return !is_2;
-  if (name == "machine.c") return !is_observer;
+  if (name == "plain_model.c" || name == "example.c") return false;  // of plain_c.hpp
+  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
   if (name == "observer.c" || name == "observer_filter.c" || name == "probe_feedback.c" ||
       name.starts_with("state_observer"))
     return is_observer;

@@ -19,14 +19,22 @@ struct FmuOutput {
   double factor = 1.0, offset = 0.0;  ///< from K, m, rad to the unit
 };
 
+/// The law of a source or an exchange that follows temperatures (live_law of sources/model_data.h).
+struct FmuLiveLaw {
+  std::vector<double> steps = {};  ///< pairs of operation and number; names are indices of the drive, then of the probes
+  Eigen::MatrixXd weights = {};    ///< n_states x n_probes
+  std::vector<double> ambient_share = {}, offset_K = {};
+};
 struct FmuSource {
   Eigen::VectorXd load;
-  DriveLaw power_W;
+  DriveLaw power_W;  ///< 0 beside a live law
+  std::optional<FmuLiveLaw> live = {};
 };
 struct FmuExchange {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd to_ambient, offset;
-  DriveLaw coefficient;
+  DriveLaw coefficient;  ///< beside a live law: its value at the temperatures of the start
+  std::optional<FmuLiveLaw> live = {};
 };
 
 /// What an observer unit has in addition: its sensors, settings and learned factors.
@@ -66,12 +74,11 @@ struct FmuModel {
 /// that follows a column
 void require_exportable(const scenarios::Scenario& scenario);
 
-/// @param reduced  must be linear
-/// @throws InputError  naming the law: one that depends on temperatures, a thermostat, two variables of the drive that
-/// act together
+/// @throws InputError  naming the law: a thermostat; two variables of the drive that act together; one that depends on
+/// temperatures and has no formula (effects::Law::steps)
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
 /// @param probing  what the observer leaves and the probe, of a unit that takes probings
-/// @throws InputError  as machine_fmu()
+/// @throws InputError  as machine_fmu(), and for each law that depends on temperatures
 [[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer,
                                     const std::optional<probe_process>& probing = {});
 

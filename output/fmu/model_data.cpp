@@ -71,6 +71,11 @@ struct ModelLists {
   std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
       offset, start, ones, most, known, factor_mean, factor_covariance;
   std::vector<const DriveLaw*> powers, coefficients;
+  struct Live {
+    double source, exchange;  ///< index of one, -1 for the other
+    const FmuLiveLaw* law;
+  };
+  std::vector<Live> live;
 };
 
 ModelLists lists_of(const FmuModel& model) {
@@ -80,12 +85,14 @@ ModelLists lists_of(const FmuModel& model) {
   append(lists.ambient, model.ambient_load);
   for (const FmuSource& s : model.sources) {
     append(lists.loads, s.load);
+    if (s.live) lists.live.push_back({static_cast<double>(lists.powers.size()), -1.0, &*s.live});
     lists.powers.push_back(&s.power_W);
   }
   for (const FmuExchange& e : model.exchanges) {
     append(lists.exchanges, e.matrix);
     append(lists.to_ambient, e.to_ambient);
     append(lists.offsets, e.offset);
+    if (e.live) lists.live.push_back({-1.0, static_cast<double>(lists.coefficients.size()), &*e.live});
     lists.coefficients.push_back(&e.coefficient);
   }
   for (const FmuOutput& o : model.outputs) {
@@ -103,6 +110,24 @@ ModelLists lists_of(const FmuModel& model) {
     append(lists.factor_covariance, model.observer->factors.covariance);
   }
   return lists;
+}
+
+std::vector<double> columns_of(const Eigen::MatrixXd& m) {
+  return {m.data(), m.data() + m.size()};
+}
+
+/// The list `static const live_law live[]`, after its arrays; nothing if no law follows temperatures.
+std::string live_laws(const std::vector<ModelLists::Live>& live) {
+  std::string text, rows;
+  for (std::size_t k = 0; k < live.size(); ++k) {
+    const FmuLiveLaw& law = *live[k].law;
+    const std::string own = fmt::format("live_{}", k);
+    text += array(own + "_steps", law.steps) + array(own + "_weights", columns_of(law.weights)) +
+            array(own + "_share", law.ambient_share) + array(own + "_offset", law.offset_K);
+    rows += fmt::format("  {{{:g}, {:g}, {}, {}_steps, {}, {}_weights, {}_share, {}_offset}},\n", live[k].source,
+                        live[k].exchange, law.steps.size() / 2, own, law.weights.cols(), own, own, own);
+  }
+  return rows.empty() ? "" : text + fmt::format("static const live_law live[] = {{\n{}}};\n", rows);
 }
 
 /// In the order of observer_settings (compensation/control/observer_filter.h).
@@ -180,16 +205,17 @@ std::string model_data_c(const FmuModel& model, const std::string& guid, const s
           array("outputs_ambient", lists.outputs_ambient) + array("output_factor", lists.factor) +
           array("output_offset", lists.offset) + array("start", lists.start) + array("ones", lists.ones) +
           array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
-          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known);
+          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
+          live_laws(lists.live);
   text += fmt::format(
       "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "
       "to_ambient, offsets, coefficients,\n  outputs, outputs_ambient, output_factor, output_offset, start, ones, {:a}, {}, "
       "{:a},\n  {}, "
-      "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive}};\n",
+      "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive, {}, {}}};\n",
       model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(), model.outputs.size(),
       model.start_ambient_K, model.start_follows_ambient ? 1 : 0, model.reference_K - 273.15, model.ambient.time_s.size(),
-      model.known_drives.size());
+      model.known_drives.size(), lists.live.size(), lists.live.empty() ? "0" : "live");
   return text + observer_text(model, lists);
 }
 
@@ -215,6 +241,13 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
   block.add(nominal_of(model));
   block.add_counts(model.known_drives.size());
   block.add(lists.known);
+  block.add_counts(lists.live.size());
+  for (const ModelLists::Live& live : lists.live) {
+    block.add_counts(live.source, live.exchange, live.law->steps.size() / 2);
+    block.add(live.law->steps);
+    block.add_counts(live.law->weights.cols());
+    for (const auto& list : {columns_of(live.law->weights), live.law->ambient_share, live.law->offset_K}) block.add(list);
+  }
   block.add_counts(model.observer ? 1 : 0);
   if (model.observer) {
     const FmuObserver& o = *model.observer;

@@ -390,7 +390,7 @@ void read_film_files(std::vector<Effect>& effects, const std::string& folder) {
     const bool has_file = std::any_of(e.kind->mentions.begin(), e.kind->mentions.end(),
                                       [](const effects::Mention& m) { return m.of == effects::Mention::Of::kFile; });
     if (!has_file) continue;
-    // As give_absolute_paths() writes it, so that a scenario in another folder has the same effect.
+    // Absolute, so that a scenario in another folder has the same effect.
     std::string& name = e.words.at("file");
     name = fs::absolute(fs::path(folder) / name).lexically_normal().string();
     FieldOver over = FieldOver::kNothing;

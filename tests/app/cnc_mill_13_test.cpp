@@ -128,13 +128,5 @@ TEST_F(CncMill13, SelectsOnItsOwnRecordsAsTheStudyDoes) {
   EXPECT_THAT(selected.output, ContainsRegex(" 1  X1 "));
 }
 
-TEST_F(CncMill13, PredictorsAreJudgedOnItsProgramme) {
-  const auto folder = fresh_folder("cnc_mill_13_validate") / "out";
-  const CommandOutcome validated = run_program("validate scenarios/cnc_mill_13.yaml -o " + folder.string());
-  EXPECT_EQ(validated.exit_code, 0) << validated.output;
-  EXPECT_THAT(validated.output, HasSubstr("25 cyclograms"));
-  EXPECT_THAT(validated.output, ContainsRegex("hybrid: those, scaled to tests +drift_z +20 +20 "));
-}
-
 }  // namespace
 }  // namespace driftwright::cnc_mill_13_test

@@ -19,7 +19,7 @@ using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 using Json = nlohmann::json;
 
 /// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient
-/// warms.
+/// warms. To one axis something learned is added.
 constexpr const char* kHead = R"(name: head
 reference_temperature: 20 degC
 machine: {generator: lumped}
@@ -27,6 +27,9 @@ effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
   - {type: link, node: head, to: ambient, conductance: 20 W/K}
+  - {type: learned, displacement: nose_y, keeps: 0.8, follows: speed, at_speed: 1800 rpm, exponent: 1.6, grows: [[0 min, -2 um], [12 min, -8 um]]}
+  - {type: learned, displacement: nose_y, follows: running, grows: [[7 min, 3 um]]}
+  - {type: learned, displacement: nose_y, follows: ambient, grows: [[20 min, -4 um]]}
 start: ambient
 ambient: [[0 h, 21 degC], [2 h, 23 degC], [9 h, 22 degC]]
 sensors: [{name: t_head, node: head}]
@@ -284,6 +287,12 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
                "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");
   write_file("grows.yaml", grows);
   refused("grows.yaml", "true |", "spindle_growth nose_z");
+  std::string column = kHead;
+  column.insert(
+      column.find("start: ambient"),
+      "  - {type: learned, displacement: nose_z, follows: column, column: bed_W, at: 100, grows: [[5 min, 4 um]]}\n");
+  write_file("column.yaml", column);
+  refused("column.yaml", "true |", "follows the recorded column 'bed_W'");
 }
 
 /// Two bodies with thermometers. @param power_W  of the heat at 2000 rpm

@@ -1,5 +1,6 @@
 // `driftwright identify` as a user runs it: a scenario that simulates what was measured, and errors that say what to record.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::identify_verb_test {
 namespace {
@@ -126,6 +128,23 @@ TEST_F(IdentifyVerb, SaysWhatARecordLacks) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.output, AllOf(HasSubstr("still.csv"), HasSubstr("speed_rpm or heater_W that is switched at least twice")));
   EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(IdentifyVerb, AsksForUnitsThatALoggerDoesNotSay) {
+  std::string text = "epoch,on,t1,hall\n";
+  double t1 = 20.0;
+  for (int i = 0; i < 120; ++i) {
+    const bool on = i / 30 % 2 == 1;
+    t1 += 0.05 * ((on ? 30.0 : 20.0) - t1);
+    text += fmt::format("{:.3f},{},{:.2f},{:.2f}\n", 1606000000.125 + 60.0 * i, on ? "True" : "False", t1, 20.0);
+  }
+  const std::string verb = "identify --record " + write_file("log.csv", text) + " -o " + out_.string();
+  const CommandOutcome asks = run_program(verb);
+  EXPECT_EQ(asks.exit_code, 2);
+  EXPECT_THAT(asks.output, HasSubstr("nothing says the unit of 't1', 'hall'"));
+  const CommandOutcome run = run_program(verb + " --unit t1=degC --unit hall=degC");
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("100 % on ("));
 }
 
 }  // namespace

@@ -74,6 +74,14 @@ struct Shop {
   }
 };
 
+TEST(ProbePlanRefuses, GaugesThatAreNoThreeLengths) {
+  const Shop shop;
+  shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm"; }, "three lengths with commas are required");
+  shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm, 3 mm, 4 mm"; }, "three lengths with commas are required");
+  shop.expect_refused([](auto& o) { o.gauge = "1, 2 mm, 3 mm"; }, "--gauge '1': '1' has no unit");
+  shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm, 300 m"; }, "--gauge ' 300 m': -100 m to 100 m is allowed");
+}
+
 TEST(ProbePlanRefuses, JobsThatAreNoneOrHaveNoWork) {
   const Shop shop;
   shop.expect_refused([](auto& o) { o.job = "nothing"; }, "there is no cyclogram 'nothing'");

@@ -189,5 +189,13 @@ TEST(ProgrammeMistakes, EndWithTwoAndWriteNothing) {
   expect("scenarios/fp3_spindle.yaml --train missing.csv", {"requires --test too"});
 }
 
+TEST(ProgrammeOfTheMill, IsWhatPredictorsAreJudgedOn) {
+  const auto folder = fresh_folder("cnc_mill_13_validate") / "out";
+  const CommandOutcome validated = run_program("validate scenarios/cnc_mill_13.yaml -o " + folder.string());
+  EXPECT_EQ(validated.exit_code, 0) << validated.output;
+  EXPECT_THAT(validated.output, HasSubstr("25 cyclograms"));
+  EXPECT_THAT(validated.output, ::testing::ContainsRegex("hybrid: those, scaled to tests +drift_z +20 +20 "));
+}
+
 }  // namespace
 }  // namespace driftwright::programme_study_test

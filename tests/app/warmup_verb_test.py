@@ -50,17 +50,16 @@ def main():
             return next(w for w in summary["ways"] if w["way"] == name)
 
         least = {}
-        for before in ([], ["--start", "heat_cool_1600", "--after-pause", "20 min"], ["--start", "heat_cool_1600", "--after-pause", "3 h"]):
-            done = call("warmup", fp3, "--then", "heat_cool_1000", "--tolerance", "11 um", *before, "-o", "out")
+        for out, before in (("cold", []), ("warm", ["--start", "heat_cool_1600", "--after-pause", "20 min"]), ("cooled", ["--start", "heat_cool_1600", "--after-pause", "3 h"])):
+            done = call("warmup", fp3, "--then", "chaotic", "--tolerance", "12 um", *before, "-o", out)
             expect(done.returncode == 0, f"warmup {before}: {done.stderr.strip()[-300:]}")
-            summary = json.loads((folder / "out/summary.json").read_text())
+            summary = json.loads((folder / out / "summary.json").read_text())
             best = way(summary, "two speeds")
             least[" ".join(before)] = best["duration_min"]
-            expect(best["is_enough"] and best["peak_um"] <= 11.0, f"{before}: {best}")
+            expect(best["is_enough"] and best["peak_um"] <= 12.0, f"{before}: {best}")
             expect(best["duration_min"] <= way(summary, "one speed")["duration_min"], "two speeds are no slower than one")
         expect(len(set(least.values())) == 3, f"minutes by what was before: {least}")
 
-        done = call("warmup", fp3, "--then", "chaotic", "--tolerance", "12 um", "-o", "cold")
         summary = json.loads((folder / "cold/summary.json").read_text())
         told = way(summary, "two speeds")["peak_um"]
         corrected = {row["strategy"]: row for row in summary["corrected"]}

@@ -45,14 +45,17 @@ TEST(ProbedRun, OfOnePredictorIsItsFilter) {
   const ProbedRun run = probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0});
   EXPECT_EQ(run.n_probings, 9);
   EXPECT_EQ(run.n_refused, 0);
-  // an exact probing each hour: the error is that of the last probing, faded
+  ProbeFeedback feedback(std::vector<probe_process>{d});
   double square = 0.0;
   for (std::size_t i = 0; i < 600; ++i) {
-    const std::size_t last = i == 0 ? 0 : (i - 1) / 60 * 60;  // it counts from the row after it
-    const double expected_um = m.left_um[last] * std::exp(-60.0 * static_cast<double>(i - last) / 7200.0);
-    square += std::pow(m.left_um[i] - expected_um, 2);
+    feedback.row(0.0, 0.0, i > 0 ? 60.0 : 0.0);
+    square += std::pow(m.left_um[i] - feedback.estimate_um(), 2);
+    if (i > 0 && i % 60 == 0) {
+      EXPECT_TRUE(feedback.probe_drift_um(m.left_um[i]));  // it counts from the row after it
+    }
   }
-  EXPECT_NEAR(run.left.rmse, std::sqrt(square / 600.0), 1e-5);
+  EXPECT_NEAR(run.left.rmse, std::sqrt(square / 600.0), 1e-9);
+  EXPECT_LT(run.left.rmse, 0.7 * 3.0);
 }
 
 // Two members: one is right in the first half and then 30 µm off, the other one the reverse. With weights less is left than by

@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/random.hpp"
@@ -51,91 +53,107 @@ TEST(ResidualProcess, AnOffsetHasALongTimeConstant) {
   EXPECT_FALSE(fit_residual_process(std::vector<ResidualSeries>{{{0.0, 60.0}, {1.0, 1.0}}}, 0.5));
 }
 
-// Before each of many probings the variance is that of the stationary Riccati equation of a scalar:
+// Before each of many probings the variance of each filter of the bank is that of the stationary Riccati equation of a scalar:
 // P = a² P R / (P + R) + (1 - a²) s².
-TEST(ProbeFeedback, ItsDeviationIsThatOfTheRiccatiEquation) {
+TEST(ProbeFeedback, ItsVariancesAreThoseOfTheRiccatiEquation) {
   const ResidualProcess p{4.0, 7200.0};
-  const double a2 = std::exp(-2.0 * 3600.0 / 7200.0), r = 1.0, q = (1.0 - a2) * 16.0;
-  const double b = r * (1.0 - a2) - q, before = 0.5 * (-b + std::sqrt(b * b + 4.0 * q * r));
   ProbeFeedback feedback(p, {.noise_um = 1.0}, true);
   feedback.row(0.0, 0.0, 0.0);
   EXPECT_EQ(feedback.deviation_um(), 0.0);
-  for (int k = 0; k < 50; ++k) {
+  for (int k = 0; k < 400; ++k) {
     feedback.row(0.0, 0.0, 3600.0);
-    if (k == 49) {
-      EXPECT_NEAR(feedback.deviation_um(), std::sqrt(before), 1e-9);
+    if (k < 399) {
+      EXPECT_TRUE(feedback.probe_drift_um(0.0));
     }
-    EXPECT_TRUE(feedback.probe_drift_um(0.0));
   }
+  double mean_um2 = 0.0, sum = 0.0;
+  int k = 0;
+  for (const double size : {1.0 / 3.0, 1.0, 3.0, 9.0}) {
+    for (const double time : {0.25, 1.0, 4.0, 16.0}) {
+      const probe_estimate& e = feedback.state().now[k++];
+      const double a2 = std::exp(-2.0 * 3600.0 / (7200.0 * time)), q = (1.0 - a2) * 16.0 * size * size, r = 1.0;
+      const double b = r * (1.0 - a2) - q, before = 0.5 * (-b + std::sqrt(b * b + 4.0 * q * r));
+      EXPECT_NEAR(e.residual_um2, before, 1e-9 * before) << size << " " << time;
+      mean_um2 += e.weight * before;
+      sum += e.weight;
+    }
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_NEAR(feedback.deviation_um(), std::sqrt(mean_um2), 1e-9);  // all expect 0
 }
 
-// The share of the variance that is left over many hours agrees with the filter's own.
-TEST(ProbeFeedback, LeavesAsMuchAsItSays) {
-  const ResidualProcess p{4.0, 7200.0};
-  double square = 0.0, said = 0.0;
+/// What is left of draws of a process by the filter of a fit, from row 1500 of 3000 on, with a probing each hour: mean square, and that
+/// which the filter says.
+struct LeftOfDraws {
+  double um2 = 0.0, said_um2 = 0.0;
+};
+LeftOfDraws left_of_draws(const ResidualProcess& fitted, const ResidualProcess& truth, double noise_um) {
+  LeftOfDraws left;
   int n = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const ResidualSeries truth = drawn(p, 60.0, 3000, 0.0, seed);
-    Random random(seed, 5);
-    ProbeFeedback feedback(p, {.noise_um = 1.0}, false);
-    for (std::size_t i = 0; i < truth.time_s.size(); ++i) {
-      feedback.row(0.0, 0.0, 60.0);
-      if (i % 60 == 0) (void)feedback.probe_drift_um(truth.off_um[i] + random.normal());
-      square += std::pow(truth.off_um[i] - feedback.estimate_um(), 2);
-      said += std::pow(feedback.deviation_um(), 2) / probe_scale(&feedback.state());  // 1 here, but for chance
-      ++n;
-    }
-  }
-  EXPECT_NEAR(square / said, 1.0, 0.1);
-  EXPECT_LT(square / n, 0.45 * 16.0);  // 0.40 by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ = 0.91
-}
-
-// Errors three times as large as those of the fit: after 25 probings two thirds of the variance that is left are said, in
-// place of a ninth. The rest is that of probings which are refused or count as four deviations.
-TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
-  const ResidualProcess fitted{2.0, 7200.0}, truth{6.0, 7200.0};
-  double square = 0.0, said = 0.0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const ResidualSeries drift = drawn(truth, 60.0, 3000, 0.0, seed);
     Random random(seed, 5);
-    ProbeFeedback feedback(fitted, {.noise_um = 0.1}, false);
+    ProbeFeedback feedback(fitted, {.noise_um = noise_um}, false);
     for (std::size_t i = 0; i < drift.time_s.size(); ++i) {
       feedback.row(0.0, 0.0, 60.0);
-      if (i % 60 == 0) (void)feedback.probe_drift_um(drift.off_um[i] + 0.1 * random.normal());
+      if (i % 60 == 0) (void)feedback.probe_drift_um(drift.off_um[i] + noise_um * random.normal());
       if (i < 1500) continue;
-      square += std::pow(drift.off_um[i] - feedback.estimate_um(), 2);
-      said += std::pow(feedback.deviation_um(), 2);
+      left.um2 += std::pow(drift.off_um[i] - feedback.estimate_um(), 2);
+      left.said_um2 += std::pow(feedback.deviation_um(), 2);
+      ++n;
     }
   }
-  EXPECT_GT(said / square, 0.6);
-  EXPECT_LT(said / square, 1.1);
+  left.um2 /= n;
+  left.said_um2 /= n;
+  return left;
 }
 
-// A calm axis says nothing of the next cut: good probings are then taken as before.
-TEST(ProbeFeedback, IsNoStricterAfterACalmTime) {
+// A filter that knew s and T leaves 0.40 s² of s = 4 um, T = 2 h by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ = 0.91.
+// The bank, which must learn them, leaves at most a tenth more, whether its fit is right or three times too small or too large.
+// It says too much rather than too little, because a part of the weights returns to the first ones, which know of larger errors.
+TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
+  const ResidualProcess truth{4.0, 7200.0};
+  for (const double factor : {1.0 / 3.0, 1.0, 3.0}) {
+    const LeftOfDraws left = left_of_draws({factor * truth.deviation_um, truth.time_constant_s}, truth, 1.0);
+    EXPECT_LT(left.um2, 1.1 * 0.40 * 16.0) << factor;
+    EXPECT_GT(left.said_um2, 0.9 * left.um2) << factor;
+    EXPECT_LT(left.said_um2, 4.0 * left.um2) << factor;
+  }
+}
+
+// Errors of 0.6 um that fade in 20 min, and a probe of 1 um: probings each hour can gain nothing. They cost a fifth at most, though
+// the fit says 2 um and 3 h; a filter that believed the fit would be moved by 0.8 of each probing and cost more than a half.
+TEST(ProbeFeedback, LearnsThatErrorsAreSmallerAndFaster) {
+  const LeftOfDraws left = left_of_draws({2.0, 10800.0}, {0.6, 1200.0}, 1.0);
+  EXPECT_LT(std::sqrt(left.um2), 1.2 * 0.6);
+}
+
+// A calm axis does not say that the next cut is calm: after 50 hours a probing that is 2 deviations of the fit off is taken.
+TEST(ProbeFeedback, IsNotMuchStricterAfterACalmTime) {
   ProbeFeedback feedback({3.0, 7200.0}, {.noise_um = 1.0}, true);
   for (int hour = 0; hour < 50; ++hour) {
     feedback.row(0.0, 0.0, 3600.0);
     EXPECT_TRUE(feedback.probe_drift_um(0.0));
   }
-  EXPECT_EQ(probe_scale(&feedback.state()), 1.0);
+  feedback.row(0.0, 0.0, 3600.0);
+  EXPECT_TRUE(feedback.probe_drift_um(6.0));
 }
 
-// Three chips in a row are taken for a jump. After them a probing may be further off than usual, by a factor of 3.5 at most;
-// two good ones bring the axis back.
+// Three chips in a row are taken for a jump, and for large errors. A good probing brings the axis back; a shift later the bound of
+// refusal is twice the usual one at most.
 TEST(ProbeFeedback, ComesBackAfterThreeChipsInARow) {
   ProbeFeedback feedback({1.5, 7200.0}, {.noise_um = 1.0}, true);
   const std::vector<double> reads = {0.4, 40.0, -35.0, 60.0, 0.3, -0.2, 0.5};
   double usual_um = 0.0;
-  for (std::size_t hour = 0; hour < reads.size(); ++hour) {
+  for (std::size_t hour = 0; hour < reads.size() + 12; ++hour) {
     feedback.row(0.0, 0.0, 3600.0);
-    (void)feedback.probe_drift_um(reads[hour]);
+    (void)feedback.probe_drift_um(hour < reads.size() ? reads[hour] : 0.2);
     if (hour == 1) usual_um = feedback.state().bound_um;
-    if (hour > 1) {
-      EXPECT_LT(feedback.state().bound_um, 3.5 * usual_um) << hour;
+    if (hour == 6) {
+      EXPECT_NEAR(feedback.estimate_um(), 0.2, 1.5);
     }
   }
-  EXPECT_NEAR(feedback.estimate_um(), 0.2, 1.5);
+  EXPECT_LT(feedback.state().bound_um, 2.0 * usual_um);
 }
 
 /// A probing: when its value comes, and drift minus prediction as it reads it.
@@ -143,8 +161,7 @@ struct Read {
   double time_s, um;
 };
 
-/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers, whose
-/// scale is known as from one of them and is 1 at least: no filter.
+/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers: no filter.
 /// @param jumped_s  probings from then on read a level, too, of which nothing is known before; negative: none
 std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
                                          const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
@@ -169,10 +186,51 @@ std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& 
     }
   }
   const Eigen::VectorXd weights = all.ldlt().solve(with);
-  // The first reading of the level, of which nothing is known, says nothing of the scale.
-  const double n_known = static_cast<double>(n) - has_level(time_s);
-  const double scale = std::max(1.0, (1.0 + z.dot(all.ldlt().solve(z))) / (1.0 + n_known));
-  return {weights.dot(z), scale * (covariance(time_s, time_s) + unknown * has_level(time_s) - weights.dot(with))};
+  return {weights.dot(z), covariance(time_s, time_s) + unknown * has_level(time_s) - weights.dot(with)};
+}
+
+/// The same of 16 processes, with the probabilities that each reading leaves them, and which return to those at first in a day.
+std::pair<double, double> by_16_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
+                                            const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
+  std::vector<ResidualProcess> processes;
+  std::vector<double> first, w;
+  for (const double size : {1.0 / 3.0, 1.0, 3.0, 9.0}) {
+    for (const double time : {0.25, 1.0, 4.0, 16.0}) {
+      processes.push_back({size * p.deviation_um, time * p.time_constant_s});
+      first.push_back(std::exp(-0.5 * std::pow(std::log(size), 2) / (std::numbers::pi * std::numbers::pi / 8.0)));
+    }
+  }
+  const auto normalised = [](std::vector<double> v) {
+    const double sum = std::accumulate(v.begin(), v.end(), 0.0);
+    for (double& x : v) x /= sum;
+    return v;
+  };
+  first = w = normalised(first);
+  double last_s = 0.0;
+  const auto wait_until = [&](double t_s) {
+    const double same = std::exp(-(t_s - last_s) / 86400.0);
+    for (std::size_t k = 0; k < w.size(); ++k) w[k] = same * w[k] + (1.0 - same) * first[k];
+    last_s = t_s;
+  };
+  std::vector<Read> before;
+  for (const Read& read : reads) {
+    wait_until(read.time_s - probe.lag_s);
+    for (std::size_t k = 0; k < w.size(); ++k) {
+      const auto [mean_um, um2] = by_covariances(processes[k], probe, is_known, before, read.time_s - probe.lag_s, jumped_s);
+      const double all_um2 = um2 + probe.noise_um * probe.noise_um;
+      w[k] *= std::exp(-0.5 * std::pow(read.um - mean_um, 2) / all_um2) / std::sqrt(all_um2);
+    }
+    w = normalised(w);
+    before.push_back(read);
+  }
+  wait_until(time_s);
+  double mean_um = 0.0, um2 = 0.0;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const auto [own_um, own_um2] = by_covariances(processes[k], probe, is_known, reads, time_s, jumped_s);
+    mean_um += w[k] * own_um;
+    um2 += w[k] * (own_um2 + own_um * own_um);
+  }
+  return {mean_um, um2 - mean_um * mean_um};
 }
 
 // Rows of 10 s; the filter answers at each as the joint distribution of all probings so far.
@@ -194,7 +252,7 @@ TEST(ProbeFeedback, IsTheConditionalDistributionOfAllProbings) {
         }
         if (row % 7 != 0 && reads.size() == all.size()) continue;
         for (const double ahead_s : {0.0, 1800.0}) {
-          const auto [mean_um, um2] = by_covariances(p, probe, is_known, reads, time_s + ahead_s);
+          const auto [mean_um, um2] = by_16_covariances(p, probe, is_known, reads, time_s + ahead_s);
           ASSERT_NEAR(feedback.estimate_um(ahead_s), mean_um, 1e-9) << time_s << " " << lag_s;
           ASSERT_NEAR(feedback.deviation_um(ahead_s), std::sqrt(std::max(0.0, um2)), 1e-6) << time_s << " " << lag_s;
         }
@@ -243,18 +301,21 @@ TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {
   EXPECT_EQ(feedback.state().n_jumps, 1);
 }
 
-// A drift that is faster than the process ever was is not refused for ever: each third probing is taken, and what is left
-// stays below what the axis moves meanwhile.
+// A drift that is five times faster than the process ever was: the third probing is taken, and what it says of the size of errors
+// lets the next ones be taken, too. 20 um an hour: what is left after a probing is 0.5 um or so in most hours, and below 65 um.
 TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
   ProbeFeedback feedback({2.0, 36000.0}, {.noise_um = 0.5}, true);
   double most_um = 0.0;
+  int n_close = 0;
   for (int hour = 0; hour < 24; ++hour) {
     feedback.row(0.0, 0.0, 3600.0);
     (void)feedback.probe_drift_um(20.0 * hour);
-    most_um = std::max(most_um, std::abs(20.0 * hour - feedback.estimate_um()));
+    const double left_um = std::abs(20.0 * hour - feedback.estimate_um());
+    most_um = std::max(most_um, left_um);
+    n_close += left_um < 1.0;
   }
-  EXPECT_EQ(feedback.state().n_jumps, 7);
-  EXPECT_LT(most_um, 42.0);
+  EXPECT_GE(n_close, 20);
+  EXPECT_LT(most_um, 65.0);
 }
 
 // An axis that was knocked stays where it is: after a jump the filter is the joint distribution with a level of which
@@ -274,7 +335,7 @@ TEST(ProbeFeedback, AJumpIsALevelThatDoesNotFade) {
       reads.push_back(read);
     }
     if (reads.size() < 3) continue;
-    const auto [mean_um, um2] = by_covariances(p, probe, false, reads, time_s, 3000.0);
+    const auto [mean_um, um2] = by_16_covariances(p, probe, false, reads, time_s, 3000.0);
     ASSERT_NEAR(feedback.estimate_um(), mean_um, 1e-4) << time_s;  // 1e9 um² of the level cost digits
     ASSERT_NEAR(feedback.deviation_um(), std::sqrt(um2), 1e-3) << time_s;
   }

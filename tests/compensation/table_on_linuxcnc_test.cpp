@@ -11,8 +11,7 @@
 #include <sstream>
 
 #include "compensation/frames/frame_programs.hpp"
-#include "tests/shared/one_hal.hpp"
-#include "tests/shared/temporary_file.hpp"
+#include "tests/shared/headless_linuxcnc.hpp"
 
 namespace driftwright::compensation::table_on_linuxcnc_test {
 namespace {
@@ -21,23 +20,6 @@ constexpr double kRadius_mm = 3.0, kFeed_mm_min = 120.0;  // 2 um a servo cycle
 constexpr double kProbe_mm = 100.0;                       // height of joint 2 above the tip
 const Eigen::Vector3d kUser_mm(4000.0, 50.0, -10.0);      // G54
 constexpr double kUser_deg = 30.0;
-
-std::string axis_or_joint(const std::string& head, int travel_mm) {
-  return "[" + head + "]\nMIN_LIMIT = -" + std::to_string(travel_mm) + "\nMAX_LIMIT = " + std::to_string(travel_mm) +
-         "\nMAX_VELOCITY = 4000\nMAX_ACCELERATION = 20000\n";
-}
-
-std::string ini() {
-  std::string text = read_text("tests/shared/linuxcnc.ini") +
-                     "MAX_LINEAR_VELOCITY = 4000\nDEFAULT_LINEAR_VELOCITY = 4000\nMAX_LINEAR_ACCELERATION = 20000\n";
-  for (const char* letter : {"X", "Y", "Z"}) text += axis_or_joint(std::string("AXIS_") + letter, 5000);
-  for (int j = 0; j < 3; ++j) {
-    text += axis_or_joint("JOINT_" + std::to_string(j), 5000) +
-            "TYPE = LINEAR\nFERROR = 1000\nMIN_FERROR = 1000\nHOME_SEQUENCE = 0\n";
-    if (j == 0) text += "COMP_FILE = linuxcnc/joint_0.comp\nCOMP_FILE_TYPE = 1\n";
-  }
-  return text;
-}
 
 /// The probe is closed inside the table: below its face and outside the nearer ring's bore.
 std::string hal(const Eigen::Vector3d& low_mm, const Eigen::Vector3d& high_mm) {
@@ -63,10 +45,7 @@ addf motion-controller servo-thread
            << "\n";
     text += places.str();
   }
-  return text + R"(net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
-net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
-net change iocontrol.0.tool-change => iocontrol.0.tool-changed
-net x joint.0.pos-cmd => comp.0.in1 sum2.0.in0
+  return text + kHeadlessIo + R"(net x joint.0.pos-cmd => comp.0.in1 sum2.0.in0
 net y joint.1.pos-cmd => sum2.1.in0
 net z joint.2.pos-cmd => comp.2.in0
 setp comp.0.in0 0
@@ -159,8 +138,7 @@ say("done 1")
 )";
 
 TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRefuses) {
-  if (std::system("command -v linuxcnc >/dev/null 2>&1 && /usr/bin/python3 -c 'import linuxcnc' >/dev/null 2>&1") != 0)
-    GTEST_SKIP() << "LinuxCNC is not installed (linuxcnc-uspace)";
+  if (!has_linuxcnc()) GTEST_SKIP() << "LinuxCNC is not installed (linuxcnc-uspace)";
   const Eigen::Vector3d low_m(-4.8, 0.1, 0.0), high_m(4.8, 0.1, 0.0);
   const Eigen::Vector3d low_now_m = low_m + Eigen::Vector3d(-50e-6, 20e-6, 5e-6),
                         high_now_m = high_m + Eigen::Vector3d(70e-6, 40e-6, 15e-6);
@@ -172,33 +150,17 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
   program.feed_mm_min = kFeed_mm_min;
 
   const std::filesystem::path folder = fresh_folder("linuxcnc");
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    std::ofstream(folder / name) << text;
-  };
-  for (const ProgramFile& f : frame_programs(program)) write(f.name, f.text);
-  write("sim.ini", ini());
-  write("sim.hal", hal(1e3 * low_now_m, 1e3 * high_now_m));
-  write("script.py", kScript);
-  write("tool.tbl", "T1 P1 Z100 D6\n");
-  write("sim.var", "150 0\n151 0\n5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 8\n5383 9\n5390 10\n");
-  write("fifo/empty", "");
-  using std::filesystem::perms;
-  std::filesystem::permissions(folder / "script.py", perms::all);
-  std::filesystem::permissions(folder / "fifo", perms::all);  // the realtime process gives root up and makes its pipe there
-  const std::string command = "cd " + folder.string() +
-                              " && RTAPI_UID=65534 RTAPI_FIFO_PATH=" + (folder / "fifo" / "f").string() + " " + kOneHal +
-                              "timeout 150 linuxcnc -r sim.ini > log.txt 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << read_text(folder / "log.txt");
-
-  const std::string said = read_text(folder / "result.txt");
-  EXPECT_THAT(said, ::testing::Not(::testing::HasSubstr("error")));
-  std::map<std::string, double> found;
-  std::istringstream rows(said);
-  for (std::string name; rows >> name;) {
-    if (!(rows >> found[name])) break;
-  }
-  ASSERT_TRUE(found.contains("done")) << said << read_text(folder / "log.txt");
+  std::map<std::string, std::string> files = {
+      {"sim.ini", headless_ini("", "COMP_FILE = linuxcnc/joint_0.comp\nCOMP_FILE_TYPE = 1\n")},
+      {"sim.hal", hal(1e3 * low_now_m, 1e3 * high_now_m)},
+      {"script.py", kScript},
+      {"tool.tbl", "T1 P1 Z100 D6\n"},
+      {"sim.var", "150 0\n151 0\n5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 8\n5383 9\n5390 10\n"}};
+  for (const ProgramFile& f : frame_programs(program)) files[f.name] = f.text;
+  std::map<std::string, double> found = run_headless(folder, files, 150);
+  EXPECT_EQ(found["exit"], 0.0);
+  ASSERT_TRUE(found.contains("done") && !found.contains("error"))
+      << read_text(folder / "result.txt") << read_text(folder / "log.txt");
   // G54 stays whatever happens, and G59.3 where nothing was measured.
   for (const std::string of : {"bare", "high", "missing"}) EXPECT_EQ(found[of + "Words"], 1.0) << of;
   found["beforeLeft"] = 1.0;  // nothing has run

@@ -1,9 +1,9 @@
 // Words of a diagnosis for its scenario and documents, from diagnoses by hand.
 
+#include "diagnosis/diagnosis_words.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "diagnosis/diagnosis_words.hpp"
 
 namespace driftwright::diagnosis::diagnosis_words_test {
 namespace {
@@ -18,6 +18,20 @@ TEST(DiagnosisWords, TimesAreInMinutesAndIntervalsInOrder) {
   EXPECT_EQ(interval_text({"time", "min", 120.0, 118.0, 122.0}), "118 to 122");
   EXPECT_EQ(interval_text({"factor", "1", 0.8, 0.9, 0.7}), "0.7 to 0.9");
   EXPECT_EQ(value_text({"factor", "1", 0.8, 0.7, 0.9}), "0.8");
+  EXPECT_EQ(value_text({"power", "W", 102.16925, 84.4, 123.6}), "102 W");
+}
+
+TEST(DiagnosisWords, HaveMoreThanThreeDigitsWhereAnIntervalIsNarrower) {
+  EXPECT_EQ(interval_text({"exponent", "1", 1.2974818, 1.2938412, 1.3011224}), "1.294 to 1.301");
+  EXPECT_EQ(interval_text({"cooling_power", "W", 1407.5446, 1402.1, 1413.2}), "1400 to 1410");
+  EXPECT_EQ(value_text({"at_speed", "rpm", 1234.5, 1234.5, 1234.5}), "1234.5 rpm");  // it has no interval
+}
+
+TEST(DiagnosisWords, CallACauseByTheUsersOwnEffect) {
+  Cause cause{"contact", "head,column", "another conductance", {}, 41.3, {}};
+  EXPECT_EQ(cause_name(cause), "contact at head,column");
+  cause.own = "link at head,column, line 8";
+  EXPECT_EQ(cause_name(cause), "link at head,column, line 8");
 }
 
 TEST(DiagnosisWords, SayWhichQuantityAChannelIs) {

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "base/errors.hpp"
+#include "diagnosis/own_effects.hpp"
 #include "diagnosis/scatter.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
@@ -169,7 +170,7 @@ void expect_runs_as_predicted(const Bench& b, const Case& finding) {
     return (x - predicted.topRows(simulated.rows())).cwiseAbs().maxCoeff();
   };
   const double size = apart(before.topRows(simulated.rows()));
-  // Seven digits of a change of some 10 K or um. The reduced model of the mesh may be off by 8 mK and 16 nm, and by three
+  // Six digits of a change of some 10 K or um. The reduced model of the mesh may be off by 8 mK and 16 nm, and by three
   // percent of a change of matrices that its basis was not made for (2.5 % of what another conductivity does).
   const double tolerance = finding.with_mesh ? 0.01 + 0.03 * size : 1e-3;
   EXPECT_LT(apart(simulated), tolerance) << extended.text;
@@ -361,6 +362,22 @@ TEST(ExtendedScenario, KeepsCommentsAndSaysWhatItChanged) {
   const ExtendedScenario e = extend(spindle(), [](TwinState& t) { t[5].set("conductance", 18.0); });
   EXPECT_THAT(e.text, AllOf(HasSubstr("# head\n"), HasSubstr("# a comment at the top"), HasSubstr("# cast iron"),
                             HasSubstr("    conductance: 18 W/K   # diagnosis: conductance was 9 W/K; because\n")));
+}
+
+TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
+  const Twin twin(spindle().augmented, spindle().machine, kTight);
+  const auto called = [&](const Change& change) { return own_effects(twin.as_written(), change); };
+  EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 15");
+  EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}"})),
+            "bearing_friction at shaft, line 11");
+  EXPECT_EQ(called(added({"{type: changed_law, law: link housing - ambient, factor: 1.7}"})),
+            "link at housing,ambient, line 15");
+  EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}",
+                          "{type: changed_law, law: motor_loss housing, factor: 1.6}"})),
+            "bearing_friction at shaft, line 11 and motor_loss at housing, line 12");
+  EXPECT_EQ(called(added({"{type: heat_capacity, node: housing, factor: 1.5}"})), "node at housing, line 9");
+  EXPECT_EQ(called(added({"{type: heat_source, node: shaft, power: 40 W}"})), "");
+  EXPECT_EQ(called(added({"{type: expansion, node: shaft, factor: 1.4, displacement: nose}"})), "");
 }
 
 TEST(ExtendedScenario, KeepsTheUnitOfTheFileAndWritesTemperaturesWhole) {

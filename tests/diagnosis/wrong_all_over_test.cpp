@@ -44,14 +44,14 @@ TEST(NumbersFarOff, AreCausesWhereTheyAreFew) {
   const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {14, 26, 14}, 20), "one"));
   const Diagnosis d = beside.diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
-  EXPECT_THAT(d.reason, HasSubstr("contact at head,column"));
+  EXPECT_THAT(d.reason, HasSubstr("link at head,column, line 10"));
 }
 
 TEST(NumbersFarOff, AreCausesWhereTheyAreTwo) {
   const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {14, 26, 14}, 9), "two"));
   const Diagnosis d = beside.diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
-  EXPECT_THAT(d.reason, testing::AllOf(HasSubstr("contact at head,column"), HasSubstr("heat_capacity at head")));
+  EXPECT_THAT(d.reason, testing::AllOf(HasSubstr("link at head,column, line 10"), HasSubstr("node at head, line 6")));
 }
 
 TEST(NumbersFarOff, SayThatTheModelIsWrongAllOverWhereTheyAreMany) {

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
+#include "effects/learned.hpp"
 #include "tests/effects/read_entry.hpp"
 #include "tests/shared/refused.hpp"
 
@@ -99,6 +100,40 @@ TEST(Learned, FollowsARecordedColumn) {
   // 150 W are more than was learned from: as much as at 100
   EXPECT_NEAR(t(kA, 2), 8 + 1.5 * -std::expm1(-150.0 / 120.0), 1e-12);
   EXPECT_NEAR(t(kA, 3), 2 + 1.5 * -std::expm1(-150.0 / 120.0) * std::exp(-150.0 / 120.0), 1e-12);
+}
+
+// Row by row, as `follow` has it: what the chain gives of the whole record.
+TEST(Learned, AddsToAStreamWhatItAddsToARecord) {
+  std::vector<Effect> effects;
+  for (const char* text : {"{type: learned, displacement: z, keeps: 0.6, follows: speed, at_speed: 1500 rpm, exponent: 2, "
+                           "grows: [[0 min, 3 um], "
+                           "[2 min, -4 um]]}",
+                           "{type: learned, displacement: z, follows: running, above: 1500 rpm, grows: [[5 min, 7 um]]}",
+                           "{type: learned, displacement: z, follows: ambient, grows: [[0 min, 1 um], [10 min, 6 um]]}",
+                           "{type: learned, sensor: a, offset: 1 K}"})
+    effects.push_back(read(text));
+  Eigen::MatrixXd outputs = truth();
+  outputs.row(kZ) << 1e-6, 4e-6, 9e-6, 7e-6, 2e-6, 3e-6;
+  const Eigen::MatrixXd whole =
+      reading_chain(effects, kCyclogram.name)
+          .apply({"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, kCyclogram, kAmbient, outputs);
+  LearnedStream stream(effects, "z");
+  EXPECT_TRUE(LearnedStream(effects, "tilt").empty());
+  const auto drive = [](double t_s) { return kCyclogram.drive(t_s); };
+  stream.begin(outputs(kZ, 0), kAmbient.at(0.0));
+  for (std::size_t i = 0; i < kTime_s.size(); ++i) {
+    if (i > 0) {
+      stream.advance(kTime_s[i] - kTime_s[i - 1], drive(kTime_s[i - 1]), kAmbient.at(kTime_s[i - 1]),
+                     kAmbient.at(kTime_s[i]));
+      LearnedStream again(effects, "z");
+      again.recall(stream.state());
+      stream = again;
+    }
+    const auto row = static_cast<Eigen::Index>(i);
+    // after the last row the chain holds the last section's drive
+    EXPECT_NEAR(stream.with_learned(outputs(kZ, row), drive(std::min(kTime_s[i], 899.0))), whole(kZ, row), 1e-15) << i;
+  }
+  EXPECT_THROW(stream.recall({}), InputError);
 }
 
 TEST(Learned, RefusesWhatDoesNotGoTogether) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "findings/cause_section.hpp"
 #include "findings/cause_words.hpp"
 #include "findings/diagnosis_answer.hpp"
 #include "findings/diagnosis_document.hpp"
@@ -166,6 +167,25 @@ TEST(Reports, OfADiagnosisAreReadFromTheTop) {
   expect_read_from_the_top(diagnosis_document(found.findings("extended.yaml"), {}));
 }
 
+TEST(Reports, OfADiagnosisSayWhatCouldBeLearnedBesideIt) {
+  const StepOfAnIndicator found;
+  const studies::Remainder learned{
+      .channels = {{.name = "nose", .unit = "um", .rmse_file = 4.5, .rmse_with_remainder = 1.25, .is_learned = true}},
+      .why_not = ""},
+      none{.channels = {}, .why_not = "The readings are too few."};
+  const auto document = [&](const studies::Remainder& remainder) {
+    DiagnosisFindings findings = found.findings("extended.yaml");
+    findings.remainder = &remainder;
+    return diagnosis_document(findings, {});
+  };
+  const auto gain = output::document_json(document(learned)).at("gain");
+  ASSERT_EQ(gain.at("remainder").size(), 1u);
+  EXPECT_EQ(gain.at("remainder")[0].at("rmse_with_remainder"), 1.25);
+  EXPECT_EQ(gain.at("remainder")[0].at("learned"), "yes");
+  EXPECT_THAT(output::document_html(document(none)).page,
+              ::testing::HasSubstr("Nothing was learned beside extended.yaml: The readings are too few."));
+}
+
 TEST(Reports, OfACalibrationAreReadFromTheTop) {
   const StepOfAnIndicator found;
   expect_read_from_the_top(calibration_document(found.findings("calibrated.yaml"), {}));
@@ -230,6 +250,47 @@ TEST(Reports, AnswerInWordsForSomebodyAtTheMachine) {
                           HasSubstr("All that might be missing: 2 possibilities")));
 }
 
+// Two causes in one channel: a step of 5 um, and 2 um that another one adds. Each picture shows the machine without its cause
+// and with both, in the channel where that cause shows most.
+TEST(Reports, ShowOfEachCauseWhatTheMachineWouldDoWithoutIt) {
+  StepOfAnIndicator found;
+  diagnosis::MeasuredRun& run = found.measured.runs[0];
+  run.channels[0].value = Eigen::VectorXd::Constant(2, 7e-6);
+  run.channels.push_back({"table", 1, "m", Eigen::VectorXd::Constant(2, 4e-6)});
+  found.d.noise["table"] = {.white = 1e-6};
+  found.d.as_written = {Eigen::MatrixXd::Zero(2, 2)};
+  Eigen::MatrixXd all(2, 2), without_first(2, 2), without_second(2, 2);
+  all << 7e-6, 7e-6, 4e-6, 4e-6;
+  without_first << 2e-6, 2e-6, 4e-6, 4e-6;  // the step is in nose alone
+  without_second << 5e-6, 5e-6, 0.0, 0.0;   // the other one adds 2 um to nose and 4 um to table
+  found.d.search.fit.prediction = {all};
+  found.d.without_cause = {{without_first}, {without_second}};
+  diagnosis::Cause other{"expansion", "bed", "another expansion", {{"factor", "1", 1.5, 1.4, 1.6}}, 30.0, {}};
+  other.own = "node at bed, line 7";
+  found.d.causes.push_back(other);
+  const output::Section section = causes_section(found.measured, found.d);
+  ASSERT_EQ(section.sections.size(), 2U);
+  const auto plot_of = [](const output::Section& cause) -> const output::Plot* {
+    for (const output::Block& block : cause.blocks) {
+      if (const auto* plot = std::get_if<output::Plot>(&block)) return plot;
+    }
+    return nullptr;
+  };
+  const output::Plot *first = plot_of(section.sections[0]), *second = plot_of(section.sections[1]);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->title, "Cause 1: nose in monday");
+  EXPECT_EQ(second->title, "Cause 2: table in monday");
+  ASSERT_EQ(first->series.size(), 3U);
+  EXPECT_NEAR(first->series[0].y[0], 7.0, 1e-9);   // measured
+  EXPECT_NEAR(first->series[1].y[0], 2.0, 1e-9);   // without it
+  EXPECT_NEAR(first->series[2].y[0], 7.0, 1e-9);   // mended
+  EXPECT_NEAR(second->series[1].y[0], 0.0, 1e-9);  // not the scenario as it is: the step stays
+  EXPECT_NEAR(second->series[2].y[0], 4.0, 1e-9);
+  found.d.causes.pop_back();
+  found.d.without_cause.pop_back();
+  EXPECT_FALSE(plot_of(causes_section(found.measured, found.d).sections[0]));  // the picture at the top is of this one
+}
+
 TEST(Reports, SayFirstThatFewChannelsWereCompared) {
   StepOfAnIndicator found;
   found.d.causes.clear();
@@ -279,6 +340,26 @@ TEST(CauseWords, SayTimesAndSharesInTheSentence) {
             "The reading of thermometer t_column is wrong: sensor that comes off its body, from 95 min on, in tuesday; 84 % "
             "of air in the reading.");
   EXPECT_EQ(cause_sentence(d, 1), "The heat in drum is not what the scenario says: heat from 117 to 182 min; power 71.5 W.");
+}
+
+TEST(CauseWords, NameTheUsersOwnEffectAndItsLine) {
+  diagnosis::Diagnosis d;
+  d.search.findings.resize(1);
+  d.causes.resize(1);
+  d.causes[0].effect = "friction_law";
+  d.causes[0].where = "head";
+  d.causes[0].law = "another growth with speed";
+  d.causes[0].own = "motor_loss at head, line 7";
+  d.causes[0].parameters = {{"exponent", "1", 2.075}};
+  EXPECT_EQ(
+      cause_sentence(d, 0),
+      "The heat in head is not what the scenario says (motor_loss at head, line 7): another growth with speed; exponent "
+      "2.08.");
+  output::Section section;
+  add_causes_data(section, d.causes);
+  const Json json = output::section_json(section)["causes"][0];
+  EXPECT_EQ(json["effect"], "friction_law");  // programs compare this key
+  EXPECT_EQ(json["own"], "motor_loss at head, line 7");
 }
 
 TEST(CauseWords, NameWhatToLookAtForEachQuantity) {

@@ -2,6 +2,7 @@
 // both versions, in co-simulation at any step and in model exchange with the importer's own integrator. One file: one
 // importer runs all units.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <minizip/unzip.h>
@@ -456,6 +457,180 @@ TEST_P(Fmu, OfAnObserverTakesProbings) {
   EXPECT_EQ(refused.back(), 2.0);
 }
 
+// --- laws that follow temperatures
+
+/// A spindle whose oil thins and whose preload grows, a housing cooled by a formula that has a cusp between equal
+/// temperatures, and a channel of three sections.
+constexpr const char* kOiled = R"yaml(name: oiled
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: shaft, capacity: 5.6 kJ/K}
+  - {type: node, node: bearing, capacity: 0.7 kJ/K}
+  - {type: node, node: housing, capacity: 19 kJ/K}
+  - {type: node, node: column, capacity: 60 kJ/K}
+  - type: bearing_friction
+    node: bearing
+    count: 2
+    f0: 0.8
+    viscosity_40: 25 mm^2/s
+    viscosity_100: 5.4 mm^2/s
+    mean_diameter: 90 mm
+    f1: 0.0006
+    load: 300 N
+    preload_growth: 15 N/K
+    inner: {node: shaft}
+    outer: {node: housing}
+  - {type: friction_law, node: column, power: 30 W, at_speed: 9000 rpm, decay: 0.02 1/K}
+  - {type: motor_loss, node: shaft, power: 90 W, at_speed: 12000 rpm, exponent: 1.5}
+  - {type: link, node: bearing, to: shaft, conductance: 15 W/K}
+  - {type: link, node: bearing, to: housing, conductance: 30 W/K}
+  - {type: link, node: housing, to: column, conductance: 20 W/K}
+  - type: formula
+    node: column
+    conductance: "G*(1 + abs((T_c - T_a)/d)^0.25)"
+    to: ambient
+    G: 4 W/K
+    d: 1 K
+    T_c: column
+    T_a: ambient
+  - type: coolant_channel
+    node: housing
+    then: [bearing, column]
+    medium: glycol_30
+    flow: 0.4 L/min
+    diameter: 8.9 mm
+    length: 1200 mm
+    set_point: 21 degC
+    runs: while_spindle_turns
+start: ambient
+ambient: [[0 h, 20 degC], [1 h, 23 degC], [9 h, 22 degC]]
+sensors: [{name: t_bearing, node: bearing}, {name: t_housing, node: housing}, {name: t_column, node: column}]
+displacements:
+  - {name: nose_z, sensitivities: [{node: shaft, sensitivity: 2.9 um/K}, {node: housing, sensitivity: -1.2 um/K}]}
+cyclograms: {shift: [[70 min, 9000 rpm], [30 min, 0 rpm], [60 min, 4000 rpm]], fast: [[9 min, 9999 rpm]]}
+solver: {model: reduced, relative_tolerance: 1e-9, absolute_tolerance: 1e-8 K, output_interval: 60 s}
+)yaml";
+
+/// The C-frame on a coarse mesh, with films of free convection and radiation, without its door that opens for a while.
+std::string frame_yaml() {
+  std::string text = read_text("scenarios/c_frame.yaml");
+  const auto replace = [&](const std::string& what, const std::string& by) { text = replaced(text, what, by); };
+  replace("mesh: parts/", "mesh: " + std::filesystem::absolute("scenarios/parts").string() + "/");
+  replace("nc_program: parts/", "nc_program: " + std::filesystem::absolute("scenarios/parts").string() + "/");
+  replace("mesh_size: {default: 90 mm, head: 60 mm, spindle: 40 mm}", "mesh_size: {default: 150 mm}");
+  replace("element_order: 2", "element_order: 1");
+  replace("film: 12 W/(m^2 K), from: 10 min, until: 15 min}", "film: 2 W/(m^2 K)}");
+  replace("  relative_tolerance: 1e-3\n  absolute_tolerance: 5e-3 K\n",
+          "  model: reduced\n  relative_tolerance: 1e-8\n  absolute_tolerance: 1e-7 K\n");
+  replace("warm_up: [[60 min, 6000 rpm]]", "warm_up: [[60 min, 6000 rpm], [20 min, 0 rpm]]");
+  replace("  fields_at: [10 min, 15 min]\n  stresses: true\n", "");
+  return text;
+}
+
+struct Live {
+  scenarios::Scenario scenario;
+  FmuModel fmu;
+  std::vector<std::string> outputs;
+  Record predicted;
+  explicit Live(const std::string& name, const std::string& yaml, const std::string& cyclogram)
+      : scenario(scenarios::read_scenario(driftwright::write_file(name, yaml))) {
+    require_exportable(scenario);
+    const scenarios::Model model = scenarios::open_model(scenario, {}, {}, false);
+    fmu = machine_fmu(scenario, *model.reduced());
+    outputs = names_of(fmu.outputs);
+    predicted = studies::predict_drift(scenario, scenario.cyclogram(cyclogram), {.model = "reduced"}, {}, "a test").record;
+  }
+  [[nodiscard]] std::size_t n_live() const {
+    const auto is_live = [](const auto& law) { return law.live.has_value(); };
+    return static_cast<std::size_t>(std::count_if(fmu.sources.begin(), fmu.sources.end(), is_live) +
+                                    std::count_if(fmu.exchanges.begin(), fmu.exchanges.end(), is_live));
+  }
+  [[nodiscard]] Record speed() const { return Fp3::speed_of(predicted); }
+  void expect_predicted(const Told& told) const {
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      EXPECT_LT(largest_gap(told.of[o], predicted.at(outputs[o]).values, predicted.n_samples()), kLive[is_length(o)])
+          << outputs[o];
+  }
+  void expect_same(const Told& a, const Told& b, double share) const {
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      EXPECT_LT(largest_gap(a.of[o], b.of[o], predicted.n_samples()), share * kLive[is_length(o)]) << outputs[o];
+  }
+  static constexpr double kLive[2] = {1e-4, 1e-3};  ///< K; um and urad
+  [[nodiscard]] std::size_t is_length(std::size_t o) const { return fmu.outputs[o].unit == "degC" ? 0 : 1; }
+};
+
+const Live& oiled() {
+  static const Live live("oiled.yaml", kOiled, "shift");
+  return live;
+}
+const Live& frame() {
+  static const Live live("c_frame.yaml", frame_yaml(), "warm_up");
+  return live;
+}
+
+TEST_P(Fmu, WithLawsOfTemperaturesIsWhatPredictSaysWhateverTheStep) {
+  EXPECT_EQ(oiled().n_live(), 5u) << "two frictions, the formula, what the channel brings back to two sections";
+  EXPECT_EQ(frame().n_live(), 13u) << "seven films of free convection, five of radiation, the bearings";
+  for (const Live* live : {&oiled(), &frame()}) {
+    const Unit unit({.model = live->fmu, .version = GetParam()}, name("live"));
+    const Told minutes = import_unit(unit, live->speed(), live->outputs, {}),
+               seconds = import_unit(unit, live->speed(), live->outputs, {.step_s = 1.0});
+    live->expect_predicted(minutes);
+    live->expect_predicted(seconds);
+    live->expect_same(minutes, seconds, 0.1);
+    EXPECT_EQ(minutes.run.allocated, 0) << "no memory is taken after the start";
+    EXPECT_EQ(import_unit(of_sources(unit), live->speed(), live->outputs, {}).of, minutes.of);
+    live->expect_same(import_unit(unit, live->speed(), live->outputs, {.rewind_at_row = 37}), minutes, 1e-9);
+    RecordProperty("seconds_" + live->fmu.name, std::to_string(minutes.run.seconds));
+  }
+}
+
+TEST_P(Fmu, WithLawsOfTemperaturesInModelExchangeIsTheSame) {
+  const Live& live = oiled();
+  Record rows = live.speed();
+  const Told told = import_unit(Unit({.model = live.fmu, .version = GetParam()}, name("live_exchange")), rows, live.outputs,
+                                {.co_simulation = false});
+  live.expect_predicted(told);
+  EXPECT_LT(told.run.jacobian_gap, 1e-6) << "directional derivatives along states and speed, against differences";
+}
+
+TEST_P(Fmu, WithLawsOfTemperaturesTakesTheAmbientAsAnInput) {
+  const Live& live = oiled();
+  Record inputs = live.speed();
+  Channel ambient{"ambient_temperature", "degC", {}};
+  for (double t_s : inputs.time_s)
+    ambient.values.push_back(live.scenario.machine->ambient.at(t_s) + live.scenario.machine->reference_K - kZeroCelsius_K);
+  inputs.channels.push_back(ambient);
+  live.expect_predicted(import_unit(Unit({.model = live.fmu, .version = GetParam()}, name("live_ambient")), inputs,
+                                    live.outputs, {.step_s = 7.0, .ambient_from_input = 1}));
+}
+
+TEST_P(Fmu, SaysThatALawHasNoValueWhereItsRangeEnds) {
+  FmuOrder order{.model = oiled().fmu, .version = GetParam()};
+  order.model.start.array() += 200.0 * order.model.ones.array();  // oil at 220 degC; the law ends at 180 degC
+  const Unit unit(order, name("beyond"));
+  const std::string library = unit.library.string();
+  const double times_s[2] = {0.0, 60.0}, speeds_rpm[2] = {9000.0, 9000.0};
+  const unsigned speed = unit.reference.at("spindle_speed");
+  importer_run run = {};
+  run.library = library.c_str();
+  run.guid = unit.guid.c_str();
+  run.is_co_simulation = 1;
+  run.n_inputs = 1;
+  run.n_rows = 2;
+  run.inputs = &speed;
+  run.time_s = times_s;
+  run.input_rows = speeds_rpm;
+  run.ambient_from_input = run.ambient_input = -1;
+  run.step_s = 60.0;
+  double no_output = 0.0;
+  run.outputs = &speed;
+  run.output_rows = &no_output;
+  EXPECT_NE(GetParam() == FmiVersion::k2 ? import_fmi2(&run) : import_fmi3(&run), 0);
+  EXPECT_THAT(run.wrong, HasSubstr("a law has no value at the temperatures"));
+}
+
 TEST(DriveLaw, IsMetToRoundingWhateverItsFormula) {
   const std::vector<DriveRange> ranges = {{DriveVariable::kSpeed, 3000.0}, {DriveVariable::kFeedX, 5000.0}};
   const auto law = [](const Drive& d) {
@@ -535,10 +710,16 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
   refused(replaced(kHead, "effects:\n", "effects:\n  - {type: sensor_bias, sensor: t_head, bias: 1 K}\n"), "--fmu " + target,
           "sensor_bias t_head");
   refused(replaced(kHead, "exponent: 1}", "exponent: 1, from: 1 h, until: 2 h}"), "--fmu " + target, "acts for a time");
-  refused(replaced(kHead, "{type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}",
-                   "{type: bearing_friction, node: head, f0: 1, viscosity_40: 25 mm^2/s, viscosity_100: 5 mm^2/s, "
-                   "mean_diameter: 60 mm}"),
-          "--fmu " + target, "follows temperatures");
+  refused(
+      replaced(kHead, "effects:\n",
+               "effects:\n  - {type: friction_law, node: head, power: 9 W, decay: 0.02 1/K}\n  - {type: changed_law, law: "
+               "friction_law head, growth_beyond: 0, beyond: 1000 rpm}\n"),
+      "--fmu " + target, "follows temperatures of the machine, and has no formula");
+  refused(
+      replaced(kHead, "effects:\n",
+               "effects:\n  - {type: coolant, node: head, tank: cooler, flow: 6 L/min, passage_conductance: 50 W/K, volume: "
+               "12 L, cooling_power: 900 W, set_point: 21 degC, hysteresis: 1 K}\n"),
+      "--fmu " + target, "thermostat");
   refused(replaced(kHead, "name: t_head", "name: spindle_speed"), "--fmu " + target, "rename");
   EXPECT_FALSE(std::filesystem::exists(fresh_folder("refused") / "x.fmu"));
 }

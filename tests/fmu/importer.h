@@ -43,7 +43,7 @@ typedef struct {
 int import_fmi2(importer_run* run);
 int import_fmi3(importer_run* run);
 
-/* Radau IIA of order 5 over a linear right hand side, for both. */
+/* Radau IIA of order 5, for both; the Jacobian is that of the beginning. */
 typedef struct {
   void* of;
   int (*slopes)(void* of, double t_s, const double* z, double* dz); /* not 0: failed */

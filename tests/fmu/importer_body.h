@@ -67,7 +67,7 @@ static int check_jacobian(unit* u) {
   for (k = 0; k < n + run->n_inputs; ++k) {
     const int is_state = k < n;
     const unsigned known = is_state ? run->states[k] : run->inputs[k - n];
-    double value = 0.0, half = 1.0;
+    double value = 0.0, half = 1e-3;
     if (sensitivity(u, unknowns, n_all, known, told)) return 1;
     if (is_state) {
       value = z[k];

@@ -1,4 +1,5 @@
-/* Hairer & Wanner, Solving Ordinary Differential Equations II, ch. IV.5: Radau IIA with three stages. */
+/* Hairer & Wanner, Solving Ordinary Differential Equations II, ch. IV.5 and IV.8: Radau IIA with three stages by
+ * simplified Newton steps. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdlib.h>
@@ -62,7 +63,8 @@ int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, do
   const int counts[] = {100, 100, 1000000};
   const size_t wide = 3 * n;
   double *const jacobian = malloc(n * n * sizeof *jacobian), *const matrix = malloc(wide * wide * sizeof *matrix),
-                *const k = malloc(wide * sizeof *k);
+                *const k = malloc(wide * sizeof *k), *const off = malloc((wide + n) * sizeof *off),
+                *const stage = off + wide;
   size_t* const pivot = malloc(wide * sizeof *pivot);
   double t_s = from_s;
   int level, failed = 0;
@@ -84,9 +86,26 @@ int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, do
     }
     failed = factorise(wide, matrix, pivot);
     for (step = 0; step < n_steps && !failed; ++step) {
+      double change = HUGE_VAL;
+      int iteration;
       t_s = begin_s + step * h_s;
-      for (r = 0; r < 3 && !failed; ++r) failed = f->slopes(f->of, t_s + c[r] * h_s, z, k + (size_t)r * n);
-      solve(wide, matrix, pivot, k);
+      memset(k, 0, wide * sizeof *k);
+      for (iteration = 0; iteration < 20 && h_s * change > 1e-9 && !failed; ++iteration) {
+        for (r = 0; r < 3 && !failed; ++r) {
+          memcpy(stage, z, n * sizeof *stage);
+          for (s = 0; s < 3; ++s) {
+            for (i = 0; i < n; ++i) stage[i] += h_s * a[r][s] * k[(size_t)s * n + i];
+          }
+          failed = f->slopes(f->of, t_s + c[r] * h_s, stage, off + (size_t)r * n);
+        }
+        for (i = 0; i < wide; ++i) off[i] -= k[i];
+        solve(wide, matrix, pivot, off);
+        change = 0.0;
+        for (i = 0; i < wide; ++i) {
+          k[i] += off[i];
+          change = fmax(change, fabs(off[i]));
+        }
+      }
       for (i = 0; i < n; ++i) z[i] += h_s * (a[2][0] * k[i] + a[2][1] * k[n + i] + a[2][2] * k[2 * n + i]);
     }
     t_s = until_s;
@@ -94,6 +113,7 @@ int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, do
   free(jacobian);
   free(matrix);
   free(k);
+  free(off);
   free(pivot);
   return failed;
 }

@@ -15,7 +15,7 @@ import threading
 import waiting
 from one_head import HEAD as SLOW_HEAD
 
-HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # a small heat capacity: it is warm at once
+HEAD = SLOW_HEAD.replace("60 kJ/K", "1.2 J/K")  # a small heat capacity: it is warm at once
 CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
 <MTConnectStreams xmlns="urn:mtconnect.org:MTConnectStreams:1.5">
   <Header creationTime="2026-11-23T12:00:00Z" sender="shop" instanceId="1" version="1.5" bufferSize="131072" nextSequence="9" firstSequence="1" lastSequence="8"/>
@@ -106,7 +106,7 @@ def main():
         running = follow(program, folder, address + "/mill", "speed_rpm=S1speed", "ambient_degC=e2")
         threading.Thread(target=lambda: lines.extend(json.loads(line) for line in running.stdout), daemon=True).start()
 
-        def is_at(um):  # 12 J/K on 20 W/K settle within 4 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the ambient
+        def is_at(um):  # 1.2 J/K on 20 W/K settle within 0.5 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the ambient
             return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
 
         wait_for("drift of 1000 rpm", lambda: is_at(1000 * 0.15 / 20 * 4))
@@ -114,7 +114,7 @@ def main():
         wait_for("drift of 500 rpm in a warmer ambient", lambda: is_at((500 * 0.15 / 20 + 1.5) * 4))
         agent.values = {"speed": "UNAVAILABLE", "ambient": "21.5"}
         n = len(lines)
-        wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 4
+        wait_for("rows without a speed", lambda: len(lines) > n + 10)  # 2 s; the body settles in 0.5
         assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # a missing value is held and does not become 0
         agent.values = {"speed": "500", "ambient": "21.5"}
         agent.leave()

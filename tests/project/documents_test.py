@@ -7,14 +7,14 @@ whose records others published, and docs/how-to/library.md, whose programs `inst
 Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what an earlier one wrote. A command that several pages show
 runs once; each page must show what it printed. Each line of a shown output must be printed. Several blanks count as one; a line that ends with "..." is the beginning of a line; "..." alone means any number of lines.
 """
-import os, re, subprocess, sys, tempfile, time
+import os, re, resource, subprocess, sys, tempfile
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "shared"))
 from result_schema import errors
 
-PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
+PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/how-to/controls.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
@@ -47,6 +47,12 @@ def not_printed(shown, printed):
     return None
 
 
+def processor_s():
+    """What the commands have taken so far: the processor's time, which other work on the machine does not lengthen."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def examples(program):
     """The examples in --help, as (verb, command)."""
     verbs = re.findall(r"^  ([a-z-]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1].split("Exit codes:")[0], re.M)
@@ -73,12 +79,12 @@ def main():
             for number, command, shown in blocks((top / page).read_text()):
                 n += 1
                 typed = command.removeprefix("./").split("  #")[0].strip()
-                begun = time.monotonic()
+                begun = processor_s()
                 if typed not in done_before:
                     done_before[typed] = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
                 done = done_before[typed]
                 missed = not_printed(shown, done.stdout) if done.returncode == 0 else None
-                print(f"{time.monotonic() - begun:6.1f} s  {page}:{number}: {command}", flush=True)
+                print(f"{processor_s() - begun:6.1f} s  {page}:{number}: {command}", flush=True)
                 if done.returncode != 0 or missed:
                     failures += 1
                     print(f"  FAILED: {done.stderr.strip()[-400:] if done.returncode else 'not printed: ' + missed}", flush=True)
@@ -86,9 +92,9 @@ def main():
             if command in done_before:
                 continue
             n += 1
-            begun = time.monotonic()
+            begun = processor_s()
             done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
-            print(f"{time.monotonic() - begun:6.1f} s  {verb} --help: {command}", flush=True)
+            print(f"{processor_s() - begun:6.1f} s  {verb} --help: {command}", flush=True)
             if done.returncode != 0:
                 failures += 1
                 print(f"  FAILED: {done.stderr.strip()[-400:]}", flush=True)

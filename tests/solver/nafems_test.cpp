@@ -249,9 +249,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, NafemsT4,
                          ::testing::Values(Convergence{CellShape::kTet4, {4, 8, 16}, 2.0, 0.01},
                                            Convergence{CellShape::kHex8, {4, 8, 16}, 2.0, 0.011},
                                            Convergence{CellShape::kWedge6, {4, 8, 16}, 2.0, 0.016},
-                                           Convergence{CellShape::kTet10, {8, 16, 32}, 3.0, 3.7e-05},
-                                           Convergence{CellShape::kHex20, {8, 16, 32}, 4.0, 1.7e-06},
-                                           Convergence{CellShape::kWedge15, {8, 16, 32}, 3.0, 3.8e-05}),
+                                           Convergence{CellShape::kTet10, {8, 16}, 3.0, 2.9e-04},
+                                           Convergence{CellShape::kHex20, {8, 16}, 4.0, 2.8e-05},
+                                           Convergence{CellShape::kWedge15, {8, 16}, 3.0, 3.0e-04}),
                          shape_name);
 
 TEST_P(NafemsOnEachCell, CornerOfNafemsT4LimitsTheL2ErrorToSecondOrder) {

@@ -150,6 +150,56 @@ TEST(LoggerImport, ReadsStampsWithOffsets) {
       "'Zeit' holds '02.11.2026 7h30'");
 }
 
+TEST(LoggerImport, ReadsSwitchesAndClocksInSecondsSince1970) {
+  const std::string path =
+      write_file("log.csv",
+                 "epoch,Spindle,Coolant,T1 (degC),open,note\n1606000000.25,False,off,20.1,No,a\n"
+                 "1606000000.5,True,on,20.2,,b\n1606000001.125,TRUE,OFF,20.4,yes,c\n1606000002.25,false,on,20.3,no,d\n");
+  const studies::LoggerImport import = studies::import_logger(path, "", {});
+  const Record& record = import.read.record;
+  EXPECT_THAT(record.time_s, Pointwise(DoubleNear(1e-6), std::vector<double>{0, 0.25, 0.875, 2.0})) << "written in full";
+  expect_values(record, "spindle_1", {0, 1, 1, 0});
+  expect_values(record, "coolant_1", {0, 1, 0, 1});
+  expect_values(record, "open_1", {0, kMissing, 1, 0});
+  EXPECT_THAT(import.guesses, Contains(HasSubstr("'Spindle' is a switch")));
+  EXPECT_EQ(record.find("note"), nullptr);
+  EXPECT_TRUE(import.without_unit.empty());
+  const Record again = studies::import_logger(path, write_file("columns.yaml", yaml_text(import.map)), {}).read.record;
+  expect_values(again, "spindle_1", {0, 1, 1, 0});
+}
+
+TEST(LoggerImport, DoesNotReadWordsOfSwitchesAsTemperatures) {
+  EXPECT_THAT(
+      [] {
+        (void)studies::import_logger(
+            write_file("log.csv", "time_s;T1\n0;20,1\n1;off\n2;20,3\n"),
+            write_file("columns.yaml",
+                       "columns: {time: {column: time_s, unit: s}, decimal: \",\", channels: {t1: {column: "
+                       "T1, unit: degC}}}\n"),
+            {});
+      },
+      ThrowsMessage<InputError>(HasSubstr("'off' is not a finite number")));
+}
+
+TEST(LoggerImport, TakesUnitsThatTheUserSays) {
+  const std::string path = write_file("log.csv",
+                                      "time (s),t1,Weg Z,load,n\n0,293.15,0.1,5,0\n1,293.25,0.2,6,1\n"
+                                      "2,294.15,0.4,7,2\n");
+  const auto with = [&](const std::vector<std::string>& units) {
+    return studies::import_logger(path, "",
+                                  {.zone = "", .interval = "", .every = "", .units = studies::units_of_columns(units)});
+  };
+  EXPECT_THAT(with({}).without_unit, ::testing::ElementsAre("t1", "Weg Z", "load", "n"));
+  const studies::LoggerImport import = with({"t1=K", "weg_z=mm", "load=none", "n=1"});
+  expect_values(import.read.record, "t1_degC", {20.0, 20.1, 21.0});
+  expect_values(import.read.record, "weg_z_um", {100.0, 200.0, 400.0});
+  EXPECT_EQ(import.read.record.find("load"), nullptr);
+  EXPECT_TRUE(import.without_unit.empty());
+  EXPECT_THAT([&] { (void)with({"t2=degC"}); }, ThrowsMessage<InputError>(HasSubstr("no column of numbers 't2'")));
+  EXPECT_THAT([&] { (void)with({"t1=de"}); }, ThrowsMessage<InputError>(HasSubstr("--unit t1=de")));
+  EXPECT_THAT([&] { (void)with({"t1"}); }, ThrowsMessage<InputError>(HasSubstr("a column and its unit are required")));
+}
+
 TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
   const studies::LoggerImport import = studies::import_logger(
       write_file("log.csv", "time [s];T1 (K);dT (K)\n0;293,15;0,1\n10;293,25;0,2\n20;293,40;0,3\n"), "", {});

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "base/errors.hpp"
 #include "tests/shared/lumped_records.hpp"
 #include "tests/shared/refused.hpp"
@@ -12,7 +14,7 @@
 namespace driftwright::studies::measured_diagnosis_test {
 namespace {
 
-using ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
@@ -47,6 +49,35 @@ TEST(Calibrate, PredictsByTheScenarioThatItWritesAlsoInWordsOfAnEarlierRelease) 
     ASSERT_EQ(by_file.size(), found.extended.size());
     for (std::size_t r = 0; r < by_file.size(); ++r) EXPECT_EQ(by_file[r], found.extended[r]);
   }
+}
+
+/// Everything in one folder: the scenario with a former word and a plan in a file, a record with another name, results.
+TEST(Diagnose, WritesAFileThatIsReadWhereverItsFolderIsMovedTo) {
+  namespace fs = std::filesystem;
+  const fs::path project = fresh_folder("project"), elsewhere = temporary_folder() / "elsewhere";
+  fs::create_directories(project / "plans");
+  write_file("project/plans/friday.csv", "time_s,speed_rpm\n0,900\n2400,0\n6000,1600\n10800,1600\n");
+  std::string text = replaced(replaced(diagnosis::kTwoNodes, "ambient: [[", "hall: [["), "to: ambient", "to: hall");
+  text = replaced(text, "[[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]", "{csv: plans/friday.csv}");
+  const std::string scenario = write_file("project/mill.yaml", text);
+  fs::copy_file(records().front(), project / "sunday.csv");  // 7 W/K for 4, in a record that is no cyclogram of the scenario
+  const MeasuredTwin m = open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
+                                            std::vector<std::string>{(project / "sunday.csv").string()}, {});
+  const auto [found, written] = diagnose(m, {.file = project / "results/new/extended.yaml"}, {});  // no such folder yet
+  ASSERT_TRUE(written.is_readable()) << written.extended.not_written.front();
+  EXPECT_THAT(written.extended.text, AllOf(HasSubstr("# mill.yaml with what"), HasSubstr("measured: sunday.csv"),
+                                           HasSubstr("friday: {csv: \"../../plans/friday.csv\"}"), HasSubstr("hall: [[")));
+  EXPECT_THAT(written.extended.text, Not(HasSubstr(temporary_folder().string())));
+  EXPECT_THAT(written.difference, AllOf(HasSubstr("--- mill.yaml"), Not(HasSubstr(temporary_folder().string()))));
+  fs::create_directories(project / "results/new");
+  write_file("project/results/new/extended.yaml", written.extended.text);
+  fs::rename(project, elsewhere);
+  const scenarios::Scenario again = scenarios::read_scenario((elsewhere / "results/new/extended.yaml").string());
+  EXPECT_EQ(again.cyclogram("friday").duration_s(), 10800.0);
+  const diagnosis::Prediction by_file = read_of(m, again.machine->effects);
+  EXPECT_EQ(by_file.front(), found.extended.front());
+  // Few digits cost nothing: the file predicts the rows of the fit as well as the fit does, to a hundredth of the noise.
+  for (const diagnosis::ChannelGain& g : found.gain) EXPECT_LT(g.rmse_written, 1.01 * g.noise_floor + 0.01) << g.name;
 }
 
 TEST(Diagnose, RefusesToLeaveOutAKeyThatNoCandidateHas) {

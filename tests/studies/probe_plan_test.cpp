@@ -59,6 +59,20 @@ TEST(ProbePlan, AnExactProbeIsNeededAgainAfterAClosedTime) {
   EXPECT_NEAR(plan->rms_um, 5.0 * std::sqrt(1.0 - 3.0 * (1.0 - std::exp(-1.0 / 3.0))), 1e-6);
 }
 
+// Two touches of a process with T = 2 h, noise 1 um, s = 3 um (widened to 4): 0.9 h and 0.1 h of a probing apart they differ
+// by sqrt(2 + 32 (1 - exp(-0.5))). The time before the first probing does not count, the one after the last does.
+TEST(ProbePlan, BoundsATouchByTheLongestTimeWithoutOne) {
+  ProbePlan plan{
+      .job = job_with(10800.0, {4500.0, 7560.0}),
+      .axis = {.process = {3.0, 7200.0}, .probe = {.noise_um = 1.0}, .factor = 1.96 * 4.0 / 3.0, .probing_s = 360.0},
+      .best = ProbeSequence{.probings = {{.place = 0}, {.place = 1}}}};
+  const TouchBounds bounds = touch_bounds(plan);
+  EXPECT_NEAR(bounds.first_um, 4.0 * std::sqrt(17.0), 1e-9);
+  EXPECT_NEAR(bounds.step_um, 4.0 * std::sqrt(2.0 + 32.0 * (1.0 - std::exp(-0.5))), 1e-9);
+  plan.best->probings = {};  // from the start to the end
+  EXPECT_NEAR(touch_bounds(plan).step_um, 4.0 * std::sqrt(2.0 + 32.0 * (1.0 - std::exp(-11160.0 / 7200.0))), 1e-9);
+}
+
 // Probings at equal times: the variance before each is that of the stationary Riccati equation of a scalar,
 // P = a² P r² / (P + r²) + (1 - a²) s².
 TEST(ProbePlan, ManyEqualProbingsLeaveWhatTheRiccatiEquationSays) {

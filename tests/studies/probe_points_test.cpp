@@ -2,6 +2,7 @@
 
 #include "studies/probe_points.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,6 +43,57 @@ TEST(ProbePoints, OneOfTwoIsTheClosedForm) {
   EXPECT_NEAR(set.worst_um, std::sqrt(std::max(first, second)), 1e-9);
   EXPECT_NEAR(set.nats, 0.5 * std::log((a * a + r * r) / (r * r)), 1e-6);
   EXPECT_NEAR(judged_points(errors, {}, all_of(errors), r).left_um, std::sqrt(0.5 * (a * a + b * b)), 1e-12);
+}
+
+// A table of 10 m that is shifted by s, grows by g and turns by t (at its ends), each alone in two rows: variances of
+// s²/3, g²/3, t²/3. Of four rings on its middle line the two at the ends tell most. Each reads s +- g in x and +- t in y,
+// with noise r: each of the three is then known with a variance of 1 / (2 / r² + 3 / its square), and errors at three columns
+// of points are s + g x, t x with x = -1, 0, 1.
+TEST(ProbePoints, OfATablesFrameTheRingsAtItsEndsAreProbed) {
+  scenarios::Scenario scenario;
+  scenario.machine.emplace();
+  scenarios::TableSettings& table = scenario.table.emplace();
+  table.low_m = {-5.0, -1.0, 0.0};
+  table.high_m = {5.0, 1.0, 0.0};
+  table.n_x = table.n_y = 3;
+  table.scale_x.sensors = {"scale"};
+  table.rings = {{"a", {-5.0, 0.0, 0.0}}, {"b", {-2.0, 0.0, 0.0}}, {"c", {2.0, 0.0, 0.0}}, {"d", {5.0, 0.0, 0.0}}};
+  const Eigen::Vector3d largest_um(5.0, 10.0, 8.0);
+  Record record{.source = "table", .time_s = {}, .channels = {{"scale", "degC", {}}}};
+  const std::vector<Eigen::Vector3d> points = scenarios::table_points(table);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    for (const char* axis : {"x", "y", "z"}) record.channels.push_back({fmt::format("table_{}_{}", k + 1, axis), "um", {}});
+  }
+  for (int row = 0; row < 6; ++row) {
+    Eigen::Vector3d now_um = Eigen::Vector3d::Zero();
+    now_um[row / 2] = (row % 2 ? 1.0 : -1.0) * largest_um[row / 2];
+    record.time_s.push_back(60.0 * row);
+    record.channels[0].values.push_back(20.0);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const bool is_head = k + 1 == points.size();
+      const double x = points[k][0] / 5.0;
+      record.channels[1 + 3 * k].values.push_back(is_head ? 0.0 : now_um[0] + now_um[1] * x);
+      record.channels[2 + 3 * k].values.push_back(is_head ? 0.0 : now_um[2] * x);
+      record.channels[3 + 3 * k].values.push_back(0.0);
+    }
+  }
+  const PointErrors errors = table_point_errors(scenario, std::span(&record, 1));
+  EXPECT_EQ(errors.n_rows, 6u);
+  ASSERT_EQ(errors.names.size(), 13u);
+  const Points rings = {0, 1, 2, 3};
+  Points judged(9);
+  std::iota(judged.begin(), judged.end(), 4);
+  const double r = 0.5;
+  const Eigen::Vector3d known_um2 = (2.0 / (r * r) + 3.0 * largest_um.array().square().inverse()).inverse();
+  const double mean_um2 = (known_um2[0] + 2.0 / 3.0 * (known_um2[1] + known_um2[2])) / 3.0;  // z is known
+  for (const PointCriterion criterion : {PointCriterion::kMeanVariance, PointCriterion::kDeterminant}) {
+    const PointSet two = best_points(errors, rings, 2, judged, r, criterion);
+    EXPECT_THAT(two.points, testing::ElementsAre(0, 3));
+    EXPECT_NEAR(two.left_um, std::sqrt(mean_um2), 1e-9);
+    EXPECT_THAT(errors.names[two.worst], testing::StartsWith("table_"));
+  }
+  record.channels.pop_back();
+  EXPECT_THROW((void)table_point_errors(scenario, std::span(&record, 1)), InputError);
 }
 
 // A scale and a shift of a table of five rings, equally uncertain at its ends: with two probings both ends are chosen, with

@@ -17,6 +17,7 @@ observer_data observer;
 
 static double* numbers; /* all of them; the tables point into it */
 static drive_law *powers, *coefficients;
+static live_law* live;
 static int* sensor_output;
 
 /* What has not been taken yet. `left` below 0: there was less than the counts say. */
@@ -72,6 +73,23 @@ static drive_law* laws(reader* r, int n) {
   return all;
 }
 
+/* n laws that follow temperatures of a system of n_states; null if there is no memory or less than the counts say. */
+static live_law* live_laws(reader* r, int n, int n_states) {
+  live_law* const all = r->left < n ? 0 : calloc((size_t)n + 1, sizeof *all);
+  int k;
+  for (k = 0; all && k < n; ++k) {
+    all[k].source = count(r);
+    all[k].exchange = count(r);
+    all[k].n_steps = count(r);
+    all[k].steps = list(r, 2L * all[k].n_steps);
+    all[k].n_probes = count(r);
+    all[k].weights = list(r, (long)all[k].n_probes * n_states);
+    all[k].ambient_share = list(r, all[k].n_probes);
+    all[k].offset_K = list(r, all[k].n_probes);
+  }
+  return all;
+}
+
 /* Returns whether the tables are complete. */
 static int take(reader* r, const char** guid) {
   const long guid_length = count(r);
@@ -108,6 +126,8 @@ static int take(reader* r, const char** guid) {
   thermal.nominal = list(r, n);
   thermal.n_known = count(r);
   thermal.known_drive = list(r, (long)thermal.n_known * thermal.n_drive);
+  thermal.n_live = count(r);
+  if (r->left < 0 || !(thermal.live = live = live_laws(r, thermal.n_live, thermal.n))) return 0;
   if (count(r)) {
     const long f = thermal.n_sources + thermal.n_exchanges + 1L;
     const double* of;
@@ -186,6 +206,7 @@ __attribute__((constructor)) static void read_numbers(void) {
 __attribute__((destructor)) static void free_numbers(void) {
   free_laws(powers, thermal.n_sources);
   free_laws(coefficients, thermal.n_exchanges);
+  free(live);
   free(sensor_output);
   free(numbers);
 }

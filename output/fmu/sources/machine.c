@@ -1,7 +1,9 @@
-/* The reduced machine: exact over each step of co-simulation, its slopes for model exchange. */
+/* The reduced machine: exact over each step of co-simulation where no law follows temperatures, its slopes for model
+ * exchange. */
 #include <math.h>
 #include <string.h>
 
+#include "live.h"
 #include "model.h"
 #include "symmetric_eigen.h"
 #include "thermal.h"
@@ -9,6 +11,8 @@
 enum { kLeastSlots = 8, kBeside = 2 }; /* of decompositions kept; ambient and its rate, behind the drive among the inputs */
 
 const int model_kind_is_observer = 0;
+
+static const double kFirstStep_s = 1.0; /* where laws follow temperatures; then as the error allows */
 
 /* K in its eigenvectors, for one set of coefficients; what each mode keeps over the step met last. */
 typedef struct {
@@ -26,7 +30,8 @@ typedef struct {
   double *drive, *coefficient, *power, *constant, *per_ambient, *matrix;
   double *mode_constant, *mode_per_ambient;
   /* Room for a while. */
-  double *modes, *eigen_work, *matrix_work, *slope;
+  double *modes, *eigen_work, *matrix_work, *slope, *along;
+  live_room* live; /* null: no law follows temperatures */
 } machine;
 
 static int n_slots(void) {
@@ -37,14 +42,16 @@ static size_t n_doubles(void) {
   const size_t n = (size_t)thermal.n, slots = (size_t)n_slots();
   return slots * ((size_t)thermal.n_exchanges + n + n * n + 3 * n) + (size_t)thermal.n_drive + (size_t)thermal.n_exchanges +
          (size_t)thermal.n_sources + 2 * n + n * n + 2 * n + n + 2 * n + n * n + (size_t)thermal.n_exchanges +
-         (size_t)thermal.n_sources;
+         (size_t)thermal.n_sources + n;
 }
 
+/* After the states, where laws follow temperatures: the length of a step that fits. */
 size_t model_n_saved(void) {
-  return (size_t)kInputs + (size_t)model_n_inputs() + (size_t)thermal.n;
+  return (size_t)kInputs + (size_t)model_n_inputs() + (size_t)thermal.n + (thermal.n_live > 0 ? 1 : 0);
 }
 size_t model_scratch_size(void) {
-  return sizeof(machine) + (size_t)n_slots() * sizeof(slot) + n_doubles() * sizeof(double);
+  return sizeof(machine) + (size_t)n_slots() * sizeof(slot) + n_doubles() * sizeof(double) +
+         (thermal.n_live > 0 ? live_room_size() : 0);
 }
 int model_n_inputs(void) {
   return thermal.n_drive + kBeside;
@@ -79,6 +86,7 @@ static slot* slot_of(machine* m, const double* coefficient) {
   m->next_slot = (m->next_slot + 1) % m->n_slots;
   s->is_filled = 0;
   s->step_s = -1.0;
+  if (m->live) live_forget(m->live);
   if (bytes > 0) memcpy(s->coefficient, coefficient, bytes);
   thermal_matrix(coefficient, m->matrix_work);
   if (symmetric_eigen(thermal.n, m->matrix_work, s->lambda, s->vectors, m->eigen_work) != 0) return 0;
@@ -145,6 +153,8 @@ int model_prepare(void* scratch) {
   m->eigen_work = take(&room, 2 * n);
   m->matrix_work = take(&room, n * n);
   m->slope = take(&room, (size_t)thermal.n_exchanges + (size_t)thermal.n_sources);
+  m->along = take(&room, n);
+  if (thermal.n_live > 0) m->live = live_prepare(room);
   for (k = 0; k < thermal.n_known; ++k) {
     coefficients_of(thermal.known_drive + (size_t)k * (size_t)thermal.n_drive, m->coefficient);
     if (!slot_of(m, m->coefficient)) return 1;
@@ -179,6 +189,7 @@ void model_start(double* saved, void* scratch) {
   if (thermal.start_follows_ambient && saved[kAmbientFromInput] != 0.0)
     warmer_K += ambient_K(saved, saved[kTime]) - thermal.start_ambient_K;
   for (i = 0; i < thermal.n; ++i) z[i] = thermal.start[i] + warmer_K * thermal.ones[i];
+  if (thermal.n_live > 0) z[thermal.n] = kFirstStep_s;
 }
 
 const char* model_step(double* saved, void* scratch, double h_s) {
@@ -202,6 +213,13 @@ const char* model_step(double* saved, void* scratch, double h_s) {
     const double knot_s = saved[kAmbientFromInput] == 0.0 ? next_ambient_knot_s(t_s) : HUGE_VAL;
     const double until_s = knot_s < end_s ? knot_s : end_s, piece_s = until_s - t_s;
     const double ambient = ambient_K(saved, t_s), slope = (ambient_K(saved, until_s) - ambient) / piece_s;
+    if (m->live) {
+      const live_system system = {m->drive, m->coefficient, s->lambda, s->vectors, m->mode_constant, m->mode_per_ambient};
+      const char* const wrong = live_advance(m->live, &system, piece_s, ambient, slope, z, z + n);
+      if (wrong) return wrong;
+      t_s = until_s;
+      continue;
+    }
     if (!(fabs(piece_s - s->step_s) <= 1e-12 * piece_s)) {
       for (i = 0; i < n; ++i) decay_of(s->lambda[i] * piece_s, &s->kept[i], &s->of_constant[i], &s->of_slope[i]);
       s->step_s = piece_s;
@@ -213,8 +231,10 @@ const char* model_step(double* saved, void* scratch, double h_s) {
     }
     t_s = until_s;
   }
-  memset(z, 0, (size_t)n * sizeof *z);
-  add_transposed(n, n, s->vectors, m->modes, z);
+  if (!m->live) {
+    memset(z, 0, (size_t)n * sizeof *z);
+    add_transposed(n, n, s->vectors, m->modes, z);
+  }
   saved[kTime] = end_s;
   return 0;
 }
@@ -250,6 +270,21 @@ void model_derivatives(const double* saved, void* scratch, double* derivatives) 
   int i;
   multiply(thermal.n, thermal.n, matrix_of(m, saved), saved + kInputs + model_n_inputs(), derivatives);
   for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + ambient * m->per_ambient[i] - derivatives[i];
+  if (m->live &&
+      live_add_rate(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient, derivatives)) {
+    for (i = 0; i < thermal.n; ++i) derivatives[i] = NAN;
+  }
+}
+
+/* derivatives += how the laws that follow temperatures change along one state (< 0: none), the ambient, one variable of
+ * the drive (< 0: none). */
+static void add_live(machine* m, const double* saved, int state, double seed, double d_ambient_K, int which,
+                     double* derivatives) {
+  if (!m->live) return;
+  memset(m->along, 0, (size_t)thermal.n * sizeof *m->along);
+  if (state >= 0) m->along[state] = seed;
+  live_add_slope(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient_K(saved, saved[kTime]),
+                 m->along, d_ambient_K, which, seed, derivatives);
 }
 
 static void add_ambient(double seed_K, const machine* m, double* outputs, double* derivatives) {
@@ -267,10 +302,12 @@ void model_add_sensitivity(const double* saved, void* scratch, int known_is_stat
   if (known_is_state) {
     for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed * thermal.output_factor[i] * thermal.outputs[i * n + known];
     for (i = 0; i < n; ++i) derivatives[i] -= seed * k[i * n + known];
-  } else if (known == thermal.n_drive) {
-    if (is_ambient_input) add_ambient(seed, m, outputs, derivatives);
-  } else if (known == thermal.n_drive + 1) {
-    if (is_ambient_input) add_ambient(seed * (saved[kTime] - saved[kAmbientSetAt]), m, outputs, derivatives);
+    add_live(m, saved, known, seed, 0.0, -1, derivatives);
+  } else if (known >= thermal.n_drive) {
+    const double seed_K = known == thermal.n_drive ? seed : seed * (saved[kTime] - saved[kAmbientSetAt]);
+    if (!is_ambient_input) return;
+    add_ambient(seed_K, m, outputs, derivatives);
+    add_live(m, saved, -1, 0.0, seed_K, -1, derivatives);
   } else {
     const double* const drive = saved + kInputs;
     const double ambient = ambient_K(saved, saved[kTime]);
@@ -286,5 +323,6 @@ void model_add_sensitivity(const double* saved, void* scratch, int known_is_stat
         derivatives[i] += slope * sum;
       }
     }
+    add_live(m, saved, -1, seed, 0.0, known, derivatives);
   }
 }

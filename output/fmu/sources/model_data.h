@@ -24,6 +24,19 @@ typedef struct {
   const law_term* terms;
 } drive_law;
 
+/* A power or a coefficient that follows temperatures as well: a formula (formula.h) of the drive and of its probes, which
+ * are mean temperatures in K: weights' z + ambient_share ambient + offset_K. Of a source it is the power, whose drive_law
+ * is 0; of an exchange it is the coefficient, whose drive_law is what the formula gives at the temperatures of the start. */
+typedef struct {
+  int source, exchange; /* index of the one that it belongs to; the other is -1 */
+  int n_steps;
+  const double* steps; /* n_steps pairs; names are indices of the drive, then of the probes */
+  int n_probes;
+  const double* weights; /* n_probes rows */
+  const double* ambient_share;
+  const double* offset_K;
+} live_law;
+
 /* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices by rows. */
 typedef struct {
   int n, n_drive, n_sources, n_exchanges, n_outputs;
@@ -52,6 +65,8 @@ typedef struct {
   const double* nominal;    /* of each state */
   int n_known;              /* sets of the drive whose decompositions are made ahead */
   const double* known_drive;
+  int n_live; /* laws that follow temperatures; 0: the machine is linear */
+  const live_law* live;
 } thermal_data;
 
 /* Of an observer alone (observer.c); otherwise all zero. */

@@ -1,0 +1,55 @@
+#include "effects/law_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace driftwright::effects {
+
+std::vector<std::string> law_names(std::size_t n_probes) {
+  std::vector<std::string> names = {"n", "v_x", "v_y", "v_z", "P_cut"};
+  for (std::size_t p = 0; p < n_probes; ++p) names.push_back(fmt::format("T{}", p));
+  return names;
+}
+
+std::string written(double number) {
+  return number < 0.0 ? fmt::format("({})", number) : fmt::format("{}", number);
+}
+
+std::vector<Expression::Step> law_steps(const std::string& text, std::size_t n_probes) {
+  return with_constants_folded(parse_expression(text, law_names(n_probes)).steps);
+}
+
+std::function<std::vector<Expression::Step>()> sum_of_steps(const std::vector<const Law*>& laws) {
+  struct Term {
+    std::function<std::vector<Expression::Step>()> steps;
+    std::size_t n_probes;
+  };
+  std::vector<Term> terms;
+  for (const Law* law : laws) {
+    if (!law->steps) return {};
+    terms.push_back({law->steps, law->probes.size()});
+  }
+  return [terms] {
+    std::vector<Expression::Step> sum;
+    std::size_t n_before = 0;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      for (Expression::Step step : terms[t].steps()) {
+        if (step.op == Op::kName && step.name >= kDriveNames) step.name += n_before;
+        sum.push_back(step);
+      }
+      if (t > 0) sum.push_back({.op = Op::kAdd});
+      n_before += terms[t].n_probes;
+    }
+    return sum;
+  };
+}
+
+double value_of_law_steps(const std::vector<Expression::Step>& steps, const Inputs& u) {
+  std::vector<double> x = {u.drive.speed_rpm, u.drive.feed_m_s[0], u.drive.feed_m_s[1], u.drive.feed_m_s[2],
+                           u.drive.cutting_power_W};
+  x.insert(x.end(), u.probe_K.begin(), u.probe_K.end());
+  return value_of(steps, x.data());
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""`driftwright export --as`: a formula of `validate` for each control, a machine and an observer as plain C. What is written is compiled or read here, run on
+judged rows, and compared with what the program itself says.
+
+    controls_test.py PROGRAM FOLDER_OF_THE_PROJECT
+"""
+import array
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+from claims import caller, expect, failures
+
+PLAIN = ["gcc", "-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion"]
+MACHINE = """sensors: [{name: t_housing, node: housing}, {name: t_spindle, node: spindle}]
+displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
+cyclograms:
+  shift: [[120 min, 6000 rpm], [30 min, 0 rpm], [90 min, 3000 rpm]]
+  slow: [[60 min, 2000 rpm], [30 min, 5000 rpm], [60 min, 0 rpm], [60 min, 4000 rpm]]
+  judged: [[90 min, 4500 rpm], [45 min, 1500 rpm], [45 min, 0 rpm]]
+study: {target: nose_z, train: [shift, slow], judge: judged, sensors_to_choose: 1, tolerance: 5 um}
+"""
+STATED_um = 1e-9  # besides half a unit of the last of the twelve digits of reference_out.csv
+
+
+def numbers(path):
+    return list(csv.DictReader(line for line in pathlib.Path(path).open() if not line.startswith("#")))
+
+
+def plain_c(call, folder, what, *words):
+    done = call("export", *words, "--as", "c", "-o", what)
+    expect(done.returncode == 0, f"{what} is exported: {done.stderr.strip()[-300:]}")
+    if done.returncode != 0:
+        return
+    own = folder / what
+    sources = sorted(file.name for file in own.glob("*.c") if file.name != "example.c")
+    done = subprocess.run([*PLAIN, "-c", *sources], cwd=own, capture_output=True, text=True)
+    expect(done.returncode == 0, f"{what} compiles without a warning: {done.stderr[-300:]}")
+    used = subprocess.run(["nm", "-u", *(name[:-2] + ".o" for name in sources)], cwd=own, capture_output=True, text=True).stdout
+    expect(not re.search(r"\b(malloc|calloc|realloc|free|printf|fopen)\b", used), f"{what} takes no memory and opens no file")
+    subprocess.run([*PLAIN, *sources, "example.c", "-lm", "-o", "example"], cwd=own, check=True)
+    with (own / "reference_in.csv").open() as rows, (own / "out.csv").open("w") as out:
+        done = subprocess.run(["./example"], cwd=own, stdin=rows, stdout=out, stderr=subprocess.PIPE, text=True)
+    expect(done.returncode == 0, f"{what} runs: {done.stderr[-300:]}")
+    got, judged = numbers(own / "out.csv"), numbers(own / "reference_out.csv")
+    expect(len(got) == len(judged) > 100, f"{what}: {len(got)} rows")
+    worst, most = 0.0, 0.0
+    for a, b in zip(got, judged):
+        for name, text in b.items():
+            worst = max(worst, abs(float(a[name]) - float(text)) - 5e-12 * abs(float(text)))
+            most = max(most, abs(float(text)) if name == "nose_z" else 0.0)
+    expect(worst <= STATED_um and most > 5.0, f"{what} is the judged one: within {worst:.1e}, largest {most:.1f} um")
+
+
+def structured_text(text):
+    """A function of a dict of inputs: what the function block gives at each call."""
+    memory = {name: 0.0 for name in re.findall(r"^  (\w+) : LREAL;", text, re.M)}
+    body = text.split("END_VAR\n")[-1].split("END_FUNCTION_BLOCK")[0]
+    lines = []
+    for line in body.splitlines():
+        condition = re.fullmatch(r"IF (.*) (<|=|>) (.*) THEN (\w+) := (.*); END_IF;", line)
+        always = re.fullmatch(r"(\w+) := (.*);", line)
+        if condition:
+            a, sign, b, target, value = condition.groups()
+            lines.append(f"if {a} {'==' if sign == '=' else sign} {b}: {target} = {value}")
+        else:
+            lines.append(f"{always.group(1)} = {always.group(2)}")
+    code = compile("\n".join(lines), "st", "exec")
+
+    def call(inputs):
+        memory.update(inputs)
+        exec(code, {}, memory)
+        return memory["correction_um"]
+
+    return call
+
+
+def formula(call, folder, name, record):
+    model = f"judged/models/{name}.json"
+    for as_, own in (("c", [f"{name}.c"]), ("linuxcnc", [f"{name}.c", f"{name}_axis.comp"]), ("text", [f"{name}.txt"])):
+        done = call("export", "--model", model, "--as", as_, "-o", f"{name}_{as_}")
+        expect(done.returncode == 0, f"{name} as {as_}: {done.stderr.strip()[-300:]}")
+        for file in own:
+            same = [re.sub(r"Driftwright [^\n]*", "", (folder / place / file).read_text()) for place in (f"{name}_{as_}", "judged/models")]
+            expect(same[0] == same[1], f"{file} is what `validate` wrote")
+    done = call("export", "--model", model, "--as", "st", "-o", f"{name}_st")
+    expect(done.returncode == 0, f"{name} as st: {done.stderr.strip()[-300:]}")
+    text = next((folder / f"{name}_st").glob("*.st")).read_text()
+    period_s = float(re.search(r"One row every (\S+) s", text).group(1))
+    c_text = (folder / f"{name}_c/{name}.c").read_text()
+    inputs = re.findall(r"double (\w+)", re.search(r"double nose_z_correction_um\(nose_z_state \*s, (.*?)double dt_s\)", c_text).group(1))
+    wanted = re.findall(r"^  (in_\w+) : LREAL;", text, re.M)
+    expect(wanted == ["in_" + x for x in inputs], f"{name}: inputs {wanted}")
+    rows = [[float(row[x] or "nan") for x in inputs] for row in numbers(record)]
+    (folder / f"{name}_c/main.c").write_text(
+        f'#include <stdio.h>\n#include "{name}.c"\nint main(void) {{\n  static nose_z_state s;\n  double x[{len(inputs)}];\n'
+        f"  while (fread(x, sizeof x, 1, stdin) == 1) {{\n    int k, doubted = 0;\n    const double um = nose_z_correction_um(&s, "
+        + "".join(f"x[{k}], " for k in range(len(inputs)))
+        + f"{period_s!r});\n    for (k = 0; k < {len(inputs)}; ++k) doubted |= s.inputs[k].is_doubted;\n"
+        '    printf("%.17g %d\\n", um, doubted);\n  }\n  return 0;\n}\n')
+    sources = ["main.c", "drift_correction.c", "probe_feedback.c", "probe_members.c"]
+    subprocess.run(["gcc", "-std=c99", "-O2", "-ffp-contract=off", *sources, "-lm", "-o", "run"], cwd=folder / f"{name}_c", check=True)
+    given = array.array("d", [x for row in rows for x in row]).tobytes()
+    told = subprocess.run(["./run"], cwd=folder / f"{name}_c", input=given, capture_output=True, check=True).stdout.decode().split()
+    block, worst, most, n = structured_text(text), 0.0, 0.0, 0
+    for row, um, doubted in zip(rows, told[::2], told[1::2]):
+        if doubted != "0":
+            break  # from here on the C replaces readings
+        worst = max(worst, abs(block(dict(zip(wanted, row))) - float(um)))
+        most = max(most, abs(float(um)))
+        n += 1
+    expect(n > 50 and most > 5.0 and worst <= STATED_um, f"{name} as structured text gives the judged correction: {n} rows up to {most:.1f} um within {worst:.1e} um")
+    done = call("export", "--model", model, "--as", "siemens", "--axis", "Y", "-o", f"{name}_siemens")
+    many = "synchronized actions" in done.stderr
+    expect(done.returncode == (2 if many else 0), f"{name} as siemens: {done.stderr.strip()[-200:]}")
+    has_time = "LAG(" in (folder / f"judged/models/{name}.txt").read_text() or "rpm" in " ".join(inputs)
+    for as_ in ("heidenhain", "fanuc"):
+        done = call("export", "--model", model, "--as", as_, "--axis", "Y", "-o", f"{name}_{as_}")
+        refused = has_time or (as_ == "heidenhain" and len(inputs) > 8)
+        expect(done.returncode == (2 if refused else 0), f"{name} as {as_}: {done.stderr.strip()[-200:]}")
+        expect(not refused or "--as st" in done.stderr or "take a formula of fewer" in done.stderr, f"{name} as {as_} says what to use")
+
+
+def main():
+    program, top = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory(prefix="driftwright_controls-") as name:
+        folder = pathlib.Path(name)
+        call = caller(program, folder)
+        first = (top / "scenarios/first_machine.yaml").read_text()
+        (folder / "small.yaml").write_text(first[: first.index("sensors:")] + MACHINE)
+        done = call("validate", "small.yaml", "-o", "judged")
+        expect(done.returncode == 0, f"validate: {done.stderr.strip()[-300:]}")
+        done = call("simulate", "small.yaml", "--cyclogram", "judged", "-o", "run")
+        expect(done.returncode == 0, f"simulate: {done.stderr.strip()[-300:]}")
+        plain_c(call, folder, "machine_c", "small.yaml")
+        for model in ("observer", "thermal_modes_of_the_model", "model_fitted_to_the_training_runs"):
+            plain_c(call, folder, model + "_c", "small.yaml", "--of", "observer", "--model", f"judged/models/{model}.json")
+        for model in ("one_thermometer", "ridge_all_sensors", "regression_with_lags", "thermometers_and_drive", "transfer_functions_from_speed"):
+            formula(call, folder, model, folder / "run/record.csv")
+        done = call("export", "--model", "judged/models/observer.json", "--as", "st", "-o", "refused")
+        expect(done.returncode == 2 and "--of observer" in done.stderr, f"an observer is no formula: {done.stderr.strip()[-200:]}")
+        done = call("export", "--model", "judged/models/no_correction.json", "--as", "c", "-o", "refused")
+        expect(done.returncode == 2 and "no formula" in done.stderr, f"nor is a baseline: {done.stderr.strip()[-200:]}")
+        expect(not (folder / "refused").exists(), "nothing is left of what was refused")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,419 @@
+// Programs for controls are read back by a small reader of each language, run row by row, and compared with the judged
+// correction.
+
+#include "output/control_program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "tests/shared/deployed_model.hpp"
+
+namespace driftwright::output::control_program_test {
+namespace {
+
+using fixtures::deployed;
+using fixtures::machine;
+using ::testing::HasSubstr;
+
+using Memory = std::map<std::string, double>;
+
+/// Sums and products of numbers and variables, with parentheses.
+class Expression {
+ public:
+  Expression(std::string text, Memory& memory) : text_(std::move(text)), memory_(memory) {}
+  double value() {
+    const double v = sum();
+    blanks();
+    EXPECT_EQ(at_, text_.size()) << text_;
+    return v;
+  }
+
+ private:
+  void blanks() {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+  }
+  bool takes(char ch) {
+    blanks();
+    if (at_ >= text_.size() || text_[at_] != ch) return false;
+    ++at_;
+    return true;
+  }
+  double sum() {
+    double v = product();
+    for (;;) {
+      if (takes('+')) {
+        v += product();
+      } else if (takes('-')) {
+        v -= product();
+      } else {
+        return v;
+      }
+    }
+  }
+  double product() {
+    double v = factor();
+    for (;;) {
+      if (takes('*')) {
+        v *= factor();
+      } else if (takes('/')) {
+        v /= factor();
+      } else {
+        return v;
+      }
+    }
+  }
+  double factor() {
+    if (takes('+')) return factor();
+    if (takes('-')) return -factor();
+    if (takes('(')) {
+      const double v = sum();
+      EXPECT_TRUE(takes(')')) << text_;
+      return v;
+    }
+    blanks();
+    static const std::regex number("[0-9]+\\.?[0-9]*"), variable("[$#A-Za-z_][$A-Za-z0-9_]*(\\[[A-Z0-9]+\\])?");
+    std::smatch found;
+    const std::string rest = text_.substr(at_);
+    if (std::regex_search(rest, found, number, std::regex_constants::match_continuous)) {
+      at_ += found.length();
+      return std::stod(found.str());
+    }
+    EXPECT_TRUE(std::regex_search(rest, found, variable, std::regex_constants::match_continuous)) << text_;
+    at_ += std::max<std::size_t>(1, static_cast<std::size_t>(found.length()));
+    EXPECT_TRUE(memory_.contains(found.str())) << found.str() << " is read before it is set";
+    return memory_[found.str()];
+  }
+
+  std::string text_;
+  Memory& memory_;
+  std::size_t at_ = 0;
+};
+
+double value_of(const std::string& text, Memory& memory) {
+  return Expression(text, memory).value();
+}
+
+bool compares(const std::string& a, const std::string& sign, const std::string& b, Memory& memory) {
+  const double x = value_of(a, memory), y = value_of(b, memory);
+  if (sign == "<" || sign == "LT") return x < y;
+  if (sign == ">" || sign == "GT") return x > y;
+  if (sign == "NE") return x != y;
+  EXPECT_TRUE(sign == "=" || sign == "==" || sign == "EQ") << sign;
+  return x == y;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// A program in its control: readings in, correction [um] out.
+class Control {
+ public:
+  virtual ~Control() = default;
+  virtual double row(const std::vector<double>& readings) = 0;
+};
+
+class StructuredTextControl final : public Control {
+ public:
+  explicit StructuredTextControl(const std::string& text) {
+    static const std::regex variable("  (\\w+) : LREAL;.*");
+    bool is_input = false, is_body = false;
+    std::smatch m;
+    for (const std::string& line : lines_of(text)) {
+      if (line == "VAR_INPUT") is_input = true;
+      if (line == "VAR" || line == "VAR_OUTPUT") is_input = false;
+      if (std::regex_match(line, m, variable)) {
+        memory_[m[1].str()] = 0.0;  // the standard's initial value
+        if (is_input) inputs_.push_back(m[1].str());
+        is_body = true;
+      } else if (is_body && line != "END_VAR" && line != "VAR" && line != "VAR_OUTPUT" && line != "END_FUNCTION_BLOCK") {
+        body_.push_back(line);
+      }
+    }
+  }
+  double row(const std::vector<double>& readings) override {
+    static const std::regex always("(\\w+) := (.*);"), sometimes("IF (\\S+) (<|=|>) (.*) THEN (\\w+) := (.*); END_IF;");
+    EXPECT_EQ(inputs_.size(), readings.size());
+    for (std::size_t k = 0; k < readings.size(); ++k) memory_[inputs_[k]] = readings[k];
+    std::smatch m;
+    for (const std::string& line : body_) {
+      if (std::regex_match(line, m, sometimes)) {
+        if (compares(m[1], m[2], m[3], memory_)) memory_[m[4].str()] = value_of(m[5], memory_);
+      } else if (std::regex_match(line, m, always)) {
+        memory_[m[1].str()] = value_of(m[2], memory_);
+      } else {
+        ADD_FAILURE() << line;
+      }
+    }
+    return memory_["correction_um"];
+  }
+
+ private:
+  Memory memory_;
+  std::vector<std::string> inputs_, body_;
+};
+
+/// Synchronized actions in the order of their numbers, in each of several interpolation cycles a row.
+class SiemensControl final : public Control {
+ public:
+  SiemensControl(const std::string& text, double period_s, bool against_dk)
+      : cycle_s_(period_s / 4.0), sign_(against_dk ? 1e3 : -1e3) {
+    static const std::regex assigned("(\\$[A-Z_]+\\[\\d+\\])=(.*)"), action("IDS=(\\d+) (.*)");
+    std::smatch m;
+    for (const std::string& line : lines_of(text)) {
+      if (std::regex_match(line, m, action)) {
+        EXPECT_EQ(std::stoul(m[1]), actions_.size() + 1);
+        actions_.push_back(read(m[2].str()));
+      } else if (std::regex_match(line, m, assigned)) {
+        EXPECT_TRUE(actions_.empty());
+        memory_[m[1].str()] = value_of(m[2], memory_);
+      } else {
+        EXPECT_TRUE(line.starts_with("PROC ") || line.starts_with(";") || line == "RET") << line;
+      }
+    }
+  }
+  double row(const std::vector<double>& readings) override {
+    for (std::size_t k = 0; k < readings.size(); ++k) memory_[fmt::format("$A_DBR[{}]", 4 * k)] = readings[k];
+    for (int cycle = 0; cycle < 4; ++cycle) {
+      for (const Action& a : actions_) act(a);
+      memory_["$AC_TIMER[0]"] += cycle_s_;
+    }
+    return sign_ * memory_["$$SA_TEMP_COMP_ABS_VALUE[Z]"];
+  }
+
+ private:
+  struct Relation {
+    std::string a, sign, b;
+  };
+  struct Action {
+    std::vector<Relation> conditions;
+    std::string target, value;
+  };
+
+  static Action read(const std::string& text) {
+    static const std::regex whole("(WHENEVER (.*) )?DO (\\$\\$?[A-Z_]+\\[[A-Z0-9]+\\])=(.*)"),
+        two("\\((.*?)\\) AND \\((.*)\\)"), relation("(\\$[A-Z_]+\\[\\d+\\])(==|>=|<|>)(.*)");
+    std::smatch m, r;
+    EXPECT_TRUE(std::regex_match(text, m, whole)) << text;
+    Action action{{}, m[3], m[4]};
+    const std::string condition = m[2];
+    std::vector<std::string> conditions;
+    if (std::regex_match(condition, r, two)) {
+      conditions = {r[1], r[2]};
+    } else if (!condition.empty()) {
+      conditions = {condition};
+    }
+    for (const std::string& c : conditions) {
+      EXPECT_TRUE(std::regex_match(c, r, relation)) << text;
+      action.conditions.push_back({r[1], r[2], r[3]});
+    }
+    return action;
+  }
+  void act(const Action& action) {
+    for (const Relation& c : action.conditions) {
+      const bool is_true =
+          c.sign == ">=" ? value_of(c.a, memory_) >= value_of(c.b, memory_) : compares(c.a, c.sign, c.b, memory_);
+      if (!is_true) return;
+    }
+    memory_[action.target] = value_of(action.value, memory_);
+  }
+
+  Memory memory_;
+  std::vector<Action> actions_;
+  double cycle_s_, sign_;
+};
+
+class FanucControl final : public Control {
+ public:
+  explicit FanucControl(const std::string& text) : lines_(lines_of(text)) {
+    memory_["#0"] = 0.0;
+    for (int k = 501; k < 1000; ++k) memory_[fmt::format("#{}", k)] = 0.0;
+  }
+  double row(const std::vector<double>& readings) override {
+    static const std::regex always("(#\\d+)=(.*)"), sometimes("IF \\((\\S+) (LT|EQ|GT) (.*)\\) THEN (#\\d+)=(.*)"),
+        shift("G10 L2 P0 Z\\((.*)\\)");
+    for (std::size_t k = 0; k < readings.size(); ++k) memory_[fmt::format("#{}", 501 + k)] = readings[k];
+    std::smatch m;
+    double z_mm = NAN;
+    for (std::string line : lines_) {
+      if (line.starts_with("(") || line.starts_with("O") || line == "%" || line == "M99") continue;
+      for (char& ch : line) ch = ch == '[' ? '(' : ch == ']' ? ')' : ch;
+      if (std::regex_match(line, m, sometimes)) {
+        if (compares(m[1], m[2], m[3], memory_)) memory_[m[4].str()] = value_of(m[5], memory_);
+      } else if (std::regex_match(line, m, always)) {
+        memory_[m[1].str()] = value_of(m[2], memory_);
+      } else if (std::regex_match(line, m, shift)) {
+        z_mm = value_of(m[1], memory_);
+      } else {
+        ADD_FAILURE() << line;
+      }
+    }
+    return -1e3 * z_mm;
+  }
+
+ private:
+  Memory memory_;
+  std::vector<std::string> lines_;
+};
+
+class HeidenhainControl final : public Control {
+ public:
+  explicit HeidenhainControl(const std::string& text) {
+    std::size_t n = 0;
+    for (const std::string& line : lines_of(text)) {
+      const std::string number = fmt::format("{} ", n++);
+      EXPECT_TRUE(line.starts_with(number)) << line;
+      blocks_.push_back(line.substr(number.size()));
+    }
+    for (int k = 0; k < 500; ++k) memory_[fmt::format("QR{}", k)] = 0.0;
+  }
+  double row(const std::vector<double>& readings) override {
+    static const std::regex always("(Q[LR]\\d+) = (.*)"), jump("FN (10|11|12): IF (\\S+) (NE|GT|LT) (\\S+) GOTO LBL (\\d+)"),
+        shift("CYCL DEF 7\\.1 Z(.*)");
+    for (std::size_t k = 0; k < readings.size(); ++k) memory_[fmt::format("Q{}", 100 + k)] = readings[k];
+    std::smatch m;
+    double z_mm = NAN;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const std::string& block = blocks_[b];
+      if (block.starts_with(";") || block.starts_with("LBL ") || block.starts_with("BEGIN PGM") ||
+          block.starts_with("END PGM") || block == "CYCL DEF 7.0 DATUM SHIFT")
+        continue;
+      if (std::regex_match(block, m, jump)) {
+        EXPECT_EQ(m[1] == "10", m[3] == "NE");
+        EXPECT_EQ(m[1] == "11", m[3] == "GT");
+        if (compares(m[2], m[3], m[4], memory_))
+          b = static_cast<std::size_t>(std::find(blocks_.begin(), blocks_.end(), "LBL " + m[5].str()) - blocks_.begin());
+        EXPECT_LT(b, blocks_.size());
+      } else if (std::regex_match(block, m, always)) {
+        memory_[m[1].str()] = value_of(m[2], memory_);
+      } else if (std::regex_match(block, m, shift)) {
+        z_mm = value_of(m[1], memory_);
+      } else {
+        ADD_FAILURE() << block;
+      }
+    }
+    return -1e3 * z_mm;
+  }
+
+ private:
+  Memory memory_;
+  std::vector<std::string> blocks_;
+};
+
+/// The guards of the fixture without relations and jumps, so that no reading is doubted, and the judged correction.
+DeployedModel undoubted(bool from_start, double period_s) {
+  DeployedModel d = deployed(from_start, period_s);
+  for (auto& g : d.safe.guards) {
+    g.others_coefficient.clear();
+    g.most_jump = HUGE_VAL;
+  }
+  return d;
+}
+
+/// Without what a program that knows no time cannot hold.
+DeployedModel without_time(DeployedModel d) {
+  std::erase_if(d.model.terms, [](const auto& t) { return t.lag_s > 0.0 || t.unit == "rpm"; });
+  std::erase_if(d.safe.guards, [](const auto& g) { return g.unit == "rpm"; });
+  return d;
+}
+
+/// Readings that leave their ranges for a while: trust falls, and the correction is slewed.
+Record troubled(double period_s) {
+  Record r = machine(5, period_s);
+  for (std::size_t i = 150; i < 220; ++i) r.channels[0].values[i] += 0.25 * static_cast<double>(i - 150);
+  return r;
+}
+
+void expect_judged(const DeployedModel& d, const ControlProgram& program, Control& control, bool knows_time) {
+  const Record record = troubled(d.safe.period_s);
+  const compensation::Repaired r = compensation::repaired(d.safe, record);
+  ASSERT_TRUE(r.events.empty());
+  const std::vector<double> predicted = d.model.predict(r.readings);
+  const compensation::GuardedCorrection judged = compensation::guarded(d.safe, r, predicted);
+  double least_trust = 1.0, most_um = 0.0;
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    std::vector<double> readings;
+    for (const auto& g : d.safe.guards) readings.push_back(record.at(g.input).values[i]);
+    const double expected =
+        knows_time ? judged.correction_um[i] : std::clamp(r.deserved[i] * predicted[i], d.safe.lowest_um, d.safe.highest_um);
+    ASSERT_NEAR(control.row(readings), expected, program.error_um) << "row " << i;
+    least_trust = std::min(least_trust, r.deserved[i]);
+    most_um = std::max(most_um, std::abs(expected));
+  }
+  EXPECT_LT(least_trust, 0.9);
+  EXPECT_GT(most_um, 1.0);
+}
+
+class InCycle : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(FromStartOrNot, InCycle, ::testing::Bool());
+
+TEST_P(InCycle, StructuredTextGivesTheJudgedCorrection) {
+  const DeployedModel d = undoubted(GetParam(), 7.3);
+  const ControlProgram p = control_program(d, ControlLanguage::kStructuredText, "2nd, best", {}, "a test");
+  EXPECT_EQ(p.file, "X_2nd_best.st");
+  EXPECT_EQ(p.error_um, 1e-9);
+  StructuredTextControl control(p.text);
+  expect_judged(d, p, control, true);
+}
+
+TEST_P(InCycle, SynchronizedActionsOfSiemensGiveTheJudgedCorrection) {
+  for (bool against_dk : {false, true}) {
+    const DeployedModel d = undoubted(GetParam(), 8.0);
+    const ControlProgram p = control_program(d, ControlLanguage::kSiemens, "ridge", {'Z', against_dk}, "a test");
+    EXPECT_EQ(p.file, "RIDGE.SPF");
+    EXPECT_EQ(p.error_um, 1e-9);
+    SiemensControl control(p.text, 8.0, against_dk);
+    expect_judged(d, p, control, true);
+  }
+}
+
+TEST_P(InCycle, ProgramsThatAreCalledGiveWhatNeedsNoTime) {
+  const DeployedModel d = without_time(undoubted(GetParam(), 60.0));
+  const ControlProgram heidenhain = control_program(d, ControlLanguage::kHeidenhain, "ridge", {}, "a test");
+  HeidenhainControl tnc(heidenhain.text);
+  EXPECT_LT(heidenhain.error_um, 1e-6);
+  expect_judged(d, heidenhain, tnc, false);
+  const ControlProgram fanuc = control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test");
+  FanucControl control(fanuc.text);
+  EXPECT_LT(fanuc.error_um, 1e-3);
+  expect_judged(d, fanuc, control, false);
+}
+
+std::string refusal(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(ControlProgram, IsRefusedWhereTheLanguageCannotHoldTheFormula) {
+  const DeployedModel d = undoubted(true, 60.0);
+  for (ControlLanguage language : {ControlLanguage::kHeidenhain, ControlLanguage::kFanuc}) {
+    const std::string said = refusal([&] { (void)control_program(d, language, "ridge", {}, "a test"); });
+    EXPECT_THAT(said, HasSubstr("a lag of 'X1'"));
+    EXPECT_THAT(said, HasSubstr("--as st"));
+  }
+  DeployedModel many = without_time(d);
+  for (int k = 0; k < 6; ++k) many.safe.guards.push_back(many.safe.guards.front());
+  EXPECT_THAT(refusal([&] { (void)control_program(many, ControlLanguage::kHeidenhain, "ridge", {}, "a test"); }),
+              HasSubstr("Q100 to Q107"));
+  DeployedModel long_one = d;
+  for (int k = 0; k < 60; ++k) long_one.model.terms.push_back(d.model.terms[2]);
+  EXPECT_THAT(refusal([&] { (void)control_program(long_one, ControlLanguage::kSiemens, "ridge", {}, "a test"); }),
+              HasSubstr("synchronized actions"));
+}
+
+}  // namespace
+}  // namespace driftwright::output::control_program_test
