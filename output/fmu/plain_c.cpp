@@ -114,7 +114,7 @@ std::vector<FmuEntry> plain_c_files(const FmuOrder& order, const Provenance& mad
       "const char *plain_row(plain_model *m, const double *inputs, double dt_s);\n\n#endif\n",
       model.description, words, (sizes.saved + sizes.scratch + outputs.size()) * sizeof(double) / 1024 + 1, input_lines,
       output_lines, inputs.size(), outputs.size(), sizes.saved, sizes.scratch,
-      is_observer ? fmt::format("and a sample is taken\n * every {:g} s: rows that come sooner only tell the drive",
+      is_observer ? fmt::format("and a sample is taken\n * every {:g} s: of rows that come sooner only the drive counts",
                                 model.observer->settings.period_s)
                   : "the ambient\n * linear between the two");
   std::vector<FmuEntry> files = {{"plain_model.h", header}};
