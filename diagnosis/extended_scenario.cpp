@@ -26,7 +26,7 @@ namespace {
 using effects::Effect;
 
 double rounded(double value) {
-  return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr) : value;
+  return std::isfinite(value) ? std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr) : value;
 }
 
 double rounded(double value, const effects::Parameter& parameter) {
@@ -34,8 +34,8 @@ double rounded(double value, const effects::Parameter& parameter) {
   return rounded(value - zero) + zero;
 }
 
-/// Six digits: numbers that follow from fitted ones, such as a factor from a power. Fitted ones come with fewer
-/// (written_numbers.hpp).
+/// Seven digits, accurate to a millikelvin: numbers that follow from fitted ones, such as a factor from a power. Fitted
+/// ones come with fewer (written_numbers.hpp).
 Effect rounded(Effect e) {
   for (std::size_t p = 0; p < e.values.size(); ++p) e.values[p] = rounded(e.values[p], e.kind->parameters[p]);
   for (auto& [name, table] : e.tables) {
@@ -48,7 +48,7 @@ Effect rounded(Effect e) {
 }
 
 bool is_near(double a, double b) {
-  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-5 * std::max(std::abs(a), std::abs(b));
+  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
 }
 
 bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
@@ -181,7 +181,7 @@ class Writer {
     const double number = std::strtod(text.c_str(), &unit);
     const bool keeps_unit = parameter.unit != "degC" && unit != text.c_str() && was != 0.0 && number != 0.0;
     const std::string other =
-        keeps_unit ? fmt::format("{:.6g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
+        keeps_unit ? fmt::format("{:.7g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
     if (!yaml_.replace(*scalar, other)) return false;
     notes_[scalar->line].push_back(fmt::format("{} was {}", parameter.name, text));
     return true;
