@@ -233,7 +233,7 @@ void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
               "--points", options.points,
               "record CSV with errors of several points (rings, spheres, the spindle nose) as displacements in um, of "
               "`simulate` or measured; also says which of the points to probe. Of a scenario with `table`: its record.csv, "
-              "which tells of its rings; may be repeated")
+              "which says what its rings do; may be repeated")
           ->allow_extra_args(false);
   verb->add_option("--may-probe", options.may_probe,
                    "displacement of these records that can be probed; may be repeated [all that they share]")

@@ -2,6 +2,7 @@
 """Checks the dependencies between rooms: a file includes only headers of its own room and of rooms that its CMakeLists.txt links, no room depends on itself,
 and the library does not depend on the command line. A folder without a
 CMakeLists.txt belongs to the room around it, and no file outside of it includes its headers: the room does not know what is special there (the controls of nc/).
+The C of a functional mock-up unit (output/fmu/sources), which is no C++ room, is compiled into the program as well.
 
     arrows_test.py FOLDER_OF_THE_PROJECT
 """
@@ -12,6 +13,10 @@ import sys
 TARGET = re.compile(r"driftwright_target\(driftwright_(\w+)")
 LINKS = re.compile(r"target_link_libraries\(driftwright_(\w+)((?:[^()]|\([^()]*\))*)\)")
 INCLUDE = re.compile(r'^#include "([^"]+)/[^"/]+"', re.M)
+
+
+def is_special(folder):
+    return folder.is_dir() and not (folder / "CMakeLists.txt").exists() and any(folder.glob("*.hpp"))
 
 
 def rooms_of(top):
@@ -58,7 +63,7 @@ def main():
                 continue
             for included in INCLUDE.findall(file.read_text()):
                 its = top / included
-                if its.is_dir() and not (its / "CMakeLists.txt").exists() and its != file.parent:
+                if is_special(its) and its != file.parent:
                     wrong.append(f"{file.relative_to(top)} includes a header of {included}, which is for that folder alone")
                 other = room_around(included, target)
                 if other and target[other] not in allowed:
