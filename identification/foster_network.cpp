@@ -24,8 +24,8 @@ Eigen::MatrixXd inverse_of_free(const Eigen::MatrixXd& normal, const Eigen::Vect
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(numbers.size(), numbers.size());
   if (free.empty()) return inverse;
   const auto n = static_cast<Eigen::Index>(free.size());
-  const Eigen::MatrixXd of_free = normal(free, free);
-  inverse(free, free) = of_free.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd of_free = normal(free, free), inverse_of_them = of_free.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  inverse(free, free) = inverse_of_them;
   return inverse;
 }
 
