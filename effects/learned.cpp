@@ -34,6 +34,24 @@ std::function<double(const Drive&)> law_of(const Effect& e) {
   };
 }
 
+/// By how much the law would exceed 1 if it went on; 0 within what it was learned from.
+std::function<double(const Drive&)> excess_of(const Effect& e) {
+  if (e.words.at("follows") == "column")
+    return [value = signal_of(e.words.at("column"), 0.0), at = e["at"]](const Drive& d) {
+      const double u = value(d).value_or(0.0) / at;
+      return u - std::clamp(u, -1.0, 1.0);
+    };
+  if (!e.has("at_speed")) return [](const Drive&) { return 0.0; };
+  return [n0_rpm = e["at_speed"], exponent = e["exponent"]](const Drive& d) {
+    return std::pow(std::max(d.speed_rpm / n0_rpm, 1.0), exponent) - 1.0;
+  };
+}
+
+/// The drive with the column that an effect follows.
+Cyclogram followed_drive(const Effect& e, const Cyclogram& cyclogram) {
+  return e.words.at("follows") == "column" ? with_signal(cyclogram, e.words.at("column"), 0.0) : cyclogram;
+}
+
 void change_readings(const Effect& e, ReadingChain& chain) {
   const bool is_sensor = e.place_kind == Place::kSensor;
   const auto row_of = [is_sensor, place = e.place](const Readings& r) {
@@ -47,24 +65,25 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
   const std::string& table = table_of(e);
   if (table.empty()) return;
-  chain.add(
-      ReadingStage::kLearned, [=, effect = e, scale = is_sensor ? 1.0 : 1e-6, terms = e.tables.at(table)](Readings& r) {
-        const std::string& follows = effect.words.at("follows");
-        auto row = r.value.row(row_of(r));
-        const bool is_ambient = follows == "ambient";
-        const Cyclogram drive = follows == "column" ? with_signal(r.cyclogram, effect.words.at("column"), 0.0) : r.cyclogram;
-        for (std::size_t k = 0; k < terms.time_s.size(); ++k) {
-          const double lag_s = 60.0 * terms.time_s[k], amount = scale * terms.value[k];
-          if (!is_ambient) {
-            row += amount * driven(r.time_s, drive, law_of(effect), lag_s);
-            continue;
-          }
-          Eigen::RowVectorXd rise(r.n_times());
-          for (Eigen::Index i = 0; i < rise.size(); ++i) rise[i] = r.ambient.at(r.time(i)) - r.ambient.at(r.time_s.front());
-          lag_behind(rise, r.time_s, lag_s);
-          row += amount * rise;
-        }
-      });
+  chain.add(ReadingStage::kLearned,
+            [=, effect = e, scale = is_sensor ? 1.0 : 1e-6, terms = e.tables.at(table)](Readings& r) {
+              const std::string& follows = effect.words.at("follows");
+              auto row = r.value.row(row_of(r));
+              const bool is_ambient = follows == "ambient";
+              const Cyclogram drive = followed_drive(effect, r.cyclogram);
+              for (std::size_t k = 0; k < terms.time_s.size(); ++k) {
+                const double lag_s = 60.0 * terms.time_s[k], amount = scale * terms.value[k];
+                if (!is_ambient) {
+                  row += amount * driven(r.time_s, drive, law_of(effect), lag_s);
+                  continue;
+                }
+                Eigen::RowVectorXd rise(r.n_times());
+                for (Eigen::Index i = 0; i < rise.size(); ++i)
+                  rise[i] = r.ambient.at(r.time(i)) - r.ambient.at(r.time_s.front());
+                lag_behind(rise, r.time_s, lag_s);
+                row += amount * rise;
+              }
+            });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -81,8 +100,12 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("follows", "what is learned (`" + wanted + "`) and what it `follows` must be given together");
   if ((follows == "column") == e.words.at("column").empty())
     in.fail("column", "`follows: column` and the `column` must be given together");
-  if ((follows == "speed") != e.has("at_speed"))
+  if (follows == "speed" && !e.has("at_speed"))
     in.fail("at_speed", "`follows: speed` and `at_speed` must be given together");
+  if (e.has("at_speed") && follows != "speed" && follows != "running")
+    in.fail("at_speed", "`at_speed` is allowed only with `follows: speed` or `follows: running`");
+  if (e.has("error") && (follows == "nothing" || follows == "ambient"))
+    in.fail("error", "`error` is allowed only for what follows a drive: the turning spindle, its speed or a column");
   if ((follows == "column") != e.has("at")) in.fail("at", "`follows: column` and `at` must be given together");
   if (follows == "nothing" && e["keeps"] == 1.0 && !e.has("offset"))
     in.fail("follows", "the entry learns nothing; write what it `follows`, or `keeps`, or an `offset`");
@@ -103,8 +126,11 @@ EffectKind kind() {
           {{"keeps", "1", 0.0, 1.0, 1.0, "share of the change that the physics give"},
            {"offset", "K", -1e3, 1e3, kNotGiven, "of a sensor, at all times"},
            {"above", "rpm", 0.0, 1e6, 0.0, "running: faster than this; a tachometer may tremble at rest"},
-           {"at_speed", "rpm", 1.0, 1e6, kNotGiven, "the fastest that was learned from: there the amounts hold, and beyond"},
-           {"exponent", "1", 0.1, 4.0, 1.0, "growth with speed"},
+           {"error", "1", 0.0, 1e6, kNotGiven,
+            "one sigma of the sum of amounts, in their unit; the error grows by it beyond what was learned from"},
+           {"at_speed", "rpm", 1.0, 1e6, kNotGiven,
+            "the fastest that was learned from: there the amounts hold, and beyond; running: the error grows beyond it"},
+           {"exponent", "1", 0.1, 4.0, 1.0, "growth with speed; running: of the error alone"},
            {"at", "1", 1e-12, 1e12, kNotGiven,
             "the largest value of the column that was learned from, in its unit: there the amounts hold, and beyond"}},
       .timing = Timing::kInRecord,
@@ -124,6 +150,28 @@ EffectKind kind() {
 }  // namespace driftwright::effects::learned
 
 namespace driftwright::effects {
+
+Eigen::RowVectorXd learned_sd_beyond(const std::vector<Effect>& effects, Place kind, const std::string& place,
+                                     const std::vector<double>& time_s, const Cyclogram& cyclogram) {
+  const auto n = static_cast<Eigen::Index>(time_s.size());
+  Eigen::RowVectorXd missing = Eigen::RowVectorXd::Zero(n), squares = missing;
+  const double scale = kind == Place::kSensor ? 1.0 : 1e-6;
+  for (const Effect& e : effects) {
+    if (e.kind->key != "learned" || e.place_kind != kind || e.place != place || !e.acts_in(cyclogram.name)) continue;
+    const std::string& table = learned::table_of(e);
+    if (table.empty() || e.words.at("follows") == "ambient") continue;
+    const Cyclogram drive = learned::followed_drive(e, cyclogram);
+    const TimeSeries& terms = e.tables.at(table);
+    Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(n);
+    for (std::size_t k = 0; k < terms.time_s.size(); ++k) {
+      const Eigen::RowVectorXd excess = driven(time_s, drive, learned::excess_of(e), 60.0 * terms.time_s[k]);
+      missing += scale * terms.value[k] * excess;
+      largest = largest.cwiseMax(excess.cwiseAbs());
+    }
+    if (e.has("error")) squares += (scale * e["error"] * largest).cwiseAbs2();
+  }
+  return (missing.cwiseAbs2() + squares).cwiseSqrt();
+}
 
 LearnedStream::LearnedStream(const std::vector<Effect>& effects, const std::string& displacement) {
   for (const Effect& e : effects) {

@@ -1,6 +1,8 @@
 #pragma once
-// What effects `learned` add to a displacement while rows arrive: the same as over a whole record.
+// What effects `learned` add to a displacement while rows arrive: the same as over a whole record. And how far they may be
+// wrong beyond the drives that they were learned from.
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -34,5 +36,16 @@ class LearnedStream {
   std::vector<Effect> effects_;
   State state_;
 };
+
+/// One sigma of what the effects `learned` of a sensor or a displacement miss beyond their hull, the largest drive that they
+/// were learned from: 0 within it, after the lags. There the amounts stay, while the law may go on. With e_k the lagged
+/// excess of the unlimited law over 1, and amounts a_k known by a fit with covariance C, the mean square of what is missing
+/// if the law goes on is (a' e)^2 + e' C e. Of C an entry holds `error`, the sigma of its sum of amounts. Hence
+/// e' C e <= sum over entries of (error max_k |e_k|)^2, where the entries are independent. Of what follows the turning
+/// spindle, (n / at_speed)^exponent - 1 is taken for the excess. The ambient has no hull.
+/// @param time_s  increasing, from 0
+/// @return in K, m or rad, for each time
+[[nodiscard]] Eigen::RowVectorXd learned_sd_beyond(const std::vector<Effect>& effects, Place kind, const std::string& place,
+                                                   const std::vector<double>& time_s, const Cyclogram& cyclogram);
 
 }  // namespace driftwright::effects

@@ -15,6 +15,20 @@ constexpr double kMeanOne = 1e4;
 constexpr double kTiny = 1e-12;
 constexpr double kNothing = 1e9;  // a penalty that forces a coefficient to zero
 
+/// Inverse of normal equations of the numbers that are above 0; 0 for the others, which are at their limit.
+Eigen::MatrixXd inverse_of_free(const Eigen::MatrixXd& normal, const Eigen::VectorXd& numbers) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] > 0.0) free.push_back(i);
+  }
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(numbers.size(), numbers.size());
+  if (free.empty()) return inverse;
+  const auto n = static_cast<Eigen::Index>(free.size());
+  const Eigen::MatrixXd of_free = normal(free, free), inverse_of_them = of_free.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  inverse(free, free) = inverse_of_them;
+  return inverse;
+}
+
 }  // namespace
 
 std::size_t Structure::n_heated() const {
@@ -210,6 +224,7 @@ ChannelFit FosterProblem::fit_thermometer(const Eigen::MatrixXd& g, const Eigen:
   ChannelFit fit;
   fit.kept = extends_scenario() ? shares[n_shares - 1] : 0.0;
   fit.weight = shares.head(n_bodies);
+  fit.covariance = inverse_of_free(reduced, shares).topLeftCorner(n_bodies, n_bodies);
   fit.of_ambient = has_ambient_ ? shares[n_bodies] : 0.0;
   const Eigen::VectorXd rest = factor.solve(right.tail(n_beside) - cross * shares);
   fit.offset = is_rise ? 0.0 : rest[0];
@@ -256,8 +271,8 @@ ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen
   fit.weight = part.head(n_heated_ + n_ambient_);
   fit.kept = extends_scenario() ? part[n_parts - 1] : 0.0;
   fit.of_records = factor.solve(Eigen::VectorXd(c(beside_at)) - cross * part);
-  const Eigen::VectorXd variance = parts.solve(Eigen::MatrixXd::Identity(n_parts, n_parts)).diagonal();
-  fit.standard_deviation = variance.cwiseMax(0.0).cwiseSqrt();
+  fit.covariance = Eigen::MatrixXd(parts.solve(Eigen::MatrixXd::Identity(n_parts, n_parts)))
+                       .topLeftCorner(n_heated_ + n_ambient_, n_heated_ + n_ambient_);
   if (has_ambient_ && !extends_scenario()) {
     for (Eigen::Index b = 0; b < n_heated_; ++b)
       fit.weight[n_heated_ + static_cast<Eigen::Index>(pole_of_heated_[static_cast<std::size_t>(b)])] -= part[b];
@@ -272,7 +287,7 @@ ChannelFit FosterProblem::scenario_alone(const Normal& normal, std::size_t chann
   alone.weight.setZero();
   alone.of_ambient = alone.offset = 0.0;
   alone.kept = 1.0;
-  alone.standard_deviation.resize(0);
+  alone.covariance.resize(0, 0);
   return alone;
 }
 

@@ -52,8 +52,9 @@ struct ChannelFit {
   double offset = 0.0;      ///< of a thermometer in degC [K]
   /// Terms of single records: a constant for each (displacements and rises), then per pole the initial warmth.
   Eigen::VectorXd of_records;
-  /// Of the heated part of a displacement, with n rows counted as n / rows_as_one(); else empty.
-  Eigen::VectorXd standard_deviation;
+  /// Of the bodies' weights, of their heated part where they have one, with n rows counted as n / rows_as_one(). It is that
+  /// of ridge regression as a Bayesian sees it; a thermometer's weights at 0 have none. Empty for a scenario alone.
+  Eigen::MatrixXd covariance;
 };
 
 /// A body of the network.

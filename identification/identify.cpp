@@ -277,14 +277,14 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     channel.predicted = problem.predicted(c, channel.fit, true);
     channel.misses = problem.misses(c, channel.fit);
     channel.ledger = ledger(problem, c, channel.fit);
+    if (scenario) channel.missing = ledger_of_missing(problem, c, channel.fit);
     channel.swing = deviation(problem.measured(c));
     channel.missed_own = problem.rms(all, c, channel.fit);
     for (KeptOutKind& kind : result.kinds)
       kind.rms.push_back(missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds(), kind.kind));
     channel.missed_kept_out = missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
     channel.missed_simulated = problem.rms(all, c, channel.fit, false);
-    if (channel.fit.standard_deviation.size() > 0)
-      channel.fit.standard_deviation *= channel.missed_own * std::sqrt(rows_as_one(std::span(&channel.misses, 1)));
+    channel.fit.covariance *= channel.missed_own * channel.missed_own * rows_as_one(std::span(&channel.misses, 1));
     result.channels.push_back(std::move(channel));
   }
   return result;

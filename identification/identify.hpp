@@ -47,6 +47,7 @@ struct IdentifiedChannel {
   double scenario_kept_out = 0.0;             ///< the same on kept-out rows, as missed_kept_out
   double regression_kept_out = std::nan("");  ///< error of a plain regression on the kept-out rows, fitted without them
   double noise = std::nan("");                ///< of the readings
+  std::vector<Driver> missing;                ///< ledger_of_missing()
   MeanError missed_more_without;  ///< logarithm of the ratio of errors, unchanged over extended scenario, on kept-out folds
 };
 

@@ -220,13 +220,37 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
     }
     return best;
   };
+  // A scenario knows how heat grows with the speed; folds show that something else knows it better only if they hide
+  // speeds. Less of it is kept only if it predicts hidden speeds, too, better than all of it. Of other drives scenario and
+  // extension are alike in proportion, and all folds count.
+  std::vector<bool> hides_speed;
+  for (const HiddenRows& f : folds_) hides_speed.push_back(f.kind == "speed");
+  const auto of_speeds = [&](const Tried& t) {
+    double sum = 0.0, n = 0.0;
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      if (!hides_speed[f] || !std::isfinite(t.loss.of_fold[static_cast<Eigen::Index>(f)])) continue;
+      sum += t.loss.of_fold[static_cast<Eigen::Index>(f)];
+      n += 1.0;
+    }
+    return n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto best_beside = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& list) {
+    std::vector<Smoothness> whole, less;
+    for (const Smoothness& s : list)
+      ((from < n_t ? s.scenario_of_thermometers : s.scenario_of_displacements) >= kScenarios[0] ? whole : less).push_back(s);
+    if (whole.empty() || less.empty()) return best_of(from, to, list);
+    Tried all_kept = best_of(from, to, whole), less_kept = best_of(from, to, less);
+    const bool is_borne_out =
+        less_kept.loss.mean < all_kept.loss.mean && (roles_.speed.empty() || of_speeds(less_kept) < of_speeds(all_kept));
+    return is_borne_out ? less_kept : all_kept;
+  };
   // For a network alone, records begin in balance, unless the written scenario, which knows no other start, is better by
   // more than a standard error with free starts. For an extension they do so unless kept-out rows are better with free
   // starts: a heat must not explain a machine that was warm.
   const auto try_all = [&](std::size_t from, std::size_t to, const std::array<std::vector<Smoothness>, 2>& lists) {
-    Tried best = best_of(from, to, lists[0]);
+    Tried best = best_beside(from, to, lists[0]);
     if (!lists[1].empty()) {
-      Tried free = best_of(from, to, lists[1]);
+      Tried free = best_beside(from, to, lists[1]);
       const bool is_extension = problem.extends_scenario();
       if (!is_as_good(is_extension ? best.loss : best.simulated, is_extension ? free.loss : free.simulated))
         best = std::move(free);

@@ -54,9 +54,8 @@ double delay_s(const std::vector<std::pair<double, double>>& gain_tau) {
   return 0.0;
 }
 
-}  // namespace
-
-std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, const ChannelFit& fit) {
+/// What laws and the ambient do to a channel.
+std::vector<Parts> learned_parts(const FosterProblem& problem, std::size_t channel, const ChannelFit& fit) {
   const std::vector<NetworkBody>& bodies = problem.bodies();
   const bool is_thermometer = channel < problem.n_thermometers();
   std::vector<Parts> parts;
@@ -78,9 +77,21 @@ std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, co
     ambient.gain_tau.emplace_back(fit.of_ambient, 0.0);
   }
   if (problem.ambient_K().cwiseAbs().maxCoeff() > 0.0) parts.push_back(std::move(ambient));
-  if (problem.extends_scenario()) parts.push_back({"the scenario", fit.kept * problem.simulated(channel), {}});
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.n_rows()));
+  return parts;
+}
+
+/// Shares in the variance of the sum of all parts, over rows without a gap.
+std::vector<Driver> drivers_of(std::vector<Parts> parts) {
+  if (parts.empty()) return {};
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(parts.front().course.size());
   for (const Parts& p : parts) sum += p.course;
+  std::vector<Eigen::Index> whole;
+  for (Eigen::Index i = 0; i < sum.size(); ++i) {
+    if (std::isfinite(sum[i])) whole.push_back(i);
+  }
+  if (whole.empty()) return {};
+  for (Parts& p : parts) p.course = Eigen::VectorXd(p.course(whole));
+  sum = Eigen::VectorXd(sum(whole));
   const Eigen::VectorXd about = (sum.array() - sum.mean()).matrix();
   const double variance = about.squaredNorm();
   std::vector<Driver> drivers;
@@ -94,6 +105,21 @@ std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, co
   }
   std::sort(drivers.begin(), drivers.end(), [](const Driver& a, const Driver& b) { return a.share > b.share; });
   return drivers;
+}
+
+}  // namespace
+
+std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, const ChannelFit& fit) {
+  std::vector<Parts> parts = learned_parts(problem, channel, fit);
+  if (problem.extends_scenario()) parts.push_back({"the scenario", fit.kept * problem.simulated(channel), {}});
+  return drivers_of(std::move(parts));
+}
+
+std::vector<Driver> ledger_of_missing(const FosterProblem& problem, std::size_t channel, const ChannelFit& fit) {
+  std::vector<Parts> parts = learned_parts(problem, channel, fit);
+  if (fit.kept < 1.0) parts.push_back({"less of the scenario", (fit.kept - 1.0) * problem.simulated(channel), {}});
+  parts.push_back({kLeft, problem.misses(channel, fit), {}});
+  return drivers_of(std::move(parts));
 }
 
 }  // namespace driftwright::identification

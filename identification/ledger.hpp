@@ -20,4 +20,11 @@ struct Driver {
 /// The drivers of a channel; shares come from the covariance of each part with the sum. The largest share first.
 [[nodiscard]] std::vector<Driver> ledger(const FosterProblem& problem, std::size_t channel, const ChannelFit& fit);
 
+inline constexpr const char* kLeft = "left";
+/// The same of what an extended scenario misses of a channel's readings, apart from terms of single records: who explains
+/// it, as shares of its variance. Two entries have no final size or delay: "less of the scenario", where not all of it is
+/// kept, and kLeft, what nothing explains.
+[[nodiscard]] std::vector<Driver> ledger_of_missing(const FosterProblem& problem, std::size_t channel,
+                                                    const ChannelFit& fit);
+
 }  // namespace driftwright::identification

@@ -53,6 +53,15 @@ bool changes(const std::vector<Record>& records, const std::string& channel) {
   });
 }
 
+/// One sigma of the sum of a law's amounts in a channel, by the covariance of its fit.
+double sum_error(const identification::IdentifiedChannel& c, const identification::Identified& of, std::size_t law) {
+  Eigen::VectorXd rise_K = Eigen::VectorXd::Zero(c.fit.weight.size());
+  for (std::size_t b = 0; b < of.bodies.size(); ++b) {
+    if (of.bodies[b].body.law == law) rise_K[static_cast<Eigen::Index>(b)] = of.bodies[b].body.rise_K;
+  }
+  return std::sqrt(std::max(0.0, rise_K.dot(c.fit.covariance * rise_K)));
+}
+
 /// Whether a column may drive heat: not a temperature, which belongs to a medium or a body.
 bool may_drive(const std::string& unit) {
   static const char* const kUnits[] = {"W", "V", "percent", "count", "1", "W_m2", "mm_min"};
@@ -270,6 +279,7 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
           case Law::Kind::kTurning:
             e.words["follows"] = "running";
             e.set("above", rounded(kTurns * of.top));
+            e.set("at_speed", of.top);
             break;
           case Law::Kind::kPower:
             e.words["follows"] = "speed";
@@ -283,6 +293,7 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
             break;
         }
       }
+      if (law != ambient) e.set("error", rounded(sum_error(c, extension, law)));
       list.push_back(std::move(e));
     }
     if (list.size() == before) list.push_back(make());

@@ -61,7 +61,10 @@ TEST_F(IdentifyVerb, LearnsBesideAScenarioWhatThatMisses) {
   const std::string record = " --record scenarios/records/own_law.csv --json -o ";
   const CommandOutcome learned = run_program("identify --prior scenarios/own_law.yaml" + record + out_.string());
   ASSERT_EQ(learned.exit_code, 0) << learned.output;
-  for (const Json& channel : Json::parse(std::ifstream(out_ / "summary.json")).at("channels")) {
+  const Json summary = Json::parse(std::ifstream(out_ / "summary.json"));
+  for (const Json& words : summary.at("ledger_in_words"))
+    EXPECT_THAT(words.at("missed").get<std::string>(), AllOf(HasSubstr(" % left: "), HasSubstr(" times the noise")));
+  for (const Json& channel : summary.at("channels")) {
     EXPECT_EQ(channel.at("written"), "yes") << channel.at("name");
     EXPECT_LT(channel.at("rms_kept_out").get<double>(), 0.3 * channel.at("rms_scenario_kept_out").get<double>())
         << channel.at("name");

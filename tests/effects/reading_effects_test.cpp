@@ -136,6 +136,43 @@ TEST(Learned, AddsToAStreamWhatItAddsToARecord) {
   EXPECT_THROW(stream.recall({}), InputError);
 }
 
+// 2000 rpm for 150 s, then 1000 and rest: beyond a hull of 1000 rpm the square of the speed is 3 more than the amounts hold.
+TEST(Learned, MayMissWhatTheLawGoesOnToBeyondItsHull) {
+  const auto sd = [](Place kind, const std::string& place, const std::vector<std::string>& entries,
+                     const Cyclogram& cyclogram = kCyclogram) {
+    std::vector<Effect> effects;
+    for (const std::string& text : entries) effects.push_back(read(text));
+    return Eigen::MatrixXd(learned_sd_beyond(effects, kind, place, kTime_s, cyclogram));
+  };
+  const auto lagged = [](double t_s) {
+    return -std::expm1(-std::min(t_s, 150.0) / 60.0) * std::exp(-std::max(t_s - 150.0, 0.0) / 60.0);
+  };
+  const std::vector<std::string> of_speed = {
+      "{type: learned, displacement: z, follows: speed, at_speed: 1000 rpm, exponent: 2, error: 0.5, "
+      "grows: [[0 min, 4 um], [1 min, 5 um]]}",
+      "{type: learned, displacement: z, follows: ambient, grows: [[0 min, 70 um]]}"};
+  std::vector<double> expected;
+  for (const double t_s : kTime_s) {
+    const double at_once = t_s < 150.0 ? 3.0 : 0.0, after_lag = 3.0 * lagged(t_s);
+    expected.push_back(1e-6 * std::hypot(4.0 * at_once + 5.0 * after_lag, 0.5 * std::max(at_once, after_lag)));
+  }
+  expect_row(sd(Place::kDisplacement, "z", of_speed), 0, expected, 1e-15);
+  expect_row(sd(Place::kDisplacement, "tilt", of_speed), 0, {0, 0, 0, 0, 0, 0}, 0.0);
+  // what follows the turning spindle: in proportion, if the fastest speed is known
+  expect_row(sd(Place::kSensor, "a",
+                {"{type: learned, sensor: a, follows: running, at_speed: 1600 rpm, error: 0.4, rises: [[0 min, 0.3 K]]}"}),
+             0, {0.125, 0.125, 0, 0, 0, 0}, 1e-12);
+  expect_row(sd(Place::kSensor, "a", {"{type: learned, sensor: a, follows: running, rises: [[0 min, 0.3 K]]}"}), 0,
+             {0, 0, 0, 0, 0, 0}, 0.0);
+  Cyclogram heated = kCyclogram;
+  heated.columns = {{"heater", "W", {{0, 300}, {150, 0}}}};
+  expect_row(
+      sd(Place::kSensor, "a",
+         {"{type: learned, sensor: a, follows: column, column: heater_W, at: 100, error: 0.5, rises: [[0 min, -1.2 K]]}"},
+         heated),
+      0, {2.6, 2.6, 0, 0, 0, 0}, 1e-12);
+}
+
 TEST(Learned, RefusesWhatDoesNotGoTogether) {
   for (const auto& [entry, says] : {
            std::pair{"{type: learned, sensor: a, follows: ambient, grows: [[1 min, 1 um]]}", "`rises` (K) of a sensor"},
@@ -145,6 +182,9 @@ TEST(Learned, RefusesWhatDoesNotGoTogether) {
            {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` must be given together"},
            {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}",
             "the `column` must be given together"},
+           {"{type: learned, sensor: a, follows: ambient, error: 1, rises: [[1 min, 1 K]]}",
+            "only for what follows a drive"},
+           {"{type: learned, sensor: a, follows: ambient, at_speed: 9 rpm, rises: [[1 min, 1 K]]}", "allowed only with"},
        })
     EXPECT_THAT(([entry = std::string(entry)] { (void)read(entry); }), ThrowsMessage<InputError>(HasSubstr(says))) << entry;
 }

@@ -49,6 +49,17 @@ TEST(LearnBeside, SaysWhatARegressionAndTheNoiseLeave) {
     EXPECT_TRUE(c.is_extended) << c.name;
     EXPECT_LT(c.missed_kept_out, 1.5 * noise) << c.name;
   }
+  // The amounts are known far better than a half, and their error grows beyond the fastest of these speeds.
+  double n_of_drive = 0.0;
+  for (const effects::Effect& e : learned_effects(learned.network)) {
+    if (e.words.at("follows") != "running" && e.words.at("follows") != "speed") continue;
+    n_of_drive += 1.0;
+    ASSERT_TRUE(e.has("error") && e.has("at_speed")) << e.place;
+    EXPECT_NEAR(e["at_speed"], 2000.0, 1e-9);
+    EXPECT_GT(e["error"], 0.0) << e.place;
+    EXPECT_LT(e["error"], e.place == "nose" ? 7.5 : 2.5) << e.place;
+  }
+  EXPECT_GE(n_of_drive, 2.0);
 }
 
 // Beside what a diagnosis wrote, here the scenario as it was.
