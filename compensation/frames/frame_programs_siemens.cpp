@@ -169,7 +169,8 @@ std::string siemens_touch(const AxisProgram& p) {
   text +=
       "IF ($TC_DP1[$P_TOOLNO,$P_TOOL]<>580) AND (($TC_DP1[$P_TOOLNO,$P_TOOL]<710) OR ($TC_DP1[$P_TOOLNO,$P_TOOL]>714)) "
       "GOTOF NOPROBE\n"
-      "M5\n";
+      "M5\n"
+      "G17 G40\n";
   text += fmt::format(
       "STOPRE\n"
       "IF $AA_IW[Z]>={0} GOTOF ABOVE           ; never down before it is above the gauge\n"
