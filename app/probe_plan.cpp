@@ -66,6 +66,9 @@ compensation::AxisProgram axis_program(const ProbePlanOptions& options) {
   if (axis != 3)
     throw InputError(fmt::format("--gauge '{}': three lengths with commas are required, such as '400 mm, 250 mm, -310 mm'",
                                  options.gauge));
+  if (options.probe_tool < 1)
+    throw InputError("--gauge: --probe-tool is required, the number of the probe in the tool table, such as 9");
+  program.probe_tool = options.probe_tool;
   return program;
 }
 

@@ -228,6 +228,11 @@ void add_probe_plan(CLI::App& cli, ProbePlanOptions& options) {
       ->check(CLI::IsMember({"z", "x+", "x-", "y+", "y-"}))
       ->capture_default_str()
       ->needs(gauge);
+  verb->add_option(
+          "--probe-tool", options.probe_tool,
+          "number of the probe in the tool table of LinuxCNC; with any other tool in the spindle nothing is touched")
+      ->check(CLI::Range(1, 99999))
+      ->needs(gauge);
   CLI::Option* points =
       verb->add_option(
               "--points", options.points,

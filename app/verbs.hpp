@@ -113,6 +113,7 @@ struct ProbePlanOptions : CommonOptions {
   std::string between;                           ///< rest between two of them, such as "2 min"; empty: none
   std::string gauge;                             ///< "100 mm, 50 mm, -20 mm", machine coordinates; empty: no touch cycle
   std::string touch = "z";                       ///< the axis that touches it: z, x+, x-, y+, y-
+  int probe_tool = 0;                            ///< number of the probe in the tool table; required with `gauge`
   std::vector<std::string> points;               ///< record CSVs with errors of points; empty: no choice of points
   std::vector<std::string> may_probe, counting;  ///< displacements of these records; empty: all
 };

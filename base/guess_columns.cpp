@@ -288,7 +288,13 @@ bool add_channel(const NumberColumn& column, const HeaderWords& words, bool is_s
   return true;
 }
 
-/// @throws InputError  for a unit of the user's that records cannot store, or of a column that is not there
+/// Whether a column is read: of numbers or switches; also of switches and other words, which add_channels() refuses.
+bool is_read(const std::vector<std::string>& cells, char decimal) {
+  return share_of_numbers(cells, decimal) >= 0.5 || are_switches(cells) || odd_among_switches(cells);
+}
+
+/// @throws InputError  for a unit of the user's that records cannot store, or of a column that is not there; for a column of
+///                     switches with other words in it
 void add_channels(const std::vector<NumberColumn>& columns, char decimal, const GuessHints& hints, GuessedColumns& guessed,
                   std::set<std::string>& missing) {
   std::set<std::string> unused;
@@ -305,6 +311,12 @@ void add_channels(const std::vector<NumberColumn>& columns, char decimal, const 
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const HeaderWords words = words_with_hint(columns[c], hints, unused);
     if (words.unit == "none") continue;
+    const bool are_numbers = share_of_numbers(columns[c].cells, decimal) >= 0.5;
+    if (const auto odd = odd_among_switches(columns[c].cells); odd && !are_numbers)
+      throw InputError(
+          fmt::format("{}: '{}' is a switch in most rows, and contains '{}' too; name this in `missing` of `columns` "
+                      "(docs/reference/record.md), or leave the column out: --unit '{}=none'",
+                      guessed.map.where.file, columns[c].header, *odd, columns[c].header));
     if (add_channel(columns[c], words, speed == c, guessed) && !are_switches(columns[c].cells))
       guess_missing(columns[c].cells, decimal, missing);
   }
@@ -351,9 +363,7 @@ void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at
   }
   std::vector<NumberColumn> columns;
   for (const std::string& tag : order) {
-    if (tag.empty() || tag.starts_with('$') ||
-        (share_of_numbers(values[tag], sheet.decimal) < 0.5 && !are_switches(values[tag])))
-      continue;  // "$RT_OFF$": events
+    if (tag.empty() || tag.starts_with('$') || !is_read(values[tag], sheet.decimal)) continue;  // "$RT_OFF$": events
     columns.push_back({tag, "", {.name = tag, .position = 0, .where = {}}, values[tag]});
   }
   add_channels(columns, sheet.decimal, hints, guessed, missing);
@@ -394,7 +404,7 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       const std::vector<std::string> cells = sheet.column(c);
       const bool is_counter = is_counter_name(sheet.names[c]);
-      if (used.contains(c) || is_counter || (share_of_numbers(cells, sheet.decimal) < 0.5 && !are_switches(cells))) continue;
+      if (used.contains(c) || is_counter || !is_read(cells, sheet.decimal)) continue;
       columns.push_back({sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), cells});
     }
     add_channels(columns, sheet.decimal, hints, guessed, missing);

@@ -122,6 +122,17 @@ bool are_switches(const std::vector<std::string>& cells) {
          std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty() || switch_of(cell); });
 }
 
+std::optional<std::string> odd_among_switches(const std::vector<std::string>& cells) {
+  std::optional<std::string> odd;
+  int n_switches = 0, n_odd = 0;
+  for (const std::string& cell : cells) {
+    if (cell.empty()) continue;
+    ++(switch_of(cell) ? n_switches : n_odd);
+    if (!odd && !switch_of(cell)) odd = cell;
+  }
+  return n_switches > n_odd ? odd : std::nullopt;
+}
+
 bool is_stamp_like(const std::string& cell) {
   static const std::regex stamp(".*[0-9]{1,2}:[0-9]{2}.*|[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}.*");
   return cell.size() <= kLongestNumber && std::regex_match(cell, stamp);  // std::regex recurses once per character

@@ -32,6 +32,8 @@ struct LoggerSheet {
 [[nodiscard]] double share_of_numbers(const std::vector<std::string>& cells, char decimal);
 /// True if all non-empty cells, at least one, are words of switches (switch_of()).
 [[nodiscard]] bool are_switches(const std::vector<std::string>& cells);
+/// A cell that is no word of a switch where more than half of those that are not empty are; none elsewhere.
+[[nodiscard]] std::optional<std::string> odd_among_switches(const std::vector<std::string>& cells);
 /// True if the digits look like a date or a time of day.
 [[nodiscard]] bool is_stamp_like(const std::string& cell);
 

@@ -1,5 +1,7 @@
 #include "studies/logger_import.hpp"
 
+#include <fmt/format.h>
+
 #include "base/config_map.hpp"
 #include "scenarios/reader/read_columns.hpp"
 
@@ -24,7 +26,9 @@ std::map<std::string, std::string> units_of_columns(const std::vector<std::strin
     if (at == std::string::npos || at == 0 || at + 1 == text.size())
       throw InputError("--unit " + text +
                        ": a column and its unit are required, such as t1=degC; t1=none leaves the column out");
-    units[text.substr(0, at)] = text.substr(at + 1);
+    const std::string column = text.substr(0, at), unit = text.substr(at + 1);
+    if (!units.emplace(column, unit).second)
+      throw InputError(fmt::format("--unit {}: '{}' has the unit {} already; one is allowed", text, column, units[column]));
   }
   return units;
 }

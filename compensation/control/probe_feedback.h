@@ -13,10 +13,11 @@
  *   in time            dw / dt = (w before a probing - w) / PROBE_REDRAW_S
  *   a probing          w ~ w exp(-u^2 / 2) / d,   u = (read - expected) / d,   d: deviation of read - expected
  *
- * w is then the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a day, on
- * average: a calm axis does not say that the next cut is calm. pi / sqrt(8) is the deviation of the logarithm of |x| of a
+ * w is then nearly the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a day,
+ * on average: a calm axis does not say that the next cut is calm. (Exactly, a filter would take over the estimates of the
+ * others with the weight that comes from them; each keeps its own.) pi / sqrt(8) is the deviation of the logarithm of |x| of a
  * normal x: the size is known beforehand as well as from one value. Time constants are equally likely beforehand. The
- * deviation of the answer is that of the mixture: before the first probing it is 2.75 times s.
+ * deviation of the answer is that of the mixture: before the first probing it is 2.76 times s.
  *
  * `level` is 0 until a jump. Each filter is the one of Kalman for level and r. It runs lag_s late, and its answer is
  * continued over lag_s: with a constant lag that is exact.
@@ -27,9 +28,11 @@
  * PROBE_REFUSED times the deviation of their difference (of each filter sqrt(2 noise^2 + 2 s^2 (1 - exp(-h / T))) at a
  * distance h in time), are a jump of the axis. It does not fade, as a collision or another clamping does not; later
  * probings correct it. A probing that the first bank expects ends the second one. The third refused probing in a row is
- * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it. If no
- * more than 4 % of all probings are bad, three bad ones in a row are as rare as a good one that is refused (0.04^3 = 1 /
- * 16,000).
+ * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it.
+ *
+ * Of a mixture more lies beyond PROBE_REFUSED deviations than of one normal law, 1 in 16,000: with probings each T / 2 the
+ * filters refuse one of 3,000 good ones where s is right, one of 120 where errors are 3 times as large, and one of 24, the
+ * first one in 5 times, where they are 9 times as large. A bound with 1 in 16,000 would be 30 s at first, and find no chip.
  *
  * Sources: Uhlenbeck & Ornstein, Phys. Rev. 36 (1930) 823; Kalman, J. Basic Eng. 82 (1960) 35; a bank of filters with their
  * probabilities: Magill, IEEE Trans. Autom. Control 10 (1965) 434; a jump as a second filter: Willsky & Jones, IEEE Trans.
@@ -41,7 +44,7 @@
 extern "C" {
 #endif
 
-#define PROBE_REFUSED 4.0 /* deviations; one of 16,000 good probings is refused at most */
+#define PROBE_REFUSED 4.0 /* deviations of the mixture */
 #define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
 #define PROBE_SIZES 4     /* factors of s: 3^-1 to 3^2 */

@@ -20,6 +20,7 @@ struct AxisProgram {
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< tip of the probe as it touches, machine coordinates at the reference
   double feed_mm_min = 300.0;                      ///< of the first touch; the one that counts has kSlowTouch of it
   double clearance_m = 50e-3;                      ///< height above `at_m` while moving to it
+  int probe_tool = 1;                              ///< number of the probe in the tool table of LinuxCNC; above 0
   double first_um = 0.0;  ///< largest offset that the first touch may find, where none is in force; above 0
   double step_um = 0.0;   ///< largest change of an offset in force; above 0
   double most_um = 0.0;   ///< largest offset by size; above 0
@@ -40,11 +41,13 @@ struct AxisProgram {
 }
 
 /// probe_z.ngc: the subprogram o<probe_z>, which touches by G38.3 in G59.2, keeps the offset in G59.1 and writes
-/// G59.3, the user's G54 with the offsets of G59.1. A touch reads the place of the joint, external offsets included
+/// G59.3, the user's G54 with the offsets of G59.1. The way down to the gauge is a G38.3, too: what is touched there
+/// stops it. A touch reads the place of the joint, external offsets included
 /// (measured on LinuxCNC 2.9); these are subtracted.
 [[nodiscard]] std::vector<ProgramFile> linuxcnc_axis(const AxisProgram& program);
 
-/// PROBEZ.SPF and TOUCHZ.SPF: MEAS=1 without frames; the offset is the fine part of the base frame, $P_UBFR[axis,FI].
+/// PROBEZ.SPF and TOUCHZ.SPF: MEAS=1 without frames, also on the way down; an alarm comes after the way back, because it
+/// may end the program; the offset is the fine part of the base frame, $P_UBFR[axis,FI].
 [[nodiscard]] std::vector<ProgramFile> siemens_axis(const AxisProgram& program);
 
 /// PROBEZ.H: TCH PROBE 427, which the datum shift in force is added to; the change is added to it by cycle 7, and Q48

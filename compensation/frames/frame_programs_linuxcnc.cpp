@@ -159,15 +159,20 @@ std::vector<ProgramFile> linuxcnc_axis(const AxisProgram& p) {
                     bound_words(p));
   text += fmt::format(
       "(G59.2 is used for probing. By o<probe_{0}> call, after T and M6 of the probe. #<_value>: 0 taken, 1 no probe, 2 "
-      "G92, "
-      "3 no gauge, 4 refused)\n"
+      "G92, 3 no gauge, 4 refused, 5 something in the way, 6 the spindle turns)\n"
       "o<probe_{0}> sub\nM73\nG21 G90 G94 G17 G40\n",
       small);
   if (p.to_component) text += fmt::format("M65 P{}\n", p.axis);
-  text += touch_refusal(p, 100, "#5400 LE 0", "", 1, "no probe in the spindle, its length is required");
+  text += touch_refusal(p, 100, fmt::format("#5400 NE {}", p.probe_tool), "", 1,
+                        fmt::format("no probe in the spindle, tool {} is required", p.probe_tool));
+  text += touch_refusal(p, 105, "#<_spindle_on> EQ 1", "", 6, "the spindle turns, M5 first");
   text += touch_refusal(p, 101, "#5210 EQ 1", "", 2, "G92 is in force, G92.1 first");
   text += kProbingSystem;
-  text += fmt::format("{}G0 X{} Y{}\nG1 Z{} F2000\n", up, mm(from_m[0]), mm(from_m[1]), mm(from_m[2]));
+  text += fmt::format(
+      "(never down before it is above the gauge, and down by a touch: what is in the way stops it)\n"
+      "o106 if [#<_z> LT {}]\n{}o106 endif\nG0 X{} Y{}\n{}G38.3 Z{} F{:.0f}\n",
+      mm(p.at_m[2] + p.clearance_m), up, mm(from_m[0]), mm(from_m[1]), up, mm(from_m[2]), kWayDown_mm_min);
+  text += touch_refusal(p, 107, "#5070 EQ 1", way_out, 5, "something is in the way above the gauge");
   const auto touch = [&](double share, int label) {
     return fmt::format("G38.3 {}{} F{:g}\n", letter, mm(beyond_touch_m(p)), share * p.feed_mm_min) +
            touch_refusal(p, label, "#5070 EQ 0", way_out, 3, "no gauge");

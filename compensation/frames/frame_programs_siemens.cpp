@@ -152,30 +152,58 @@ std::string setting_data(const FrameProgram& p) {
   return text;
 }
 
+// A label at which a status is set; the alarm comes at the end of PROBEZ.
+std::string status_at(const char* status, const char* label, int alarm, const char* words, const char* next) {
+  return fmt::format("{}:\n{}={}                         ; {}\nGOTOF {}\n", label, status, alarm, words, next);
+}
+
 // The touch, with SAVE: frames and G functions of the caller come back. The position of the tip is in TA_READ.
 std::string siemens_touch(const AxisProgram& p) {
   const char letter = letter_of(p);
   const Eigen::Vector3d from_m = before_touch_m(p);
-  const std::string to = fmt::format("{}={}", letter, mm(beyond_touch_m(p)));
+  const std::string high = mm(p.at_m[2] + p.clearance_m), to = fmt::format("{}={}", letter, mm(beyond_touch_m(p)));
   std::string text = fmt::format("PROC TOUCH{}(VAR REAL TA_READ, VAR INT TA_STATUS) SAVE DISPLOF\n; {}\n; {}\nTA_STATUS=0\n",
                                  letter, p.made_by, gauge_words(p));
   text += kWithoutFrames;
-  text += fmt::format("G0 Z={}\nG0 X={} Y={}\nG1 Z={} F2000\n", mm(p.at_m[2] + p.clearance_m), mm(from_m[0]), mm(from_m[1]),
-                      mm(from_m[2]));
-  const auto touch = [&](double share) {
-    return fmt::format("MEAS=1 G1 {} F{:g}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NOGAUGE\n", to, share * p.feed_mm_min);
+  // Types of tools: 580 3D probe of lathes, 710 to 714 probes of mills.
+  text +=
+      "IF ($TC_DP1[$P_TOOLNO,$P_TOOL]<>580) AND (($TC_DP1[$P_TOOLNO,$P_TOOL]<710) OR ($TC_DP1[$P_TOOLNO,$P_TOOL]>714)) "
+      "GOTOF NOPROBE\n"
+      "M5\n"
+      "G17 G40\n";
+  text += fmt::format(
+      "STOPRE\n"
+      "IF $AA_IW[Z]>={0} GOTOF ABOVE           ; never down before it is above the gauge\n"
+      "G0 Z={0}\n"
+      "ABOVE:\n"
+      "G0 X={1} Y={2}\n"
+      "G0 Z={0}\n",
+      high, mm(from_m[0]), mm(from_m[1]));
+  // With a probe that is deflected already no edge comes, and the axis would move through.
+  const auto touch = [&](const std::string& end, double feed_mm_min) {
+    return fmt::format("STOPRE\nIF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 {} F{:g}\nSTOPRE\n", end, feed_mm_min);
   };
-  text += touch(1.0) + fmt::format("G91 G1 {}={} F2000\nG90\n; once more, slowly\n", letter, mm(-p.toward * kBackOff_m)) +
-          touch(kSlowTouch) + fmt::format("TA_READ=$AA_MW[{}]\nGOTOF AWAY\n", letter);
-  text += refusal_at("TA_STATUS", "NOGAUGE", 65018, "no gauge", "GOTOF AWAY") +
-          refusal_at("TA_STATUS", "NOLENGTH", 65015, "no D number: the length of the probe is required", "RET") +
-          refusal_at("TA_STATUS", "OTHERFRAME", 65016, "a global, system or external frame is in force", "RET");
-  if (p.axis == 2) return text + fmt::format("AWAY:\nG0 Z={}\nRET\n", mm(p.at_m[2] + p.clearance_m));
-  return text +
-         fmt::format("AWAY:\nG1 {}={} F2000\nG0 Z={}\nRET\n", letter, mm(from_m[p.axis]), mm(p.at_m[2] + p.clearance_m));
+  const std::string missed = "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n";
+  text += touch("Z=" + mm(from_m[2]), kWayDown_mm_min) + "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n";
+  text += touch(to, p.feed_mm_min) + missed +
+          fmt::format("G91 G1 {}={} F2000\nG90\n; once more, slowly\n", letter, mm(-p.toward * kBackOff_m)) +
+          touch(to, kSlowTouch * p.feed_mm_min) + missed + fmt::format("TA_READ=$AA_MW[{}]\nGOTOF AWAY\n", letter);
+  const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
+    return status_at("TA_STATUS", label, alarm, words, next);
+  };
+  text += refusal("NOGAUGE", 65018, "no gauge", "AWAY") +
+          refusal("INTHEWAY", 65021, "something is in the way above the gauge", "AWAY") +
+          refusal("DEFLECTED", 65022, "the probe is deflected, or not connected", "AWAY") +
+          refusal("NOLENGTH", 65015, "no D number: the length of the probe is required", "BACK") +
+          refusal("NOPROBE", 65023, "no probe in the spindle: tool type 580 or 710 to 714 is required", "BACK") +
+          refusal("OTHERFRAME", 65016, "a global, system or external frame is in force", "BACK");
+  text += "AWAY:\n";
+  if (p.axis != 2) text += fmt::format("G1 {}={} F2000\n", letter, mm(from_m[p.axis]));
+  return text + fmt::format("G0 Z={}\nBACK:\nSTOPRE\nRET\n", high);
 }
 
-// The offset is written after all checks, to data management first: a reset before that loads the last good one.
+// The offset is written after all checks, to data management first: a reset before that loads the last good one. The alarm
+// is the last block, because it may end the program. A caller in inches would have the offset in inches.
 std::string siemens_update(const AxisProgram& p) {
   const char letter = letter_of(p);
   std::string text = fmt::format("PROC PROBE{}(VAR INT PA_STATUS) DISPLOF\n; {}\n; {}\n", letter, p.made_by, bound_words(p));
@@ -189,6 +217,7 @@ std::string siemens_update(const AxisProgram& p) {
       "DEF FRAME PA_FRAME\n"
       "STOPRE\n"
       "PA_FRAME=$P_BFRAME\n"
+      "IF ($MN_SCALING_SYSTEM_IS_METRIC==FALSE) OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n"
       "PA_NOW=$P_UBFR[{0},FI]\n"
       "TOUCH{0}(PA_READ, PA_STATUS)\n"
       "IF PA_STATUS<>0 GOTOF REFUSED\n"
@@ -208,11 +237,12 @@ std::string siemens_update(const AxisProgram& p) {
       "STOPRE\n"
       "RET\n",
       letter, mm(p.at_m[p.axis]), mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(1e-6 * p.most_um, 5));
-  text += refusal_at("PA_STATUS", "TOOFAR", 65019,
-                     "too far from what is expected: chips, another tool, or the axis was knocked. Clean and probe again",
-                     "GOTOF REFUSED") +
-          refusal_at("PA_STATUS", "TOOMUCH", 65020, "the offset would pass its limit", "GOTOF REFUSED");
-  return text + "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nRET\n";
+  text += status_at("PA_STATUS", "TOOFAR", 65019,
+                    "too far from what is expected: chips, another tool, or the axis was knocked. Clean and probe again",
+                    "REFUSED") +
+          status_at("PA_STATUS", "TOOMUCH", 65020, "the offset would pass its limit", "REFUSED") +
+          status_at("PA_STATUS", "INCHES", 65024, "mm are required: a metric control, and G71 or G710", "REFUSED");
+  return text + "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nSETAL(PA_STATUS)\nRET\n";
 }
 
 }  // namespace

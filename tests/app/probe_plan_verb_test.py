@@ -148,14 +148,14 @@ def main():
         expect([row["n"] for row in found["points"]] == [0, 1] and found["points"][1]["left_um"] < 1.0, f"{found['points']}")
 
         # the touch cycle of the axis: its limits, of the process of the file, and its programs
-        written, said = plan("touch", *words[:-2], "--probe-noise", "0.5 um", "--tolerance", f"{2 * tolerance_um:.6f} um", "--gauge", "-400 mm, 250 mm, -310 mm", "--touch", "x+", "--probing-time", "60 s")
+        written, said = plan("touch", *words[:-2], "--probe-noise", "0.5 um", "--tolerance", f"{2 * tolerance_um:.6f} um", "--gauge", "-400 mm, 250 mm, -310 mm", "--touch", "x+", "--probe-tool", "9", "--probing-time", "60 s")
         at_min = [row["at_min"] for row in written["probings"]]
         longest_min = max(b - a for a, b in zip(at_min or [0], at_min[1:] + [end_min])) + 1
         s_um = axis.s * axis.factor / 1.96
         step_um = 4 * math.sqrt(2 * 0.25 + 2 * s_um**2 * (1 - math.exp(-longest_min / axis.T)))
         expect(abs(written["step_um"] - step_um) < 2e-3 * step_um and abs(written["first_step_um"] - 4 * math.sqrt(s_um**2 + 0.25)) < 0.01 * s_um and written["most_um"] == 1000, f"limits {written['first_step_um']}, {written['step_um']}, {written['most_um']}; {step_um}")
         texts = {path.name: path.read_text() for path in (folder / "touch/control").rglob("*.*") if path.is_file()}
-        expect(sorted(texts) == ["PROBEX.H", "PROBEX.SPF", "TOUCHX.SPF", "probe_x.ngc"] and "G0 X-405.0000 Y250.0000" in texts["probe_x.ngc"] and "G10 L2 P9" in texts["probe_x.ngc"], f"{sorted(texts)}")
+        expect(sorted(texts) == ["PROBEX.H", "PROBEX.SPF", "TOUCHX.SPF", "probe_x.ngc"] and "G0 X-405.0000 Y250.0000" in texts["probe_x.ngc"] and "G10 L2 P9" in texts["probe_x.ngc"] and "#5400 NE 9" in texts["probe_x.ngc"], f"{sorted(texts)}")
 
         # the rest of what is refused: tests/app/probe_refusals_test.cpp
         for words, says in [(["plain.yaml", "--job", "shift"], "--model"), (["plain.yaml", "--model", model], "--job"), (["plain.yaml", "--job", "shift", "--model", model, "--counts", "ring_1"], "--points"),

@@ -80,6 +80,7 @@ TEST(ProbePlanRefuses, GaugesThatAreNoThreeLengths) {
   shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm, 3 mm, 4 mm"; }, "three lengths with commas are required");
   shop.expect_refused([](auto& o) { o.gauge = "1, 2 mm, 3 mm"; }, "--gauge '1': '1' has no unit");
   shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm, 300 m"; }, "--gauge ' 300 m': -100 m to 100 m is allowed");
+  shop.expect_refused([](auto& o) { o.gauge = "1 mm, 2 mm, 3 mm"; }, "--probe-tool is required");
 }
 
 TEST(ProbePlanRefuses, JobsThatAreNoneOrHaveNoWork) {

@@ -90,7 +90,7 @@ def probe(of, file="probe_z.ngc"):
     start(file); finished()
     say(of + "Offset", offset()); say(of + "Drift", 1e3 * get("lowpass.0.out"))
     s.poll(); say(of + "Z", s.joint_position[2])
-    for k in ("taken", "no gauge", "too far", "no probe"): say(of + k.split()[-1], int(any(k in w for w in words)))
+    for k in ("taken", "no gauge", "too far", "no probe", "spindle turns", "in the way"): say(of + k.split()[-1], int(any(k in w for w in words)))
 c.state(linuxcnc.STATE_ESTOP_RESET); c.wait_complete(10)
 c.state(linuxcnc.STATE_ON); c.wait_complete(10)
 c.teleop_enable(0); c.wait_complete(10)
@@ -99,6 +99,9 @@ until(lambda: all(s.homed[:3]), 20)
 probe("bare")
 mdi("M61 Q1")
 probe("first")
+mdi("M3 S100"); probe("turning"); mdi("M5")
+put("sum2.0.in0", 105.0); probe("tall"); put("sum2.0.in0", 80.0)
+mdi("M61 Q2"); probe("cutter"); mdi("M61 Q1")
 # the axis drifts to 40 um while a job runs
 put("lowpass.0.in", 0.04)
 start("job.ngc")
@@ -180,7 +183,7 @@ TEST(AxisOnLinuxcnc, KeepsADriftingAxisTrueAndItsOffsetWhereATouchIsRefused) {
                                                       {"job.ngc", kJob},
                                                       {"probe_z.ngc", linuxcnc_axis(program()).front().text},
                                                       {"component/probe_z.ngc", linuxcnc_axis(given).front().text},
-                                                      {"tool.tbl", "T1 P1 Z100 D6\n"},
+                                                      {"tool.tbl", "T1 P1 Z100 D6\nT2 P2 Z100 D6\n"},
                                                       {"sim.var", "5220 1\n5221 400\n5222 50\n5223 7\n5230 0\n"}},
                                                      200);
   const std::filesystem::path folder = temporary_folder() / "linuxcnc";
@@ -193,6 +196,12 @@ TEST(AxisOnLinuxcnc, KeepsADriftingAxisTrueAndItsOffsetWhereATouchIsRefused) {
   EXPECT_EQ(found["bareZ"], 0.0);
   EXPECT_EQ(found["firsttaken"], 1.0);
   EXPECT_NEAR(found["firstOffset"], 0.0, kTouch_um);
+  // a spindle that turns, what is 25 mm above the gauge, and another tool
+  EXPECT_EQ(found["turningturns"], 1.0);
+  EXPECT_EQ(found["tallway"], 1.0);
+  EXPECT_NEAR(found["tallZ"], 130.0, 1e-6);
+  EXPECT_EQ(found["cutterprobe"], 1.0);
+  for (const std::string of : {"turning", "tall", "cutter"}) EXPECT_EQ(found[of + "Offset"], found["firstOffset"]) << of;
   // the job: the drift alone would leave more than 20 um
   EXPECT_GT(found["jobDrift"], 20.0);
   EXPECT_EQ(found["jobTaken"], 12.0);

@@ -44,14 +44,34 @@ void expect_in_order(const std::string& text, const std::vector<std::string>& pa
 }
 
 TEST(AxisProgram, TouchesFromFiveMillimetresBeforeToThreeBeyond) {
-  expect_in_order(file("linuxcnc/probe_z.ngc"), {"G0 Z30.0000\n", "G0 X100.0000 Y50.0000\n", "G1 Z-15.0000 F2000\n",
-                                                 "G38.3 Z-23.0000 F300\n", "G91 G1 Z0.5000", "G38.3 Z-23.0000 F30\n"});
+  expect_in_order(file("linuxcnc/probe_z.ngc"), {"[#<_z> LT 30.0000]\nG0 Z30.0000\n", "endif\nG0 X100.0000 Y50.0000\n",
+                                                 "G0 Z30.0000\nG38.3 Z-15.0000 F1500\n", "G38.3 Z-23.0000 F300\n",
+                                                 "G91 G1 Z0.5000", "G38.3 Z-23.0000 F30\n"});
   expect_in_order(file("linuxcnc/probe_x.ngc", program(0, 1.0)),
-                  {"G0 Z30.0000\n", "G0 X95.0000 Y50.0000\n", "G1 Z-20.0000 F2000\n", "G38.3 X103.0000 F300\n",
+                  {"G0 Z30.0000\n", "G0 X95.0000 Y50.0000\n", "G38.3 Z-20.0000 F1500\n", "G38.3 X103.0000 F300\n",
                    "G91 G1 X-0.5000", "G38.3 X103.0000 F30\n", "G1 X95.0000 F2000\nG0 Z30.0000\n"});
   expect_in_order(file("siemens/TOUCHY.SPF", program(1, -1.0)),
-                  {"G0 Z=30.0000\n", "G0 X=100.0000 Y=55.0000\n", "MEAS=1 G1 Y=47.0000 F300\n", "G91 G1 Y=0.5000",
+                  {"IF $AA_IW[Z]>=30.0000 GOTOF ABOVE", "G0 Z=30.0000\n", "ABOVE:\nG0 X=100.0000 Y=55.0000\n",
+                   "MEAS=1 G1 Z=-20.0000 F1500\n", "MEAS=1 G1 Y=47.0000 F300\n", "G91 G1 Y=0.5000",
                    "MEAS=1 G1 Y=47.0000 F30\n", "TA_READ=$AA_MW[Y]\n", "AWAY:\nG1 Y=55.0000 F2000\nG0 Z=30.0000\n"});
+}
+
+// A cutter is no probe, a spindle that turns breaks one, and what lies above the gauge is met by a touch.
+TEST(AxisProgram, RefusesBeforeItComesNearTheGauge) {
+  AxisProgram p = program();
+  p.probe_tool = 9;
+  expect_in_order(file("linuxcnc/probe_z.ngc", p),
+                  {"[#5400 NE 9]", "o<probe_z> return [1]", "[#<_spindle_on> EQ 1]", "o<probe_z> return [6]", "G38.3 Z-15",
+                   "[#5070 EQ 1]", "G0 Z30.0000\nM66", "o<probe_z> return [5]", "G38.3 Z-23"});
+  const std::string touch = file("siemens/TOUCHZ.SPF");
+  expect_in_order(
+      touch, {"GOTOF NOPROBE\nM5\nG17 G40\n", "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-15",
+              "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n", "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-23.0000 F300",
+              "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-23.0000 F30\n", "INTHEWAY:\nTA_STATUS=65021", "GOTOF AWAY\n",
+              "AWAY:\nG0 Z=30.0000\nBACK:\nSTOPRE\nRET\n"});
+  EXPECT_THAT(touch, Not(HasSubstr("SETAL"))) << "an alarm may end the program where it is: the probe must be away before";
+  expect_in_order(file("siemens/PROBEZ.SPF"), {"OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n", "TOUCHZ(", "REFUSED:\n",
+                                               "SETAL(PA_STATUS)\nRET\n"});
 }
 
 // Each control writes the offset once, after the last check; what refuses comes before it or jumps past it.
@@ -68,7 +88,7 @@ TEST(AxisProgram, WritesTheOffsetAfterAllChecks) {
                            "IF PA_STATUS<>0 GOTOF REFUSED\n", "PA_NEW=PA_READ-(-20.0000)\n", "PA_BOUND=0.03000\n",
                            "PA_BOUND=0.06000", "PA_STEP=PA_NEW-PA_NOW\n", "IF ABS(PA_STEP)>PA_BOUND GOTOF TOOFAR\n",
                            "IF ABS(PA_NEW)>0.10000 GOTOF TOOMUCH\n", "$P_UBFR[Z,FI]=PA_NEW", "$P_BFRAME=PA_FRAME\n", "RET\n",
-                           "TOOFAR:\n", "TOOMUCH:\n", "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nRET\n"});
+                           "TOOFAR:\n", "TOOMUCH:\n", "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nSETAL(PA_STATUS)\nRET\n"});
   EXPECT_EQ(update.find("$P_UBFR[Z,FI]="), update.rfind("$P_UBFR[Z,FI]="));
   EXPECT_THAT(update.substr(0, update.find('\n')), Not(HasSubstr("SAVE"))) << "SAVE takes the offset away at the return";
   const std::string touch = file("siemens/TOUCHZ.SPF");

@@ -128,6 +128,30 @@ TEST(ProbeFeedback, LearnsThatErrorsAreSmallerAndFaster) {
   EXPECT_LT(std::sqrt(left.um2), 1.2 * 0.6);
 }
 
+// Of good probings of errors as large as in the fit few are refused, of errors 3 times as large one in 120: a mixture of normal laws
+// has more than one law beyond four deviations. The bands are three standard errors of some 17 and 200 refusals, and more.
+TEST(ProbeFeedback, RefusesAsManyGoodProbingsAsIsSaid) {
+  const auto refused_of = [](double times) {
+    Random random(7);
+    int n_refused = 0, n = 0;
+    const double kept = std::exp(-0.5);
+    for (int run = 0; run < 4000; ++run) {
+      ProbeFeedback feedback({5.0, 7200.0}, {.noise_um = 1.0}, false);
+      double um = times * 5.0 * random.normal();
+      for (int hour = 0; hour < 12; ++hour) {
+        feedback.row(0.0, 0.0, 3600.0);
+        (void)feedback.probe_drift_um(um + random.normal());
+        n_refused += feedback.state().verdict == PROBE_UNLIKELY;
+        ++n;
+        um = kept * um + times * 5.0 * std::sqrt(1.0 - kept * kept) * random.normal();
+      }
+    }
+    return static_cast<double>(n_refused) / n;
+  };
+  EXPECT_NEAR(refused_of(1.0), 1.0 / 3500.0, 1.0 / 4500.0);
+  EXPECT_NEAR(refused_of(3.0), 1.0 / 135.0, 1.0 / 600.0);
+}
+
 // A calm axis does not say that the next cut is calm: after 50 hours a probing that is 2 deviations of the fit off is taken.
 TEST(ProbeFeedback, IsNotMuchStricterAfterACalmTime) {
   ProbeFeedback feedback({3.0, 7200.0}, {.noise_um = 1.0}, true);

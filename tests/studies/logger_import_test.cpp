@@ -168,6 +168,15 @@ TEST(LoggerImport, ReadsSwitchesAndClocksInSecondsSince1970) {
   expect_values(again, "spindle_1", {0, 1, 1, 0});
 }
 
+TEST(LoggerImport, RefusesASwitchWithOtherWordsInItUnlessItIsLeftOut) {
+  const std::string path =
+      write_file("log.csv", "time (s),T1 (degC),spindle,note\n0,20.1,on,no\n1,20.2,off,chips\n2,20.3,idle,cleaned\n");
+  EXPECT_REFUSED(studies::import_logger(path, "", {}), "'spindle' is a switch in most rows, and contains 'idle' too");
+  const studies::LoggerImport import =
+      studies::import_logger(path, "", {.zone = "", .interval = "", .every = "", .units = {{"spindle", "none"}}});
+  EXPECT_EQ(import.map.channels.size(), 1U) << "a column of words is no switch";
+}
+
 TEST(LoggerImport, DoesNotReadWordsOfSwitchesAsTemperatures) {
   EXPECT_THAT(
       [] {
@@ -198,6 +207,7 @@ TEST(LoggerImport, TakesUnitsThatTheUserSays) {
   EXPECT_THAT([&] { (void)with({"t2=degC"}); }, ThrowsMessage<InputError>(HasSubstr("no column of numbers 't2'")));
   EXPECT_THAT([&] { (void)with({"t1=de"}); }, ThrowsMessage<InputError>(HasSubstr("--unit t1=de")));
   EXPECT_THAT([&] { (void)with({"t1"}); }, ThrowsMessage<InputError>(HasSubstr("a column and its unit are required")));
+  EXPECT_THAT([&] { (void)with({"t1=degC", "t1=K"}); }, ThrowsMessage<InputError>(HasSubstr("has the unit degC already")));
 }
 
 TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
