@@ -135,43 +135,52 @@ TEST_P(ARecordedColumn, IsFoundAndWritten) {
   EXPECT_EQ(again.diagnosed().verdict, Verdict::kConsistent);
 }
 
+std::string hidden_name(const ::testing::TestParamInfo<Hidden>& one) {
+  return one.param.name;
+}
+// What drives, leads away, opens with a stream of its own, changes, loads or lags: one of each.
 INSTANTIATE_TEST_SUITE_P(
     OfEachSort, ARecordedColumn,
-    ::testing::Values(
-        Hidden{"heater", "{type: recorded_drive, node: column, column: heater_W, gain: 0.7}", "", "recorded_drive", "column",
-               "gain", 0.7, "column: heater_W"},
-        Hidden{"sun", "{type: recorded_drive, node: bed, column: sun_W_m2, gain: 0.3}", "", "recorded_drive", "bed", "gain",
-               0.3, "column: sun_W_m2"},
-        Hidden{"stove", "{type: recorded_drive, node: bed, column: stove_degC, conductance: 2.5 W/K}", "", "recorded_drive",
-               "bed", "conductance", 2.5, "column: stove_degC"},
-        Hidden{"lid", "{type: recorded_drive, node: head, column: lid_1, opening: 6}", "", "recorded_drive", "head",
-               "opening", 6.0, "column: lid_1"},
-        Hidden{"gain", "{type: recorded_drive, node: column, column: heater_W, gain: 3}",
-               "{type: recorded_drive, node: column, column: heater_W, gain: 1}", "recorded_drive", "column", "gain", 3.0,
-               "gain was 1"},
-        Hidden{"square", "{type: recorded_drive, node: column, column: heater_W, gain: 0.7, exponent: 2, at: 120}", "",
-               "recorded_drive", "column", "gain", 0.7, "exponent: "},
-        Hidden{"elsewhere",
-               "{type: recorded_drive, node: head, column: heater_W, gain: 0.5}\n"
-               "  - {type: recorded_drive, node: column, column: heater_W, gain: 0.7}",
-               "{type: recorded_drive, node: head, column: heater_W, gain: 0.5}", "recorded_drive", "column", "gain", 0.7,
-               "type: recorded_drive, node: column"},
-        Hidden{"stream", "{type: recorded_drive, node: head, column: lid_1, opening: 6, medium: 8 degC}", "",
-               "recorded_drive", "head", "opening", 6.0, "medium: "},
-        Hidden{"element",
-               "{type: recorded_drive, node: column, column: heater_W, gain: 1}\n"
-               "  - {type: changed_law, law: recorded_drive column heater_W, factor: 0.5, in: tuesday}",
-               "{type: recorded_drive, node: column, column: heater_W, gain: 1}", "recorded_drive", "column", "factor", 0.5,
-               "in: columns_element_tuesday"},
-        Hidden{"force", "{type: displacement_path, displacement: nose, column: heater_W, gain: 0.05}", "",
-               "displacement_path", "nose", "gain", 0.05, "gain: 0.05"},
-        Hidden{"path", "{type: displacement_path, displacement: nose, body: bed, sensitivity: 4 um/K}", "",
-               "displacement_path", "nose", "sensitivity", 4.0, "body: bed"},
-        Hidden{"lagging", "{type: displacement_path, displacement: nose, body: head, sensitivity: 2.5 um/K, lag: 40 min}",
-               "", "displacement_path", "nose", "sensitivity", 2.5, "body: head"},
-        Hidden{"follows", "{type: displacement_path, displacement: nose, column: stove_degC, sensitivity: 0.5 um/K}", "",
-               "displacement_path", "nose", "sensitivity", 0.5, "column: stove_degC"}),
-    [](const auto& one) { return std::string(one.param.name); });
+    ::testing::Values(Hidden{"heater", "{type: recorded_drive, node: column, column: heater_W, gain: 0.7}", "",
+                             "recorded_drive", "column", "gain", 0.7, "column: heater_W"},
+                      Hidden{"stove", "{type: recorded_drive, node: bed, column: stove_degC, conductance: 2.5 W/K}", "",
+                             "recorded_drive", "bed", "conductance", 2.5, "column: stove_degC"},
+                      Hidden{"stream", "{type: recorded_drive, node: head, column: lid_1, opening: 6, medium: 8 degC}", "",
+                             "recorded_drive", "head", "opening", 6.0, "medium: "},
+                      Hidden{"element",
+                             "{type: recorded_drive, node: column, column: heater_W, gain: 1}\n"
+                             "  - {type: changed_law, law: recorded_drive column heater_W, factor: 0.5, in: tuesday}",
+                             "{type: recorded_drive, node: column, column: heater_W, gain: 1}", "recorded_drive", "column",
+                             "factor", 0.5, "in: columns_element_tuesday"},
+                      Hidden{"force", "{type: displacement_path, displacement: nose, column: heater_W, gain: 0.05}", "",
+                             "displacement_path", "nose", "gain", 0.05, "gain: 0.05"},
+                      Hidden{"lagging",
+                             "{type: displacement_path, displacement: nose, body: head, sensitivity: 2.5 um/K, lag: 40 min}",
+                             "", "displacement_path", "nose", "sensitivity", 2.5, "body: head"}),
+    hidden_name);
+INSTANTIATE_TEST_SUITE_P(
+    OthersAtLength, ARecordedColumn,
+    ::testing::Values(Hidden{"sun", "{type: recorded_drive, node: bed, column: sun_W_m2, gain: 0.3}", "", "recorded_drive",
+                             "bed", "gain", 0.3, "column: sun_W_m2"},
+                      Hidden{"lid", "{type: recorded_drive, node: head, column: lid_1, opening: 6}", "", "recorded_drive",
+                             "head", "opening", 6.0, "column: lid_1"},
+                      Hidden{"gain", "{type: recorded_drive, node: column, column: heater_W, gain: 3}",
+                             "{type: recorded_drive, node: column, column: heater_W, gain: 1}", "recorded_drive", "column",
+                             "gain", 3.0, "gain was 1"},
+                      Hidden{"square",
+                             "{type: recorded_drive, node: column, column: heater_W, gain: 0.7, exponent: 2, at: 120}", "",
+                             "recorded_drive", "column", "gain", 0.7, "exponent: "},
+                      Hidden{"elsewhere",
+                             "{type: recorded_drive, node: head, column: heater_W, gain: 0.5}\n"
+                             "  - {type: recorded_drive, node: column, column: heater_W, gain: 0.7}",
+                             "{type: recorded_drive, node: head, column: heater_W, gain: 0.5}", "recorded_drive", "column",
+                             "gain", 0.7, "type: recorded_drive, node: column"},
+                      Hidden{"path", "{type: displacement_path, displacement: nose, body: bed, sensitivity: 4 um/K}", "",
+                             "displacement_path", "nose", "sensitivity", 4.0, "body: bed"},
+                      Hidden{"follows",
+                             "{type: displacement_path, displacement: nose, column: stove_degC, sensitivity: 0.5 um/K}", "",
+                             "displacement_path", "nose", "sensitivity", 0.5, "column: stove_degC"}),
+    hidden_name);
 
 // Two wings alike in everything, thermometers beside them: the readings show that the sun heats a wing, but not which one.
 TEST(RecordedColumns, ThatHeatOneOfTwoLikeBodiesAreNamedAndTheirPlaceIsLeftOpen) {
