@@ -8,6 +8,14 @@
 // deviations. A vague explanation also counts: readings where the other one predicted them speak for the other. The
 // evidence picks the wrong explanation in less than 1/2 exp(-d'² / 8) of the records.
 // Source: Kailath, IEEE Trans. Commun. Technol. 15 (1967) 52-60.
+//
+// What readings are expected to tell of which of several statements holds, each one or more explanations i with the
+// weights w_i (their sum W_s over a statement s), is at least
+//
+//     I = -Σ_s W_s log Σ_t W_t c_st,   c_ss = 1,   c_st = min(1, Σ_{i in s, j in t} sqrt(w_i w_j / (W_s W_t)) c_ij)
+//
+// with the affinities c_ij = exp(-d'_ij² / 8). Source: Kolchinsky and Tracey, Entropy 19 (2017) 361, with the
+// Bhattacharyya distance; the root of a sum is at most the sum of the roots.
 
 #include <set>
 
@@ -20,6 +28,7 @@ struct Explanation {
   Hypothesis hypothesis;
   Eigen::VectorXd x;           ///< scatter, then the knobs of each claim
   Eigen::MatrixXd covariance;  ///< of x
+  double log_evidence = 0.0;   ///< of the data so far
   [[nodiscard]] Eigen::VectorXd claim_x(Eigen::Index n_scatter) const { return x.tail(x.size() - n_scatter); }
 };
 
@@ -32,10 +41,26 @@ struct Outlook {
 /// @throws SolveError  if the machine has no solution there
 [[nodiscard]] Outlook outlook(const Fitter& ahead, const Explanation& of, Twin::Workspace& workspace);
 
-/// The part of an outlook in some channels.
-[[nodiscard]] Outlook only(const Outlook& of, const Comparison& comparison, const std::set<std::string>& channels);
-
 /// d' >= 0, symmetric, by the formula above. Both arguments must be for the same readings.
 [[nodiscard]] double discrimination(const Outlook& a, const Outlook& b);
+
+/// Several outlooks of the same readings as products of their columns, channel by channel: pairs seen by any channels cost
+/// no further pass over the readings.
+class OutlookProducts {
+ public:
+  OutlookProducts(const std::vector<Outlook>& outlooks, const Comparison& comparison);
+  /// exp(-power d'² / 8) of each pair, as these channels see them.
+  [[nodiscard]] Eigen::MatrixXd affinities(const std::set<std::string>& channels, double power) const;
+
+ private:
+  std::vector<Eigen::Index> first_;  ///< of each outlook's columns, and their number
+  std::map<std::string, Eigen::MatrixXd> of_channel_;
+};
+
+/// I [nats] of the formula above; without affinities, W's entropy.
+/// @param weight    of each explanation; their sum is 1
+/// @param statement of each explanation, a number
+[[nodiscard]] double expected_information(const std::vector<double>& weight, const std::vector<std::size_t>& statement,
+                                          const Eigen::MatrixXd& affinity);
 
 }  // namespace driftwright::diagnosis

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <memory>
+#include <numbers>
+#include <numeric>
 
 #include "diagnosis/experiment_check.hpp"
 #include "diagnosis/experiment_family.hpp"
@@ -15,10 +17,14 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRows_s = 60.0;
-constexpr double kTells = 5.0;   // d' above which fewer than 1 record in 40 supports the wrong explanation
-constexpr double kHardly = 2.0;  // d' below which another thermometer is worth its price; above, a cyclogram is free
+/// Uncertainty [nats] at which the likeliest explanation is right with kSure: of an entropy H it is wrong with at most
+/// H / (2 ln 2). Source: Hellman and Raviv, IEEE Trans. Inf. Theory 16 (1970) 368-372.
+const double kDecided = 2.0 * (1.0 - kSure) * std::numbers::ln2;
+constexpr double kWorthIt = 0.5;  // share of what a cyclogram leaves that a thermometer must remove: it costs mounting
 constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, if no thermometer was measured
 constexpr const char* kMeanOf = "mean of ";
+constexpr const char* kNothing = "nothing in its place";
+constexpr double kLeastOpen = 0.01;  // probability that no open explanation is below, as of a statement that is listed
 
 /// Without linear columns, which belong to the present runs.
 Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fit& fit) {
@@ -27,7 +33,7 @@ Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fi
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
     if (i < n_scatter || i >= fitter.n_nuisance()) kept.push_back(i);
   }
-  Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept)};
+  Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept), fit.log_evidence};
   Eigen::Index at = n_scatter;
   for (const Claim& c : e.hypothesis) {  // numbers without slope have no covariance: they keep the value from the search
     for (const Knob& k : c.knobs) {
@@ -45,7 +51,7 @@ Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fi
 /// The open explanations: the search's hypothesis first, then those with another claim in the place of a finding.
 struct Open {
   std::vector<Explanation> explanations;
-  std::vector<Pair> pairs;
+  std::vector<OpenQuestion> questions;
   std::vector<const Claim*> claims;  ///< in dispute, one per explanation; for the first, the first finding's
   std::vector<std::string> names;    ///< of these claims, in words
 };
@@ -66,6 +72,36 @@ std::optional<Explanation> without_finding(const Fitter& fitter, const SearchRes
   return explanation_of(fitter, rest.hypothesis, fit);
 }
 
+struct Weighed {
+  std::size_t of = 0;
+  StatedPlace place = {};
+  double probability = 0.0;  ///< of its statement
+  double share = 0.0;        ///< of the odds
+};
+
+/// Names of one statement share its probability by their odds.
+OpenQuestion weighed(const std::vector<Weighed>& list) {
+  OpenQuestion q;
+  std::vector<StatedPlace> places;
+  double sum = 0.0;
+  for (const Weighed& w : list) {
+    double n = 0.0, shares = 0.0;
+    for (const Weighed& other : list) {
+      if (other.place != w.place) continue;
+      n += 1.0;
+      shares += other.share;
+    }
+    const auto place = std::find(places.begin(), places.end(), w.place);
+    q.of.push_back(w.of);
+    q.place.push_back(static_cast<std::size_t>(place - places.begin()));
+    if (place == places.end()) places.push_back(w.place);
+    q.weight.push_back(std::max(kLeastOpen, w.probability * (shares > 0.0 ? w.share / shares : 1.0 / n)));
+    sum += q.weight.back();
+  }
+  for (double& w : q.weight) w /= sum;
+  return q;
+}
+
 Open open_questions(const Fitter& fitter, const SearchResult& result, const std::vector<char>& in_doubt) {
   Open open;
   open.explanations.push_back(explanation_of(fitter, result.hypothesis, result.fit));
@@ -78,26 +114,37 @@ Open open_questions(const Fitter& fitter, const SearchResult& result, const std:
       open.names.push_back(std::move(words));
     };
     if (open.claims.empty()) name(finding.claim, words(finding.claim));
-    std::vector<std::size_t> rivals = {0};
-    if (may_be_none) {
-      if (auto without = without_finding(fitter, result, f)) {
-        open.pairs.push_back({0, open.explanations.size()});
-        rivals.push_back(open.explanations.size());
-        open.explanations.push_back(std::move(*without));
-        name(finding.claim, "nothing in its place");
-      }
-    }
+    std::vector<Weighed> list = {{0, result.names.at(finding.claim.candidate), finding.probability, finding.share}};
     for (const Finding::Alternative& a : finding.alternatives) {
       Hypothesis other = result.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(f));
       other.push_back(a.claim);
-      for (std::size_t r : rivals) open.pairs.push_back({r, open.explanations.size()});
-      rivals.push_back(open.explanations.size());
+      list.push_back({open.explanations.size(), result.names.at(a.claim.candidate), a.probability, a.share});
       open.explanations.push_back(explanation_of(fitter, std::move(other), a.fit));
       name(a.claim, words(a.claim));
     }
+    if (may_be_none) {
+      if (auto without = without_finding(fitter, result, f)) {
+        double stated = 0.0;  // probability of the places listed
+        std::set<StatedPlace> places;
+        for (const Weighed& w : list) stated += places.insert(w.place).second ? w.probability : 0.0;
+        list.push_back({open.explanations.size(), {StatedQuantity::kHeat, {kNothing}}, 1.0 - std::min(1.0, stated), 1.0});
+        open.explanations.push_back(std::move(*without));
+        name(finding.claim, kNothing);
+      }
+    }
+    if (list.size() > 1) open.questions.push_back(weighed(list));
   }
   return open;
+}
+
+/// What is not known [nats], of all questions.
+double uncertainty(const Open& open) {
+  double sum = 0.0;
+  for (const OpenQuestion& q : open.questions) {
+    for (double w : q.weight) sum -= w * std::log(w);
+  }
+  return sum;
 }
 
 /// Channels of all runs, without readings.
@@ -129,15 +176,20 @@ NoiseModel thermometer_noise(const std::vector<MeasuredChannel>& channels, const
 struct Ahead {
   std::vector<MeasuredRun> runs;  ///< a single one
   std::unique_ptr<Fitter> fitter;
-  std::vector<Outlook> outlooks;
+  std::optional<OutlookProducts> outlooks;
 
-  /// The least d' of all pairs, seen by some channels.
-  [[nodiscard]] double least(const std::vector<Pair>& pairs, const std::set<std::string>& channels) const {
-    std::vector<Outlook> seen;
-    for (const Outlook& o : outlooks) seen.push_back(only(o, fitter->comparison(), channels));
-    double d = std::numeric_limits<double>::infinity();
-    for (const Pair& p : pairs) d = std::min(d, discrimination(seen[p.first], seen[p.second]));
-    return d;
+  /// What the record is expected to tell [nats], seen by some channels. @param of_place  of quantity and place alone
+  [[nodiscard]] double informs(const Open& open, double power, const std::set<std::string>& channels,
+                               bool of_place = false) const {
+    const Eigen::MatrixXd all = outlooks->affinities(channels, power);
+    double sum = 0.0;
+    for (const OpenQuestion& q : open.questions) {
+      std::vector<std::size_t> each(q.of.size());
+      std::iota(each.begin(), each.end(), std::size_t{0});
+      const std::vector<Eigen::Index> of(q.of.begin(), q.of.end());
+      sum += expected_information(q.weight, of_place ? q.place : each, all(of, of));
+    }
+    return sum;
   }
 };
 
@@ -154,7 +206,9 @@ std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
     at.x = explanations.front().x;
     ahead->fitter->settle(explanations.front().hypothesis, at);
     Twin::Workspace workspace(fitter.twin());
-    for (const Explanation& e : explanations) ahead->outlooks.push_back(outlook(*ahead->fitter, e, workspace));
+    std::vector<Outlook> outlooks;
+    for (const Explanation& e : explanations) outlooks.push_back(outlook(*ahead->fitter, e, workspace));
+    ahead->outlooks.emplace(outlooks, ahead->fitter->comparison());
   });
   if (!is_solved) return nullptr;
   return ahead;
@@ -202,42 +256,51 @@ MeasuredRun run_of(const std::vector<MeasuredRun>& runs, const Cyclogram& cyclog
   return run;
 }
 
-/// The largest difference of any pair of explanations in an output [K].
+/// The largest difference of an explanation from the first one in an output [K].
 double largest_difference_K(const Ahead& ahead, const Open& open, int output) {
   Twin::Workspace workspace(ahead.fitter->twin());
   std::vector<Eigen::VectorXd> rows;
   for (const Explanation& e : open.explanations)
     rows.push_back(ahead.fitter->predict(e.hypothesis, e.x, workspace).front().row(output).transpose());
   double most_K = 0.0;
-  for (const Pair& p : open.pairs) most_K = std::max(most_K, (rows[p.first] - rows[p.second]).cwiseAbs().maxCoeff());
+  for (const OpenQuestion& q : open.questions) {
+    for (std::size_t i : q.of) most_K = std::max(most_K, (rows[i] - rows[q.of.front()]).cwiseAbs().maxCoeff());
+  }
   return most_K;
 }
 
-std::string why_of(const Experiment& e, const Open& open, bool once_only) {
+std::string why_of(const Experiment& e, const Open& open, const std::string& of_place, bool once_only) {
   const std::string of = fmt::format("{}", fmt::join(open.names, " and "));
   if (once_only) {
-    return fmt::format(
-        "{} each happened in one record only, which a new one does not show again; {}", of,
-        e.extra_sensor && e.extra_sensor->discrimination >= kTells
-            ? fmt::format("if it happens again, a thermometer on {} distinguishes them ({:.0f} times the noise)",
-                          e.extra_sensor->region, e.extra_sensor->discrimination)
-            : "no further thermometer would distinguish them either");
+    return fmt::format("{} each happened in one record only, which a new one does not show again; {}", of,
+                       e.extra_sensor && e.extra_sensor->decides > kWorthIt
+                           ? fmt::format("if it happens again, a thermometer on {} removes {:.0f} % of what is uncertain",
+                                         e.extra_sensor->region, 100.0 * e.extra_sensor->decides)
+                           : "no further thermometer would distinguish them either");
   }
   const std::string check =
       e.n_simulated > 0 ? fmt::format("; of {} such records simulated, {} showed which it was", e.n_simulated, e.n_told)
                         : "";
-  if (e.by_sensor) {
-    return fmt::format(
-        "{} differ by {:.1f} times the noise in the best cyclogram of the family, and by {:.1f} with a "
-        "thermometer on {}, what is not known of their numbers taken off{}",
-        of, e.discrimination, e.extra_sensor->discrimination, e.extra_sensor->region, check);
+  const double leaves = (1.0 - (e.by_sensor ? e.extra_sensor->decides : e.decides)) * uncertainty(open);
+  const std::string gain =
+      e.by_sensor ? fmt::format(
+                        "the best record is expected to remove {:.0f} % of what is uncertain, and {:.0f} % with a "
+                        "thermometer on {}",
+                        100.0 * e.decides, 100.0 * e.extra_sensor->decides, e.extra_sensor->region)
+                  : fmt::format("this record is expected to remove {:.0f} % of what is uncertain", 100.0 * e.decides);
+  return fmt::format("to distinguish {}: {}{}{}{}", of, gain, of_place,
+                     leaves > kDecided ? "; it may leave the question open" : "", check);
+}
+
+/// " (of quantity and place 95 %)", if more than one is open.
+std::string of_place_text(const Ahead& ahead, const Open& open, double power, const std::set<std::string>& channels) {
+  double uncertain = 0.0;
+  for (const OpenQuestion& q : open.questions) {
+    const auto n = static_cast<Eigen::Index>(q.of.size());
+    uncertain += expected_information(q.weight, q.place, Eigen::MatrixXd::Identity(n, n));
   }
-  if (e.discrimination < kTells) {
-    return fmt::format("no cyclogram of the family surely distinguishes {} (at best {:.1f} times the noise){}", of,
-                       e.discrimination, check);
-  }
-  return fmt::format("{} then differ by {:.0f} times the noise, what is not known of their numbers taken off{}", of,
-                     e.discrimination, check);
+  if (!(uncertain > kLeastOpen)) return "";
+  return fmt::format(" (of quantity and place {:.0f} %)", 100.0 * ahead.informs(open, power, channels, true) / uncertain);
 }
 
 }  // namespace
@@ -245,7 +308,8 @@ std::string why_of(const Experiment& e, const Open& open, bool once_only) {
 std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result,
                                              const std::vector<char>& in_doubt) {
   const Open open = open_questions(fitter, result, in_doubt);
-  if (open.pairs.empty()) return std::nullopt;
+  if (open.questions.empty()) return std::nullopt;
+  const double power = result.statements.power, whole = uncertainty(open);
   const std::vector<MeasuredRun>& runs = fitter.runs();
   std::vector<MeasuredChannel> channels = channels_of(runs);
   std::map<std::string, NoiseModel> noise = fitter.noise();
@@ -258,60 +322,67 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
     channels.push_back({names[o], static_cast<int>(o), "K", {}});
     noise[names[o]] = further;
   }
+  const auto with = [&](const std::string& thermometer) {
+    std::set<std::string> seen = measured;
+    seen.insert(thermometer);
+    return seen;
+  };
 
   Experiment best;
-  best.discrimination = -1.0;
-  std::unique_ptr<Ahead> chosen;
+  best.decides = -1.0;
+  std::shared_ptr<Ahead> alone, aided;  // those that tell most, by the channels measured and by one more
+  const auto take = [&](const std::shared_ptr<Ahead>& ahead) {
+    const Cyclogram& cyclogram = ahead->runs.front().cyclogram;
+    if (const double decides = ahead->informs(open, power, measured) / whole; decides > best.decides) {
+      best.decides = decides;
+      best.cyclogram = cyclogram;
+      alone = ahead;
+    }
+    for (const MeasuredChannel& c : channels) {
+      if (measured.contains(c.name)) continue;
+      const double decides = ahead->informs(open, power, with(c.name)) / whole;
+      if (best.extra_sensor && decides <= best.extra_sensor->decides) continue;
+      best.extra_sensor = Experiment::Sensor{.region = c.name.substr(std::string(kMeanOf).size()),
+                                             .difference_K = largest_difference_K(*ahead, open, c.output),
+                                             .decides = decides,
+                                             .cyclogram = cyclogram};
+      aided = ahead;
+    }
+  };
   bool once_only = true;
   for (const Cyclogram& cyclogram : experiment_family(runs)) {
-    auto ahead = look_ahead(fitter, run_of(runs, cyclogram, channels), noise, open.explanations);
+    const std::shared_ptr<Ahead> ahead = look_ahead(fitter, run_of(runs, cyclogram, channels), noise, open.explanations);
     if (!ahead) continue;
     for (std::size_t e = 0; e < open.explanations.size() && once_only; ++e)
       once_only = is_silent(*ahead, open.explanations[e], *open.claims[e]);
-    const double d = ahead->least(open.pairs, measured);
-    if (d <= best.discrimination) continue;
-    best.discrimination = d;
-    best.cyclogram = cyclogram;
-    chosen = std::move(ahead);
+    take(ahead);
   }
-  if (!chosen) return std::nullopt;
+  if (!alone) return std::nullopt;
   if (once_only) {  // repeats the record, and its event with it
-    double most_d = -1.0;
+    best = {};
+    best.decides = -1.0;
     for (const MeasuredRun& run : runs) {
       MeasuredRun repeated = run_of(runs, run.cyclogram, channels);
       repeated.ambient = run.ambient;
-      auto ahead = look_ahead(fitter, repeated, noise, open.explanations);
-      if (!ahead) continue;
-      const double d = ahead->least(open.pairs, measured);
-      if (d > most_d) {
-        most_d = d;
-        best.cyclogram = run.cyclogram;
-        chosen = std::move(ahead);
-      }
+      if (const std::shared_ptr<Ahead> ahead = look_ahead(fitter, repeated, noise, open.explanations)) take(ahead);
     }
-    best.discrimination = 0.0;  // an event does not happen again in a new record
+    if (best.decides < 0.0) return std::nullopt;
+    best.decides = 0.0;  // an event does not happen again in a new record
   }
-  for (const MeasuredChannel& c : channels) {
-    if (measured.contains(c.name)) continue;
-    std::set<std::string> seen = measured;
-    seen.insert(c.name);
-    const double d = chosen->least(open.pairs, seen);
-    if (best.extra_sensor && d <= best.extra_sensor->discrimination) continue;
-    best.extra_sensor = Experiment::Sensor{c.name.substr(std::string(kMeanOf).size()),
-                                           largest_difference_K(*chosen, open, c.output), d, best.cyclogram};
-  }
-  best.by_sensor =
-      best.extra_sensor && best.discrimination < kHardly && best.extra_sensor->discrimination > best.discrimination + 1.0;
+  const auto leaves = [&](double decides) { return (1.0 - decides) * whole; };
+  best.by_sensor = best.extra_sensor && leaves(best.decides) > kDecided &&
+                   leaves(best.extra_sensor->decides) < kWorthIt * leaves(best.decides);
+  const Ahead& chosen = best.by_sensor ? *aided : *alone;
+  const std::set<std::string> seen = best.by_sensor ? with(kMeanOf + best.extra_sensor->region) : measured;
+  if (best.by_sensor) best.cyclogram = best.extra_sensor->cyclogram;
   if (!once_only) {
-    MeasuredRun run = chosen->runs.front();
-    std::erase_if(run.channels, [&](const MeasuredChannel& c) {
-      return !measured.contains(c.name) && !(best.by_sensor && c.name == kMeanOf + best.extra_sensor->region);
-    });
-    const Check check = check_by_simulation(fitter, run, noise, open.explanations, open.pairs);
+    MeasuredRun run = chosen.runs.front();
+    std::erase_if(run.channels, [&](const MeasuredChannel& c) { return !seen.contains(c.name); });
+    const Check check = check_by_simulation(fitter, run, noise, open.explanations, open.questions, power);
     best.n_simulated = check.n;
     best.n_told = check.n_told;
   }
-  best.why = why_of(best, open, once_only);
+  best.why = why_of(best, open, of_place_text(chosen, open, power, seen), once_only);
   return best;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The experiment that would distinguish the remaining explanations: a cyclogram of a family, or one more thermometer,
-// chosen by the difference of their predictions.
+// The experiment that would distinguish the remaining explanations: a cyclogram of a family, or one with a thermometer
+// more, chosen by what its record is expected to tell of the statement.
 
 #include "diagnosis/search.hpp"
 
@@ -9,25 +9,29 @@ namespace driftwright::diagnosis {
 struct Experiment {
   std::string why;
   Cyclogram cyclogram;
-  double discrimination =
-      0.0;  ///< least d' of all pairs of explanations after it, reduced by the uncertainty of their numbers
+  /// Share of the uncertainty of what is open, of quantity, place and course, that its record is expected to remove: a
+  /// lower bound of the mutual information (discrimination.hpp) divided by the entropy so far. 0 to 1.
+  double decides = 0.0;
   struct Sensor {
     std::string region;
-    double difference_K = 0.0;    ///< largest difference in that cyclogram
-    double discrimination = 0.0;  ///< least d' with it
+    double difference_K = 0.0;  ///< largest difference in that cyclogram
+    double decides = 0.0;       ///< the same share with it
     Cyclogram cyclogram;
   };
   std::optional<Sensor> extra_sensor;
   bool by_sensor = false;  ///< true: the thermometer is proposed; false: only the cyclogram
-  /// Number of records simulated with each explanation, with numbers drawn from their uncertainty, and with noise.
+  /// Number of records simulated, each with an explanation drawn by its probability, with numbers drawn from their
+  /// uncertainty, and with noise.
   int n_simulated = 0;
-  int n_told = 0;  ///< those in which the true explanation led all others by more than the required margin
+  int n_told = 0;  ///< those after which the true explanation has a probability of kSure
 };
 
-/// The cyclogram with the largest least d' over all pairs of open explanations: a cause and its alternatives, or a
-/// doubtful cause and nothing in its place. An event of one record does not occur in a new one; if all open explanations
-/// are events, the proposal is a record of the same cyclogram with one more thermometer. The noise is that of the fitter;
-/// a new thermometer has the noise of the median one. The ambient is constant at its mean.
+/// The cyclogram whose record is expected to tell most of which explanation is true: a cause, its alternatives of any
+/// quantity, place or course, and, for a doubtful cause, nothing in its place, with their probabilities. Every cyclogram is
+/// also tried with a thermometer at each body without one. If the best cyclogram alone may leave the question open, and
+/// such a thermometer halves what it leaves, the thermometer is proposed. An event of one record does not occur in a new
+/// one; if all open explanations are events, the proposal is a record of the same cyclogram with one more thermometer. The
+/// noise is that of the fitter; a new thermometer has the noise of the median one. The ambient is constant at its mean.
 /// @param in_doubt  for each finding, whether it may be absent; empty: none may
 /// @return none if no finding has an alternative or is in doubt, or if no cyclogram has a solution
 [[nodiscard]] std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result,

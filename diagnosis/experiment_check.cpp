@@ -1,16 +1,16 @@
 #include "diagnosis/experiment_check.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/rivals.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
-
-constexpr double kCannotTell = 3.0;  // nats, as in the search
 
 /// Standard normal numbers by Box and Muller: the standard library defines its engines exactly, but not its
 /// distributions.
@@ -37,10 +37,22 @@ std::vector<Prediction> with_nothing_in(const std::vector<Prediction>& linear, s
   return list;
 }
 
+/// The probability of one explanation of a question after a record. @param evidence  of each, with the record
+double probability_after(const OpenQuestion& q, const std::vector<Explanation>& explanations,
+                         const std::vector<double>& evidence, double power, std::size_t of) {
+  const auto odds = [&](std::size_t i) {
+    return std::log(q.weight[i]) + power * (evidence[i] - explanations[q.of[i]].log_evidence);
+  };
+  double others = 0.0;
+  for (std::size_t i = 0; i < q.of.size(); ++i) others += i == of ? 0.0 : std::exp(std::min(700.0, odds(i) - odds(of)));
+  return 1.0 / (1.0 + others);
+}
+
 }  // namespace
 
 Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const std::map<std::string, NoiseModel>& noise,
-                          const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs, int n_draws) {
+                          const std::vector<Explanation>& explanations, const std::vector<OpenQuestion>& questions,
+                          double power, int n_draws) {
   std::vector<MeasuredRun> runs = fitter.runs();
   runs.push_back(run);
   const std::vector<MeasuredRun> alone = {run};
@@ -58,10 +70,14 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
   const double row_s = run.time_s.size() > 1 ? run.time_s[1] - run.time_s[0] : 60.0;
   std::mt19937_64 random(20240229);
   Check check;
-  for (std::size_t truth = 0; truth < explanations.size(); ++truth) {
-    const Explanation& e = explanations[truth];
-    const Eigen::MatrixXd lower = Eigen::LLT<Eigen::MatrixXd>(e.covariance).matrixL();
-    for (int draw = 0; draw < n_draws; ++draw) {
+  for (const OpenQuestion& q : questions) {
+    const int n = n_draws * static_cast<int>(q.of.size());
+    std::size_t truth = 0;
+    double up_to = q.weight.front();  // probability of the explanations up to the true one
+    for (int draw = 0; draw < n; ++draw) {
+      while (truth + 1 < q.of.size() && (draw + 0.5) / n > up_to) up_to += q.weight[++truth];
+      const Explanation& e = explanations[q.of[truth]];
+      const Eigen::MatrixXd lower = Eigen::LLT<Eigen::MatrixXd>(e.covariance).matrixL();
       Eigen::VectorXd x = e.x;
       for (Eigen::Index i = 0; i < x.size(); ++i) x += normal(random) * lower.col(i);
       std::vector<double> evidence;
@@ -72,18 +88,13 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
           add_noise(noise.at(c.name), row_s, c.value, random);
         }
         joint.set_noise(noise);  // evaluates the readings anew
-        for (const Explanation& o : explanations)
-          evidence.push_back(joint.fit(o.hypothesis, o.claim_x(n_scatter), workspace).log_evidence);
+        for (std::size_t i : q.of)
+          evidence.push_back(
+              joint.fit(explanations[i].hypothesis, explanations[i].claim_x(n_scatter), workspace).log_evidence);
       });
       if (!is_solved) continue;  // the drawn numbers are impossible
-      bool is_told = true;
-      for (const Pair& p : pairs) {
-        if (p.first != truth && p.second != truth) continue;
-        const std::size_t rival = p.first == truth ? p.second : p.first;
-        is_told = is_told && evidence[truth] > evidence[rival] + kCannotTell;
-      }
       ++check.n;
-      check.n_told += is_told ? 1 : 0;
+      check.n_told += probability_after(q, explanations, evidence, power, truth) >= kSure ? 1 : 0;
     }
   }
   return check;

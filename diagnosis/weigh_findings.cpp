@@ -209,6 +209,7 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
   std::erase_if(more.stated, [&](const Stated& s) { return ground.is_claimed(result.hypothesis, s.says); });
   slots.push_back(std::move(more));
   result.statements = joined(slots);
+  for (const Posterior& p : slots) result.statements.power = std::min(result.statements.power, p.power);
 }
 
 }  // namespace driftwright::diagnosis

@@ -131,21 +131,23 @@ void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
 Section experiment_section(const diagnosis::Experiment& e) {
   Section section{.key = "discriminating_experiment", .title = "The test that would distinguish them"};
   add(section, Text{.words = e.why, .key = "why"});
-  add(section, Text{fmt::format(
-                   "Cyclogram {}: {}. After it any two of the explanations differ by {:.1f} standard deviations or more, "
-                   "with the uncertainty of their numbers included.",
-                   e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
+  add(section,
+      Text{fmt::format("Cyclogram {}: {}. Its record is expected to remove {:.0f} % of what is uncertain of quantity, "
+                       "place and course.",
+                       e.cyclogram.name, sections_text(e.cyclogram),
+                       100.0 * (e.by_sensor ? e.extra_sensor->decides : e.decides))});
   add(section, Value{.key = "proposes", .datum = e.by_sensor ? "extra_sensor" : "cyclogram"});
-  add(section, Value{.key = "discrimination", .datum = e.discrimination});
+  add(section, Value{.key = "decides", .datum = e.decides});
   add(section, Value{.key = "simulated.records", .datum = e.n_simulated});
   add(section, Value{.key = "simulated.told", .datum = e.n_told});
   if (e.extra_sensor) {
-    add(section, Text{fmt::format("{} a further thermometer on {}: {:.1f} sigmas; they differ there by up to {:.2g} K.",
-                                  e.by_sensor ? "With" : "Better with", e.extra_sensor->region,
-                                  e.extra_sensor->discrimination, e.extra_sensor->difference_K)});
+    add(section,
+        Text{fmt::format("{} a further thermometer on {}: {:.0f} %; the explanations differ there by up to {:.2g} K.",
+                         e.by_sensor ? "With" : "At most, with", e.extra_sensor->region, 100.0 * e.extra_sensor->decides,
+                         e.extra_sensor->difference_K)});
     add(section, Value{.key = "extra_sensor.region", .datum = e.extra_sensor->region});
     add(section, Value{.key = "extra_sensor.difference_K", .datum = e.extra_sensor->difference_K});
-    add(section, Value{.key = "extra_sensor.discrimination", .datum = e.extra_sensor->discrimination});
+    add(section, Value{.key = "extra_sensor.decides", .datum = e.extra_sensor->decides});
   }
   Section cyclogram{.key = "cyclogram"};
   add(cyclogram, Value{.key = "name", .datum = e.cyclogram.name});

@@ -305,7 +305,7 @@ def main():
             simulated = experiment.get("simulated") or {}
             expected.append((simulated.get("told", 0), simulated.get("records", 0)))
             if not told:
-                how = f"{(experiment.get('cyclogram') or {}).get('name')}, d' {experiment.get('discrimination', 0.0):.1f}"
+                how = f"{(experiment.get('cyclogram') or {}).get('name')}, expected to decide {100 * experiment.get('decides', 0.0):.0f} %"
                 misses.append(f"{name} -> ambiguous: {in_words(causes)}; after {how}: "
                               + ("not diagnosed" if after is None else f"{after['verdict']}: {in_words(after.get('causes', []))}"))
         if not right:

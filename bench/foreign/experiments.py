@@ -264,8 +264,8 @@ def main():
         done = json.loads((out / "tried.json").read_text())
         hidden = ", ".join(f"{e['key']} {e['where']} ({'all' if e['records'] == 'all' else 'lasting' if 'holdout_1' in e['records'] else 'one record'}, {e['nats']:g} nats)" for e in truth["effects"]) or "nothing"
         simulated = experiment["simulated"]
-        print(f"\n{folder.name} {truth['class']} {truth['family']}, hidden: {hidden}\n    proposed: {why_class(experiment)}; d' {experiment['discrimination']:.1f}"
-              + (f" ({experiment['extra_sensor']['discrimination']:.1f} with the thermometer)" if experiment["proposes"] == "extra_sensor" else "") + f", forecast {simulated['told']} of {simulated['records']}", flush=True)
+        print(f"\n{folder.name} {truth['class']} {truth['family']}, hidden: {hidden}\n    proposed: {why_class(experiment)}; expected to decide {100 * experiment['decides']:.0f} %"
+              + (f" ({100 * experiment['extra_sensor']['decides']:.0f} % with the thermometer)" if experiment["proposes"] == "extra_sensor" else "") + f", forecast {simulated['told']} of {simulated['records']}", flush=True)
         if "not_tried" in done:
             print(f"    not tried: {done['not_tried']}")
         else:
