@@ -30,20 +30,21 @@ def group(case):
 
 
 def judged_runs(case):
-    """[(times, displacements)] of the judged rows."""
+    """[(time of the first row of the record, [(time, displacement)] of the judged rows)]: what came before the judged part is known, but no displacement."""
     runs = []
     for table in case.judge:
         y = table.columns[case.target]
         first = next((v for v in y if v is not None), 0.0) if case.from_start else 0.0
-        runs.append([(t, v - first) for t, v in zip(table.time_s, y) if v is not None and case.is_judged(t)])
-    return [run for run in runs if len(run) > 1]
+        runs.append((table.time_s[0], [(t, v - first) for t, v in zip(table.time_s, y) if v is not None and case.is_judged(t)]))
+    return [run for run in runs if len(run[1]) > 1]
 
 
 def held(runs, every_s, noise_um, seed=1):
-    """RMS of the displacement minus the last probing, which counts from the row after it; 0 before the first one, an interval after the first row."""
+    """RMS of the displacement minus the last probing, which counts from the row after it; 0 before the first one. As `validate` does, the first judged row that is an
+    interval or more after the first row of the record is probed, and then the first one after each interval."""
     rng, square, n = random.Random(seed), 0.0, 0
-    for run in runs:
-        next_s, last = run[0][0] + every_s, 0.0
+    for start_s, run in runs:
+        next_s, last = start_s + every_s, 0.0
         for t, y in run:
             square, n = square + (y - last) ** 2, n + 1
             if t >= next_s:
@@ -87,7 +88,7 @@ def main():
     print("|" + "---|" * 9)
     for case in [c for s in SETS for c in records.cases(options.data, s, options.records or RECORDS) if c.unit == "um"]:
         runs = judged_runs(case)
-        intervals = [h for h in INTERVALS_H if max((r[-1][0] - r[0][0] for r in runs), default=0.0) >= 3600.0 * h * LEAST_INTERVALS]
+        intervals = [h for h in INTERVALS_H if max((run[-1][0] - run[0][0] for _, run in runs), default=0.0) >= 3600.0 * h * LEAST_INTERVALS]
         if not intervals or case.record == "fl_thermal_network":
             continue
         folder = os.path.join(os.path.abspath(options.out), case.id)

@@ -8,8 +8,8 @@ import records
 
 
 def ramp(hours, rate_um_h, start_s=0.0):
-    """A row each minute."""
-    return [(start_s + 60.0 * i, rate_um_h * i / 60.0) for i in range(60 * hours + 1)]
+    """A row each minute, judged from the first one on."""
+    return start_s, [(start_s + 60.0 * i, rate_um_h * i / 60.0) for i in range(60 * hours + 1)]
 
 
 class Held(unittest.TestCase):
@@ -24,14 +24,17 @@ class Held(unittest.TestCase):
 
     def test_noise_adds_its_square(self):
         still = [(60.0 * i, 0.0) for i in range(60 * 2000)]
-        self.assertAlmostEqual(probe.held([still], 3600.0, 1.5), 1.5, delta=0.15)
+        self.assertAlmostEqual(probe.held([(0.0, still)], 3600.0, 1.5), 1.5, delta=0.15)
+
+    def test_a_judged_part_is_probed_in_its_first_row(self):
+        self.assertAlmostEqual(probe.held([(0.0, [(7200.0 + 60.0 * i, 5.0) for i in range(100)])], 3600.0, 0.0), 0.5, 12)  # 5 um in one row of 100
 
 
 class Rows(unittest.TestCase):
     def test_are_judged_ones_from_the_first_reading(self):
         table = records.Table("run", [0.0, 60.0, 120.0, 180.0], {"z_um": [None, 5.0, 7.0, 4.0]})
         case = records.Case("imbd_lathe", "", "z_um", [table], [table], [], from_start=True, judge_rows=lambda t: t >= 120.0)
-        self.assertEqual(probe.judged_runs(case), [[(120.0, 2.0), (180.0, -1.0)]])
+        self.assertEqual(probe.judged_runs(case), [(0.0, [(120.0, 2.0), (180.0, -1.0)])])
         self.assertEqual(probe.group(case), "imbd_lathe z")
 
 
