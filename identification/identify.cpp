@@ -282,6 +282,8 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     for (KeptOutKind& kind : result.kinds)
       kind.rms.push_back(missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds(), kind.kind));
     channel.missed_kept_out = missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
+    const Eigen::VectorXd squares = loss->rms.col(static_cast<Eigen::Index>(c)).cwiseAbs2();
+    channel.square_kept_out = mean_error(std::span(squares.data(), static_cast<std::size_t>(squares.size())));
     channel.missed_simulated = problem.rms(all, c, channel.fit, false);
     if (channel.fit.standard_deviation.size() > 0)
       channel.fit.standard_deviation *= channel.missed_own * std::sqrt(rows_as_one(std::span(&channel.misses, 1)));
