@@ -14,13 +14,15 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kCubic = 4;                // coefficients of g
+constexpr int kBendTerms = 6;            // coefficients of g
 constexpr std::size_t kBendNodes = 64;   // of g; they reach 2.66 sigma, beyond which g goes on as a straight line
 constexpr double kLinearShare = 1e-3;    // residual that counts as none, in half widths: at a limit it is 0.3 % at most
 constexpr double kResidualShare = 0.03;  // residual that widens the band by 0.2 %: 0.5 (1.96 * 0.03)^2
-constexpr int kMostSteps = 3;            // of Gauss and Newton; a fourth changed no limit
+constexpr int kMostSteps = 3;            // of Gauss and Newton
 constexpr double kStepGain = 0.9;        // a step that leaves more of the residual is the last
 constexpr double kScoreError = 1e-3;     // of a solved limit, in sigma: 0.05 % of the half width
+
+using Bend = Eigen::Matrix<double, kBendTerms, 1>;
 
 double normal_probability(double score) {
   return 0.5 * std::erfc(-score / std::sqrt(2.0));
@@ -29,10 +31,11 @@ double normal_probability(double score) {
 /// The distribution of g(u), u standard normal, plus one of the residuals with equal probability.
 class BentDistribution {
  public:
-  BentDistribution(const Eigen::Vector4d& g, Eigen::VectorXd residuals) : residuals_(std::move(residuals)) {
+  BentDistribution(const Bend& g, Eigen::VectorXd residuals) : residuals_(std::move(residuals)) {
     for (std::size_t k = 0; k < kBendNodes; ++k) {
       u_[k] = normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(kBendNodes));
-      y_[k] = g[0] + u_[k] * (g[1] + u_[k] * (g[2] + u_[k] * g[3]));
+      y_[k] = 0.0;
+      for (int p = kBendTerms - 1; p >= 0; --p) y_[k] = y_[k] * u_[k] + g[p];
     }
     std::sort(y_.begin(), y_.end());  // values of a function that turns back have the same distribution in order
   }
@@ -84,10 +87,11 @@ class BentDistribution {
   Eigen::VectorXd residuals_;
 };
 
-/// Powers 0 to 3 of u.
+/// Powers of u, the constant first.
 Eigen::MatrixXd powers(const Eigen::VectorXd& u) {
-  Eigen::MatrixXd v(u.size(), kCubic);
-  v << Eigen::VectorXd::Ones(u.size()), u, u.cwiseAbs2(), u.array().cube().matrix();
+  Eigen::MatrixXd v(u.size(), kBendTerms);
+  v.col(0).setOnes();
+  for (int k = 1; k < kBendTerms; ++k) v.col(k) = v.col(k - 1).cwiseProduct(u);
   return v;
 }
 
@@ -102,16 +106,17 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y
 std::pair<double, double> bent_limits(const Eigen::MatrixXd& scores, Eigen::VectorXd direction, const Eigen::VectorXd& y) {
   Eigen::VectorXd u = scores * direction;
   Eigen::MatrixXd v = powers(u);
-  Eigen::Vector4d g = least_squares(v, y);
+  Bend g = least_squares(v, y);
   Eigen::VectorXd residuals = y - v * g;
-  Eigen::MatrixXd step(scores.rows(), kCubic + scores.cols());
+  Eigen::MatrixXd step(scores.rows(), kBendTerms + scores.cols());
   for (int i = 0; i < kMostSteps; ++i) {
-    const Eigen::VectorXd slope = g[1] + (2.0 * g[2] + 3.0 * g[3] * u.array()) * u.array();
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(u.size());
+    for (int p = 1; p < kBendTerms; ++p) slope += p * g[p] * v.col(p - 1);
     step << v, (scores.array().colwise() * slope.array()).matrix();
     const Eigen::VectorXd next = (direction + least_squares(step, residuals).tail(scores.cols())).normalized();
     const Eigen::VectorXd next_u = scores * next;
     const Eigen::MatrixXd next_v = powers(next_u);
-    const Eigen::Vector4d next_g = least_squares(next_v, y);
+    const Bend next_g = least_squares(next_v, y);
     const Eigen::VectorXd left = y - next_v * next_g;
     const double share = left.norm() / residuals.norm();
     if (!(share < 1.0)) break;
@@ -123,7 +128,7 @@ std::pair<double, double> bent_limits(const Eigen::MatrixXd& scores, Eigen::Vect
     if (share > kStepGain) break;
   }
   const auto n = static_cast<double>(y.size());
-  residuals *= std::sqrt(n / (n - static_cast<double>(scores.cols() + kCubic - 1)));
+  residuals *= std::sqrt(n / (n - static_cast<double>(scores.cols() + kBendTerms - 1)));
   const BentDistribution whole(g, residuals);
   const double low = whole.at(-kNormal95), high = whole.at(kNormal95);
   if (residuals.norm() / std::sqrt(n) < kResidualShare * 0.5 * (high - low)) return {low, high};
@@ -133,7 +138,7 @@ std::pair<double, double> bent_limits(const Eigen::MatrixXd& scores, Eigen::Vect
 }  // namespace
 
 Eigen::Index fewest_draws(Eigen::Index n_numbers) {
-  return 2 * (n_numbers + kCubic);
+  return 2 * (n_numbers + kBendTerms);
 }
 
 BandLimits band_limits(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values) {

@@ -15,7 +15,7 @@ struct BandLimits {
 /// Limits of each function from draws. The 2.5 % quantile of 80 draws is the second of them, which errs by 20 % of the band's
 /// half width. So a bent function of one direction b, |b| = 1, is fitted to all draws, whose limits are known,
 ///
-///     y = g(b'x) + r,   g: a cubic polynomial,   b'x: a standard normal number,
+///     y = g(b'x) + r,   g: a polynomial of degree 5,   b'x: a standard normal number,
 ///
 /// and the residuals r, scaled by their degrees of freedom, are added as independent of it: the limits solve
 /// mean over the draws of P(g(u) <= y - r) = 2.5 % and 97.5 %. b is that of the linear fit, improved together with
