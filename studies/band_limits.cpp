@@ -109,7 +109,9 @@ std::pair<double, double> bent_limits(const Eigen::MatrixXd& scores, Eigen::Vect
   Bend g = least_squares(v, y);
   Eigen::VectorXd residuals = y - v * g;
   Eigen::MatrixXd step(scores.rows(), kBendTerms + scores.cols());
-  for (int i = 0; i < kMostSteps; ++i) {
+  const auto n = static_cast<double>(y.size());
+  const double small = kResidualShare * kNormal95 * std::sqrt(n);
+  for (int i = 0; i < kMostSteps && residuals.norm() > small; ++i) {
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(u.size());
     for (int p = 1; p < kBendTerms; ++p) slope += p * g[p] * v.col(p - 1);
     step << v, (scores.array().colwise() * slope.array()).matrix();
@@ -127,7 +129,6 @@ std::pair<double, double> bent_limits(const Eigen::MatrixXd& scores, Eigen::Vect
     residuals = left;
     if (share > kStepGain) break;
   }
-  const auto n = static_cast<double>(y.size());
   residuals *= std::sqrt(n / (n - static_cast<double>(scores.cols() + kBendTerms - 1)));
   const BentDistribution whole(g, residuals);
   const double low = whole.at(-kNormal95), high = whole.at(kNormal95);

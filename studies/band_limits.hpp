@@ -22,9 +22,8 @@ struct BandLimits {
 /// g by at most three Gauss-Newton steps. The limits of a linear function are exact.
 /// Source: the form is projection pursuit with one term, Friedman & Stuetzle, J. Am. Stat. Assoc. 76 (1981) 817-823.
 ///
-/// Error of a limit, in half widths, against 20,000 Monte Carlo machines of two bodies with 7 or 20 numbers, whose friction
-/// or film depends on temperature: 2 % with 84 draws (root mean square; 5 % at most) for numbers known to 20 %; with one
-/// `guess` 2 to 6 % (14 % at most), and with 200 draws 1 to 3 % (7 % at most).
+/// Error of a limit, in half widths, against Monte Carlo machines of two bodies with 7 or 20 numbers, whose friction or film
+/// depends on temperature: root mean square 2 to 4 % with 84 draws (15 % at most), 2 to 3 % with 200 (7 % at most).
 ///
 /// @param scores  standard normal, n_draws x n_numbers
 /// @param values  n_draws x n_functions

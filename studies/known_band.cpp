@@ -18,7 +18,7 @@ namespace {
 
 using diagnosis::Knob, diagnosis::Twin;
 
-constexpr std::size_t kMostBandRows = 500;  // of a longer record the band is linear between this many of its rows
+constexpr std::size_t kMostBandRows = 250;  // of a longer record the band is linear between this many of its rows
 constexpr std::uint64_t kBandSeed = 1;
 constexpr Eigen::Index kFewStates = 60;
 constexpr int kFewestDraws = 80;
@@ -26,7 +26,7 @@ constexpr int kFewestDraws = 80;
 /// Number of machines that are drawn: as many as `predict` takes at most twice its time for (0.3 to 0.4 s of processor
 /// time). A machine whose laws depend on the drive alone takes 0.05 ms (two bodies) to 1.4 ms (49 states) a draw, so
 /// kBandDraws of them fit; the time grows with the cube of the states. Laws of temperatures need steps in time, 3 ms a draw
-/// for six bodies with a thermostat. Then 80 draws, and four for each number, leave limits of bent functions 2 to 6 % of the
+/// for six bodies with a thermostat. Then 80 draws, and four for each number, leave limits of bent functions 2 to 4 % of the
 /// half width wrong (band_limits.hpp); half of them may have no solution.
 int n_draws_of(const solver::ReducedSystem& system, std::size_t n_knobs) {
   const bool is_quick = system.is_linear() && system.size() <= kFewStates;

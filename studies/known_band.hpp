@@ -27,7 +27,7 @@ struct BandedRun {
 /// scenario's: ln(x / x_scenario) is normal with the standard deviation that `known_to` says, independently for each number;
 /// numbers without `known_to` are exact. Draws are a Latin hypercube with a fixed seed, so the band is the same in each run.
 /// The reduced model runs each machine (of a lumped machine it is exact), and the band holds the middle 95 % of their
-/// differences from the machine as written (band_limits.hpp), added to the record. At most 500 rows are computed; between
+/// differences from the machine as written (band_limits.hpp), added to the record. At most 250 rows are computed; between
 /// them the differences are linear.
 /// A channel with effects `learned` that say what they still miss (`misses`, one sigma) has a band 1.96 times as wide about
 /// it, in all rows, independent of the numbers; that needs no draws.
