@@ -49,8 +49,8 @@ std::optional<RecordBand> read_band(const std::string& path) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   return RecordBand{
       .limits = read_record_csv(file.string()),
-      .words = fmt::format("The band of {} is what is known of the numbers of its scenario (`known_to`), without "
-                           "what the model itself lacks.",
+      .words = fmt::format("The band of {} is what is known of its scenario: of its numbers (`known_to`) and of what was "
+                           "learned beside them (`misses`). It does not contain what the model itself lacks.",
                            path)};
 }
 

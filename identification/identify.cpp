@@ -283,6 +283,8 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     for (KeptOutKind& kind : result.kinds)
       kind.rms.push_back(missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds(), kind.kind));
     channel.missed_kept_out = missed(loss->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
+    const Eigen::VectorXd squares = loss->rms.col(static_cast<Eigen::Index>(c)).cwiseAbs2();
+    channel.square_kept_out = mean_error(std::span(squares.data(), static_cast<std::size_t>(squares.size())));
     channel.missed_simulated = problem.rms(all, c, channel.fit, false);
     channel.fit.covariance *= channel.missed_own * channel.missed_own * rows_as_one(std::span(&channel.misses, 1));
     result.channels.push_back(std::move(channel));

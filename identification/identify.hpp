@@ -38,6 +38,7 @@ struct IdentifiedChannel {
   /// The same rows as the written scenario simulates them, in balance at the start of each record.
   double missed_simulated = 0.0;
   double missed_kept_out = 0.0;  ///< geometric mean over kinds of kept-out rows
+  MeanError square_kept_out;     ///< mean over the folds of the mean square error of their kept-out rows
   Eigen::VectorXd predicted;     ///< all rows, with the terms of single records
   Eigen::VectorXd misses;        ///< residuals of all rows; NaN without a reading
   std::vector<Driver> ledger;    ///< the driver with the largest share first

@@ -9,18 +9,25 @@ struct BandLimits {
   Eigen::VectorXd low, high;  ///< per function
 };
 
-/// Limits of each function from draws. A quantile of 200 draws alone errs by 10 % of the band's half width, because the
-/// draws reach into the tail by chance. The linear part of the function says how far they do: its limits are known exactly,
+/// Fewest draws for functions of so many numbers: twice as many as a bent function has coefficients, below.
+[[nodiscard]] Eigen::Index fewest_draws(Eigen::Index n_numbers);
+
+/// Limits of each function from draws. The 2.5 % quantile of 80 draws is the second of them, which errs by 20 % of the band's
+/// half width. So a bent function of one direction b, |b| = 1, is fitted to all draws, whose limits are known,
 ///
-///     y ≈ a + b'x (least squares over the draws),   limits of the linear part  a ∓ 1.96 |b|,
+///     y = g(b'x) + r,   g: a polynomial of degree 5,   b'x: a standard normal number,
 ///
-/// so the function is read at the rank that these limits have among the linear parts of the draws. The limits of a linear
-/// function are exact, and so are, up to interpolation between draws, those of a monotone function of one.
-/// Source: control variates for quantiles, Hsu & Nelson, Management Science 36 (1990) 835-851.
+/// and the residuals r, scaled by their degrees of freedom, are added as independent of it: the limits solve
+/// mean over the draws of P(g(u) <= y - r) = 2.5 % and 97.5 %. b is that of the linear fit, improved together with
+/// g by at most three Gauss-Newton steps. The limits of a linear function are exact.
+/// Source: the form is projection pursuit with one term, Friedman & Stuetzle, J. Am. Stat. Assoc. 76 (1981) 817-823.
 ///
-/// @param scores  standard normal, n_draws x n_numbers; n_draws > n_numbers + 1
+/// Error of a limit, in half widths, against Monte Carlo machines of two bodies with 7 or 20 numbers, whose friction or film
+/// depends on temperature: root mean square 2 to 4 % with 84 draws (15 % at most), 2 to 3 % with 200 (7 % at most).
+///
+/// @param scores  standard normal, n_draws x n_numbers
 /// @param values  n_draws x n_functions
-/// @throws std::logic_error  for other shapes
+/// @throws std::logic_error  for other shapes, and fewer than fewest_draws()
 [[nodiscard]] BandLimits band_limits(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values);
 
 }  // namespace driftwright::studies

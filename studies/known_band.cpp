@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/designs.hpp"
 #include "base/normal.hpp"
@@ -17,20 +18,19 @@ namespace {
 
 using diagnosis::Knob, diagnosis::Twin;
 
-constexpr std::size_t kMostBandRows = 500;  // of a longer record the band is linear between this many of its rows
+constexpr std::size_t kMostBandRows = 250;  // of a longer record the band is linear between this many of its rows
 constexpr std::uint64_t kBandSeed = 1;
 constexpr Eigen::Index kFewStates = 60;
-constexpr int kFewestDraws = 40;
+constexpr int kFewestDraws = 80;
 
 /// Number of machines that are drawn: as many as `predict` takes at most twice its time for (0.3 to 0.4 s of processor
 /// time). A machine whose laws depend on the drive alone takes 0.05 ms (two bodies) to 1.4 ms (49 states) a draw, so
 /// kBandDraws of them fit; the time grows with the cube of the states. Laws of temperatures need steps in time, 3 ms a draw
-/// for six bodies with a thermostat. The number of draws then follows that of the scenario's numbers: the limits of a linear
-/// function are exact from any number of draws above n_numbers + 1 (band_limits.hpp), and twice as many show how a function
-/// bends.
+/// for six bodies with a thermostat. Then 80 draws, and four for each number, leave limits of bent functions 2 to 4 % of the
+/// half width wrong (band_limits.hpp); half of them may have no solution.
 int n_draws_of(const solver::ReducedSystem& system, std::size_t n_knobs) {
   const bool is_quick = system.is_linear() && system.size() <= kFewStates;
-  return std::max(2 * (static_cast<int>(n_knobs) + 1), is_quick ? kBandDraws : kFewestDraws);
+  return std::max(4 * (static_cast<int>(n_knobs) + 1), is_quick ? kBandDraws : kFewestDraws);
 }
 
 /// Rows of the record at which the band is computed.
@@ -75,15 +75,38 @@ std::string known_words(const std::vector<Knob>& knobs) {
   return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
 }
 
-/// @param n_left_out  of n_draws machines
-std::string words_of_band(const std::vector<Knob>& knobs, std::size_t n_left_out, std::size_t n_draws) {
-  const std::string left_out =
-      n_left_out == 0 ? "" : fmt::format(" {} of {} drawn machines have no solution and are left out.", n_left_out, n_draws);
-  return fmt::format(
-      "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). They "
-      "do "
-      "not contain numbers without `known_to`, nor what the model itself lacks.{}",
-      knobs.size(), knobs.size() == 1 ? "" : "s", known_words(knobs), left_out);
+/// What the effects `learned` of a channel still miss in a run, one sigma in the unit of the channel; 0 if they do not say.
+double remaining_of(const scenarios::MachineModel& machine, const std::string& run, const std::string& channel) {
+  double squares = 0.0;
+  for (const effects::Effect& e : machine.effects) {
+    if (e.kind->key == "learned" && e.place == channel && e.acts_in(run) && e.has("misses"))
+      squares += e["misses"] * e["misses"];
+  }
+  return std::sqrt(squares);
+}
+
+/// 95 % limits of what uncertain numbers change, at some rows of the record.
+struct NumbersBand {
+  std::map<std::string, BandLimits> limits;  ///< by channel, in its unit; not of one that they do not change
+  std::vector<Knob> numbers;                 ///< that are uncertain; none: there are no limits
+  std::size_t n_draws = 0, n_left_out = 0;
+};
+
+std::string words_of_band(const NumbersBand& drawn, std::size_t n_learned) {
+  std::string words, without = "nor what the model itself lacks";
+  if (!drawn.numbers.empty())
+    words = fmt::format(
+        "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). ",
+        drawn.numbers.size(), drawn.numbers.size() == 1 ? "" : "s", known_words(drawn.numbers));
+  if (n_learned > 0) {
+    words += fmt::format("The bands of {} channel{} contain what the effects `learned` still miss (`misses`, one sigma). ",
+                         n_learned, n_learned == 1 ? "" : "s");
+    without = "nor what the model lacks in other channels";
+  }
+  words += fmt::format("They do not contain numbers without `known_to`, {}.", without);
+  if (drawn.n_left_out > 0)
+    words += fmt::format(" {} of {} drawn machines have no solution and are left out.", drawn.n_left_out, drawn.n_draws);
+  return words;
 }
 
 RecordBand no_band(const std::string& why) {
@@ -123,21 +146,32 @@ std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const s
 
 /// Differences at some rows, linearly at all of them, added to the values.
 std::vector<double> with_differences(const Channel& channel, const std::vector<double>& time_s,
-                                     const std::vector<std::size_t>& rows, const Eigen::VectorXd& difference, double scale) {
+                                     const std::vector<std::size_t>& rows, const Eigen::VectorXd& difference) {
   std::vector<double> values = channel.values;
   for (std::size_t i = 0, after = 0; i < values.size(); ++i) {
     while (rows[after] < i) ++after;
     const std::size_t before = rows[after] == i ? after : after - 1;
     const double from_s = time_s[rows[before]], to_s = time_s[rows[after]];
     const double share = before == after ? 1.0 : (time_s[i] - from_s) / (to_s - from_s);
-    values[i] += scale * ((1.0 - share) * difference[static_cast<Eigen::Index>(before)] +
-                          share * difference[static_cast<Eigen::Index>(after)]);
+    values[i] +=
+        (1.0 - share) * difference[static_cast<Eigen::Index>(before)] + share * difference[static_cast<Eigen::Index>(after)];
   }
   return values;
 }
 
-/// The band of a machine that some reduced model follows.
-std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
+/// Limits with a further normal difference, independent of the others: on each side of the machine as written the half
+/// widths add as roots of squares, which is exact for a linear machine.
+void widen(BandLimits& limits, double half) {
+  for (Eigen::Index i = 0; i < limits.low.size(); ++i) {
+    const double from = std::clamp(0.0, limits.low[i], limits.high[i]);
+    limits.low[i] = from - std::hypot(from - limits.low[i], half);
+    limits.high[i] = from + std::hypot(limits.high[i] - from, half);
+  }
+}
+
+/// Of a machine that some reduced model follows. @throws SolveError  if most drawn machines have no solution
+NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& run, const std::vector<std::size_t>& rows,
+                         const Listener& listener) {
   const scenarios::MachineModel& machine = *scenario.machine;
   std::optional<scenarios::ReducedMachine> made;
   if (!run.model.reduced()) made.emplace(reduced_of(scenario, run, listener));
@@ -146,11 +180,11 @@ std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const Ban
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const Twin twin(augmented, made ? *made : *run.model.reduced(), tolerances);
-  const std::vector<Knob> knobs = diagnosis::scatter(twin, diagnosis::Unsaid::kExact);
-  if (knobs.empty()) return std::nullopt;
+  NumbersBand band{.limits = {}, .numbers = diagnosis::scatter(twin, diagnosis::Unsaid::kExact)};
+  const std::vector<Knob>& knobs = band.numbers;
+  if (knobs.empty()) return band;
   listener.begin(fmt::format("computing the band of {} numbers", knobs.size()));
 
-  const std::vector<std::size_t> rows = band_rows(run.record.n_samples());
   const int n_draws = n_draws_of(twin.machine().system, knobs.size());
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
@@ -160,26 +194,22 @@ std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const Ban
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));
   }
-  const std::size_t n_left_out = drawn.size() - kept.size();
-  if (2 * n_left_out > drawn.size() || kept.size() < knobs.size() + 2)
-    return no_band(fmt::format("{} of {} drawn machines have no solution.", n_left_out, drawn.size()));
+  band.n_draws = drawn.size();
+  band.n_left_out = drawn.size() - kept.size();
+  if (2 * band.n_left_out > drawn.size() ||
+      static_cast<Eigen::Index>(kept.size()) < fewest_draws(static_cast<Eigen::Index>(knobs.size())))
+    throw SolveError(fmt::format("{} of {} drawn machines have no solution.", band.n_left_out, drawn.size()));
   const Eigen::MatrixXd kept_scores = scores(kept, Eigen::all);
 
-  RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}},
-                  .words = words_of_band(knobs, n_left_out, drawn.size())};
   const solver::Outputs& outputs = twin.machine().system.outputs;
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
-    const Channel* channel = run.record.find(outputs.name[o]);
-    if (!channel) continue;
+    if (!run.record.find(outputs.name[o])) continue;
+    const double scale = outputs.unit[o] == "K" ? 1.0 : 1e6;  // channels are in um and urad
     Eigen::MatrixXd values(kept_scores.rows(), static_cast<Eigen::Index>(rows.size()));
     for (std::size_t k = 0; k < kept.size(); ++k)
-      values.row(static_cast<Eigen::Index>(k)) = drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
-    if (values.isZero(0.0)) continue;  // a thermometer of the ambient
-    const BandLimits limits = band_limits(kept_scores, values);
-    const double scale = outputs.unit[o] == "K" ? 1.0 : 1e6;  // channels are in um and urad
-    for (const auto& [end, difference] : {std::pair("_low", &limits.low), std::pair("_high", &limits.high)})
-      band.limits.channels.push_back(
-          {channel->name + end, channel->unit, with_differences(*channel, run.record.time_s, rows, *difference, scale)});
+      values.row(static_cast<Eigen::Index>(k)) =
+          scale * drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
+    if (!values.isZero(0.0)) band.limits.emplace(outputs.name[o], band_limits(kept_scores, values));
   }
   return band;
 }
@@ -187,14 +217,37 @@ std::optional<RecordBand> band_of(const scenarios::Scenario& scenario, const Ban
 }  // namespace
 
 std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run, const Listener& listener) {
-  if (!scenarios::says_known_to(*scenario.machine)) return std::nullopt;
-  if (!can_be_reduced(*scenario.machine))
-    return no_band("a temperature is prescribed over time, which no reduced model follows.");
-  try {
-    return band_of(scenario, run, listener);
-  } catch (const SolveError& e) {  // the curve itself may be the full model's
-    return no_band(e.what());
+  const scenarios::MachineModel& machine = *scenario.machine;
+  const std::vector<std::size_t> rows = band_rows(run.record.n_samples());
+  NumbersBand drawn;
+  if (scenarios::says_known_to(machine)) {
+    if (!can_be_reduced(machine)) return no_band("a temperature is prescribed over time, which no reduced model follows.");
+    try {
+      drawn = numbers_band(scenario, run, rows, listener);
+    } catch (const SolveError& e) {  // the curve itself may be the full model's
+      return no_band(e.what());
+    }
   }
+  RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}}, .words = {}};
+  std::size_t n_learned = 0;
+  for (const Channel& channel : run.record.channels) {
+    const double remaining = remaining_of(machine, run.cyclogram.name, channel.name);
+    const auto found = drawn.limits.find(channel.name);
+    if (found == drawn.limits.end() && remaining == 0.0) continue;
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    BandLimits limits =
+        found != drawn.limits.end() ? found->second : BandLimits{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    if (remaining > 0.0) {
+      ++n_learned;
+      widen(limits, kNormal95 * remaining);
+    }
+    for (const auto& [end, difference] : {std::pair("_low", &limits.low), std::pair("_high", &limits.high)})
+      band.limits.channels.push_back(
+          {channel.name + end, channel.unit, with_differences(channel, run.record.time_s, rows, *difference)});
+  }
+  if (drawn.numbers.empty() && n_learned == 0) return std::nullopt;
+  band.words = words_of_band(drawn, n_learned);
+  return band;
 }
 
 }  // namespace driftwright::studies

@@ -1,5 +1,6 @@
 #pragma once
-// The 95 % band about simulated channels that follows from how well the numbers of a scenario are known (`known_to`).
+// The 95 % band about simulated channels that follows from how well a scenario is known:
+// its numbers (`known_to`), and what was learned beside them (`misses`).
 
 #include <optional>
 
@@ -9,8 +10,8 @@
 
 namespace driftwright::studies {
 
-/// Number of machines that a band is made of, where a run takes about a millisecond; otherwise about twice the number of
-/// uncertain numbers, at least 40.
+/// Number of machines that a band is made of, where a run takes about a millisecond; otherwise about four times the number
+/// of uncertain numbers, at least 80.
 inline constexpr int kBandDraws = 200;
 
 /// What a band is about: a run of a machine, already simulated.
@@ -26,10 +27,12 @@ struct BandedRun {
 /// scenario's: ln(x / x_scenario) is normal with the standard deviation that `known_to` says, independently for each number;
 /// numbers without `known_to` are exact. Draws are a Latin hypercube with a fixed seed, so the band is the same in each run.
 /// The reduced model runs each machine (of a lumped machine it is exact), and the band holds the middle 95 % of their
-/// differences from the machine as written (band_limits.hpp), added to the record. At most 500 rows are computed; between
+/// differences from the machine as written (band_limits.hpp), added to the record. At most 250 rows are computed; between
 /// them the differences are linear.
+/// A channel with effects `learned` that say what they still miss (`misses`, one sigma) has a band 1.96 times as wide about
+/// it, in all rows, independent of the numbers; that needs no draws.
 /// Drawn machines without a solution, at temperatures beyond a law's range for example, are left out, and the words say so.
-/// @returns none if no number of the scenario has a `known_to`; no intervals, and the reason in words, for a machine that no
+/// @returns none if no number of the scenario has a `known_to` and no effect says what it misses; no intervals, and the reason in words, for a machine that no
 ///          reduced model follows (a temperature prescribed over time, a body that cannot lose its heat), and if more than
 ///          half of the drawn machines have no solution
 [[nodiscard]] std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run,

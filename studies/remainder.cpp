@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 
 #include "base/errors.hpp"
+#include "base/normal.hpp"
 #include "base/quantity.hpp"
 #include "base/record_channel.hpp"
 #include "base/shown_units.hpp"
@@ -239,6 +241,14 @@ Remainder remainder_of(const MeasuredTwin& m, const diagnosis::Diagnosis& d, con
   return remainder;
 }
 
+double remaining_sd(const identification::IdentifiedChannel& channel) {
+  const MeanError& square = channel.square_kept_out;
+  if (square.n == 0) return 0.0;
+  const double noise = std::isfinite(channel.noise) ? channel.noise : 0.0;
+  const boost::math::students_t t(static_cast<double>(square.n));
+  return boost::math::quantile(t, 0.975) / kNormal95 * std::sqrt(std::max(0.0, square.mean - noise * noise));
+}
+
 std::vector<effects::Effect> learned_effects(const identification::Identified& extension) {
   using identification::Law;
   std::vector<effects::Effect> list;
@@ -300,6 +310,7 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
     effects::Effect& leading = list[before];
     leading.set("keeps", std::clamp(rounded(c.fit.kept), 0.0, 1.0));
     if (is_sensor && std::abs(c.fit.offset) > 0.0) leading.set("offset", rounded(c.fit.offset));
+    if (const double sd = remaining_sd(c); sd > 0.0) leading.set("misses", std::stod(fmt::format("{:.3g}", sd)));
   }
   return list;
 }

@@ -21,7 +21,7 @@ Eigen::MatrixXd scores(int n_draws, int n_numbers, std::uint64_t seed = 3) {
 TEST(BandLimits, OfALinearFunctionAreThoseOfLinearTheory) {
   const Eigen::Vector4d slope(3.0, -4.0, 0.5, 12.0);
   const double half = 1.96 * std::sqrt(9.0 + 16.0 + 0.25 + 144.0);
-  for (const int n_draws : {8, 40, 200}) {  // eight draws do not reach that far
+  for (const int n_draws : {20, 40, 200}) {  // twenty draws do not reach that far
     const Eigen::MatrixXd z = scores(n_draws, 4);
     const BandLimits limits = band_limits(z, ((z * slope).array() + 7.0).matrix());
     EXPECT_NEAR(limits.low[0], 7.0 - half, 1e-9) << n_draws;
@@ -30,20 +30,44 @@ TEST(BandLimits, OfALinearFunctionAreThoseOfLinearTheory) {
 }
 
 TEST(BandLimits, OfAMonotoneFunctionAreItsValuesAtTheLimits) {
-  const Eigen::MatrixXd z = scores(200, 1);
+  const Eigen::MatrixXd z = scores(80, 1);
   const double s = std::log(2.0);  // a guess: a factor of 2
   const BandLimits limits = band_limits(z, (s * z).array().exp().matrix());
-  EXPECT_NEAR(limits.low[0] / std::exp(-1.96 * s), 1.0, 0.01);  // between two draws it is linear
+  EXPECT_NEAR(limits.low[0] / std::exp(-1.96 * s), 1.0, 0.02);  // a polynomial is not quite an exponential
   EXPECT_NEAR(limits.high[0] / std::exp(1.96 * s), 1.0, 0.01);
 }
 
-TEST(BandLimits, OfAQuotientAreBetterThanTheQuantilesOfTheDraws) {
-  // ln(p / g) is normal; a quantile of 200 draws alone errs by 10 % of the half width (one sigma).
-  const Eigen::MatrixXd z = scores(200, 2);
+// ln(p / g) is normal. A quantile of 80 draws alone errs by 20 % of the half width (one sigma).
+TEST(BandLimits, OfAQuotientNeedFewDraws) {
   const double s_p = 0.3, s_g = 0.2, s = std::hypot(s_p, s_g);
-  const BandLimits limits = band_limits(z, (s_p * z.col(0) - s_g * z.col(1)).array().exp().matrix());
-  EXPECT_NEAR(std::log(limits.low[0]) / (-1.96 * s), 1.0, 0.04);
-  EXPECT_NEAR(std::log(limits.high[0]) / (1.96 * s), 1.0, 0.04);
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const Eigen::MatrixXd z = scores(80, 2, seed);
+    const BandLimits limits = band_limits(z, (s_p * z.col(0) - s_g * z.col(1)).array().exp().matrix());
+    EXPECT_NEAR(std::log(limits.low[0]) / (-kNormal95 * s), 1.0, 0.02) << seed;
+    EXPECT_NEAR(std::log(limits.high[0]) / (kNormal95 * s), 1.0, 0.02) << seed;
+  }
+}
+
+// A function that bends in other directions, too, and whose rest depends on the first number, which the method neglects.
+// Against 200,000 draws: over ten designs of 80 draws the shares outside a limit differ from 2.5 % by less than a quantile of
+// the draws would, whose standard deviation is sqrt(0.025 * 0.975 / 80) = 1.7 %.
+TEST(BandLimits, ErrLessThanAQuantileWhereNoDirectionHoldsTheBend) {
+  const auto function = [](const Eigen::MatrixXd& z) -> Eigen::VectorXd {
+    return (0.4 * z.col(0).array()).exp() * (1.0 + 0.3 * z.col(1).array()) + 0.5 * z.col(2).array() -
+           0.2 * z.col(3).array().square();
+  };
+  const Eigen::VectorXd many = function(scores(200000, 4, 99));
+  double squares = 0.0, outside = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Eigen::MatrixXd z = scores(80, 4, seed);
+    const BandLimits limits = band_limits(z, function(z));
+    const double below = (many.array() < limits.low[0]).cast<double>().mean();
+    const double above = (many.array() > limits.high[0]).cast<double>().mean();
+    squares += std::pow(below - 0.025, 2) + std::pow(above - 0.025, 2);
+    outside += (below + above) / 10.0;
+  }
+  EXPECT_LT(std::sqrt(squares / 20.0), 0.017);
+  EXPECT_NEAR(outside, 0.05, 0.015);
 }
 
 TEST(BandLimits, OfAConstantAreTheConstant) {

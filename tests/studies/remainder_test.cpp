@@ -60,6 +60,21 @@ TEST(LearnBeside, SaysWhatARegressionAndTheNoiseLeave) {
     EXPECT_LT(e["error"], e.place == "nose" ? 7.5 : 2.5) << e.place;
   }
   EXPECT_GE(n_of_drive, 2.0);
+  for (const effects::Effect& e : learned_effects(learned.network)) {  // the first of each channel says what it still misses
+    if (!e.has("misses")) continue;
+    EXPECT_LT(e["misses"], (e.place == "nose" ? 0.3 : 0.05) * 2.0) << e.place;  // the scenario missed ten times as much
+  }
+}
+
+// Five folds that miss 0.5 um beside a noise of 0.3 um: sqrt(0.25 - 0.09) = 0.4 um, Student's 2.5706 instead of 1.96.
+TEST(RemainingSd, IsWhatFoldsMissWithoutTheNoise) {
+  identification::IdentifiedChannel channel;
+  EXPECT_EQ(remaining_sd(channel), 0.0) << "no fold could judge";
+  channel.square_kept_out = {.mean = 0.25, .standard_error = 0.0, .n = 5};
+  channel.noise = 0.3;
+  EXPECT_NEAR(remaining_sd(channel), 0.4 * 2.5706 / 1.96, 1e-4);
+  channel.noise = 0.6;
+  EXPECT_EQ(remaining_sd(channel), 0.0) << "no more than the noise";
 }
 
 // Beside what a diagnosis wrote, here the scenario as it was.
