@@ -118,8 +118,8 @@ TEST_P(LoudEffects, AreNamedAtTheirPlace) {
     EXPECT_LT(g.rmse_after, std::hypot(1.2 * g.noise_floor, g.unit == "K" ? 0.3 : 0.6)) << g.name;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, LoudEffects, testing::Values(43, 47, 49));
-INSTANTIATE_TEST_SUITE_P(SeedsAtLength, LoudEffects, testing::Values(0, 24, 45, 57));
+INSTANTIATE_TEST_SUITE_P(Seeds, LoudEffects, testing::Values(47, 49));
+INSTANTIATE_TEST_SUITE_P(SeedsAtLength, LoudEffects, testing::Values(0, 24, 43, 45, 57));
 
 TEST(EffectOutsideTheCatalogue, IsNotGivenAName) {
   const Told t = told(4);  // heat of acceleration
@@ -134,15 +134,16 @@ TEST(EffectOutsideTheCatalogue, IsCalledByWhatDoesTheSameAtItsPlace) {
   EXPECT_EQ(heat.diagnosis.causes[0].where, heat.truth["effects"][0]["where"]) << heat.diagnosis.reason;
 }
 
-TEST(EffectOutsideTheCatalogue, IsStatedAtItsPlace) {
-  for (const std::uint64_t seed :
-       {55, 215}) {  // constant heat, its key taken out; creep of the turns made, no law of the catalogue
-    const Told t = told(seed);
-    ASSERT_FALSE(t.diagnosis.statements.stated.empty());
-    const std::vector<std::string> place = {t.truth["effects"][0]["where"]};
-    EXPECT_EQ(t.diagnosis.statements.stated[0].says.place, place) << t.diagnosis.reason;
-  }
+class AnUnknownEffect : public testing::TestWithParam<int> {};
+TEST_P(AnUnknownEffect, IsStatedAtItsPlace) {
+  const Told t = told(static_cast<std::uint64_t>(GetParam()));
+  ASSERT_FALSE(t.diagnosis.statements.stated.empty());
+  const std::vector<std::string> place = {t.truth["effects"][0]["where"]};
+  EXPECT_EQ(t.diagnosis.statements.stated[0].says.place, place) << t.diagnosis.reason;
 }
+INSTANTIATE_TEST_SUITE_P(Seeds, AnUnknownEffect, testing::Values(55));  // constant heat, its key taken out
+INSTANTIATE_TEST_SUITE_P(SeedsAtLength, AnUnknownEffect,
+                         testing::Values(215));  // creep of the turns made, no law of the catalogue
 
 }  // namespace
 }  // namespace driftwright::diagnosis::diagnosis_blind_test
