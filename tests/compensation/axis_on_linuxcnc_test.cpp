@@ -112,6 +112,7 @@ while time.time() < end:
     if s.interp_state == linuxcnc.INTERP_IDLE: break
     if s.g5x_index == 9 and s.inpos and abs(s.joint_position[2] - 117) < 0.1:      # the job stops at Z10 of G59.3
         d = get("lowpass.0.out"); s.poll()
+        if abs(s.joint_position[2] - 117) > 0.1: continue      # it went on while the drift was read
         left.append(1e3 * (s.joint_position[2] - 100 - 10 - 7 + d))
     time.sleep(0.02)
 drain()
