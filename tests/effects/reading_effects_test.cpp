@@ -165,7 +165,7 @@ TEST(Learned, MayMissWhatTheLawGoesOnToBeyondItsHull) {
   expect_row(sd(Place::kSensor, "a", {"{type: learned, sensor: a, follows: running, rises: [[0 min, 0.3 K]]}"}), 0,
              {0, 0, 0, 0, 0, 0}, 0.0);
   Cyclogram heated = kCyclogram;
-  heated.columns = {{"heater", "W", {{0, 300}, {150, 0}}}};
+  heated.columns = {{"heater", "W", {{0, 150}, {300, 0}}}};
   expect_row(
       sd(Place::kSensor, "a",
          {"{type: learned, sensor: a, follows: column, column: heater_W, at: 100, error: 0.5, rises: [[0 min, -1.2 K]]}"},
