@@ -23,7 +23,7 @@ const double kDecided = 2.0 * (1.0 - kSure) * std::numbers::ln2;
 constexpr double kWorthIt = 0.5;  // share of what a cyclogram leaves that a thermometer must remove: it costs mounting
 constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, if no thermometer was measured
 constexpr const char* kMeanOf = "mean of ";
-constexpr const char* kNothing = "nothing in its place";
+constexpr const char* kNothingInItsPlace = "nothing in its place";
 constexpr double kLeastOpen = 0.01;  // probability that no open explanation is below, as of a statement that is listed
 
 /// Without linear columns, which belong to the present runs.
@@ -128,9 +128,10 @@ Open open_questions(const Fitter& fitter, const SearchResult& result, const std:
         double stated = 0.0;  // probability of the places listed
         std::set<StatedPlace> places;
         for (const Weighed& w : list) stated += places.insert(w.place).second ? w.probability : 0.0;
-        list.push_back({open.explanations.size(), {StatedQuantity::kHeat, {kNothing}}, 1.0 - std::min(1.0, stated), 1.0});
+        list.push_back(
+            {open.explanations.size(), {StatedQuantity::kHeat, {kNothingInItsPlace}}, 1.0 - std::min(1.0, stated), 1.0});
         open.explanations.push_back(std::move(*without));
-        name(finding.claim, kNothing);
+        name(finding.claim, kNothingInItsPlace);
       }
     }
     if (list.size() > 1) open.questions.push_back(weighed(list));

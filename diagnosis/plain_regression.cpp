@@ -10,7 +10,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kDriveLags_s[] = {0.0, 300.0, 1200.0, 4800.0};
+constexpr double kRegressionLags_s[] = {0.0, 300.0, 1200.0, 4800.0};
 constexpr double kAmbientLags_s[] = {0.0, 3600.0, 14400.0};
 constexpr double kColumnLags_s[] = {0.0, 600.0, 3600.0};
 constexpr double kPenalties[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0};
@@ -59,7 +59,7 @@ Eigen::MatrixXd drive_columns(const MeasuredRun& run) {
   std::vector<Eigen::VectorXd> columns;
   for (const Eigen::VectorXd& drive :
        {speed, Eigen::VectorXd(speed.array().square()), Eigen::VectorXd((speed.array() > 0.0).cast<double>())})
-    for (double lag_s : kDriveLags_s) columns.push_back(held_behind(drive, run.time_s, lag_s));
+    for (double lag_s : kRegressionLags_s) columns.push_back(held_behind(drive, run.time_s, lag_s));
   for (double lag_s : kAmbientLags_s) columns.push_back(sampled_behind(ambient, run.time_s, lag_s));
   for (const auto& [name, recorded] : beside_drive(run, 0.0)) {
     for (double lag_s : kColumnLags_s) columns.push_back(held_behind(held(recorded), run.time_s, lag_s));

@@ -75,14 +75,20 @@ std::string known_words(const std::vector<Knob>& knobs) {
   return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
 }
 
-/// What the effects `learned` of a channel still miss in a run, one sigma in the unit of the channel; 0 if they do not say.
-double remaining_of(const scenarios::MachineModel& machine, const std::string& run, const std::string& channel) {
+/// What the effects `learned` of a channel still miss at these times of a run, within their hull (`misses`) and beyond it:
+/// one sigma, in the unit of the channel; 0 where they do not say.
+Eigen::VectorXd remaining_of(const scenarios::MachineModel& machine, const Cyclogram& run, const Channel& channel,
+                             const std::vector<double>& time_s) {
   double squares = 0.0;
   for (const effects::Effect& e : machine.effects) {
-    if (e.kind->key == "learned" && e.place == channel && e.acts_in(run) && e.has("misses"))
+    if (e.kind->key == "learned" && e.place == channel.name && e.acts_in(run.name) && e.has("misses"))
       squares += e["misses"] * e["misses"];
   }
-  return std::sqrt(squares);
+  const bool is_length = channel.unit == "um" || channel.unit == "urad";
+  const effects::Place kind = is_length ? effects::Place::kDisplacement : effects::Place::kSensor;
+  const Eigen::VectorXd beyond =
+      (is_length ? 1e6 : 1.0) * effects::learned_sd_beyond(machine.effects, kind, channel.name, time_s, run).transpose();
+  return (beyond.array().square() + squares).sqrt();
 }
 
 /// 95 % limits of what uncertain numbers change, at some rows of the record.
@@ -99,8 +105,10 @@ std::string words_of_band(const NumbersBand& drawn, std::size_t n_learned) {
         "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). ",
         drawn.numbers.size(), drawn.numbers.size() == 1 ? "" : "s", known_words(drawn.numbers));
   if (n_learned > 0) {
-    words += fmt::format("The bands of {} channel{} contain what the effects `learned` still miss (`misses`, one sigma). ",
-                         n_learned, n_learned == 1 ? "" : "s");
+    words += fmt::format(
+        "The bands of {} channel{} contain what the effects `learned` still miss (`misses`, one sigma), more beyond the "
+        "drives they were learned from. ",
+        n_learned, n_learned == 1 ? "" : "s");
     without = "nor what the model lacks in other channels";
   }
   words += fmt::format("They do not contain numbers without `known_to`, {}.", without);
@@ -161,11 +169,11 @@ std::vector<double> with_differences(const Channel& channel, const std::vector<d
 
 /// Limits with a further normal difference, independent of the others: on each side of the machine as written the half
 /// widths add as roots of squares, which is exact for a linear machine.
-void widen(BandLimits& limits, double half) {
+void widen(BandLimits& limits, const Eigen::VectorXd& half) {
   for (Eigen::Index i = 0; i < limits.low.size(); ++i) {
     const double from = std::clamp(0.0, limits.low[i], limits.high[i]);
-    limits.low[i] = from - std::hypot(from - limits.low[i], half);
-    limits.high[i] = from + std::hypot(limits.high[i] - from, half);
+    limits.low[i] = from - std::hypot(from - limits.low[i], half[i]);
+    limits.high[i] = from + std::hypot(limits.high[i] - from, half[i]);
   }
 }
 
@@ -229,15 +237,17 @@ std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const 
     }
   }
   RecordBand band{.limits = {.source = run.record.source, .time_s = run.record.time_s, .channels = {}}, .words = {}};
+  std::vector<double> times_s;
+  for (const std::size_t row : rows) times_s.push_back(run.first_row_s + run.record.time_s[row] - run.record.time_s.front());
   std::size_t n_learned = 0;
   for (const Channel& channel : run.record.channels) {
-    const double remaining = remaining_of(machine, run.cyclogram.name, channel.name);
+    const Eigen::VectorXd remaining = remaining_of(machine, run.cyclogram, channel, times_s);
     const auto found = drawn.limits.find(channel.name);
-    if (found == drawn.limits.end() && remaining == 0.0) continue;
+    if (found == drawn.limits.end() && remaining.isZero(0.0)) continue;
     const auto n = static_cast<Eigen::Index>(rows.size());
     BandLimits limits =
         found != drawn.limits.end() ? found->second : BandLimits{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-    if (remaining > 0.0) {
+    if (!remaining.isZero(0.0)) {
       ++n_learned;
       widen(limits, kNormal95 * remaining);
     }
