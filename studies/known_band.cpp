@@ -75,14 +75,14 @@ std::string known_words(const std::vector<Knob>& knobs) {
   return fmt::format("{:.3g} to {}", 100.0 * least->prior_sd, word(most->prior_sd));
 }
 
-/// What the effects `learned` of a channel still miss in a run, one sigma in the unit of the channel; 0 if they do not say.
+/// What the effects `learned` of a channel still miss in a run, one sigma in the unit of the channel; 0 if none says it. Of
+/// several the last one counts, which was learned beside the others.
 double remaining_of(const scenarios::MachineModel& machine, const std::string& run, const std::string& channel) {
-  double squares = 0.0;
+  double remaining = 0.0;
   for (const effects::Effect& e : machine.effects) {
-    if (e.kind->key == "learned" && e.place == channel && e.acts_in(run) && e.has("misses"))
-      squares += e["misses"] * e["misses"];
+    if (e.kind->key == "learned" && e.place == channel && e.acts_in(run) && e.has("misses")) remaining = e["misses"];
   }
-  return std::sqrt(squares);
+  return remaining;
 }
 
 /// 95 % limits of what uncertain numbers change, at some rows of the record.
@@ -163,7 +163,7 @@ std::vector<double> with_differences(const Channel& channel, const std::vector<d
 /// widths add as roots of squares, which is exact for a linear machine.
 void widen(BandLimits& limits, double half) {
   for (Eigen::Index i = 0; i < limits.low.size(); ++i) {
-    const double from = std::clamp(0.0, limits.low[i], limits.high[i]);
+    const double from = std::min(std::max(0.0, limits.low[i]), limits.high[i]);
     limits.low[i] = from - std::hypot(from - limits.low[i], half);
     limits.high[i] = from + std::hypot(limits.high[i] - from, half);
   }
