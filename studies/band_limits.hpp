@@ -12,8 +12,8 @@ struct BandLimits {
 /// Fewest draws for functions of so many numbers: twice as many as a bent function has coefficients, below.
 [[nodiscard]] Eigen::Index fewest_draws(Eigen::Index n_numbers);
 
-/// Limits of each function from draws. The 2.5 % quantile of 80 draws is the second of them, which errs by 20 % of the band's
-/// half width. So a bent function of one direction b, |b| = 1, is fitted to all draws, whose limits are known,
+/// Limits of each function from draws. The 2.5 % quantile of 80 draws is the second of them, which errs by 20 % of the
+/// band half width. So a bent function of one direction b, |b| = 1, is fitted to all draws, whose limits are known,
 ///
 ///     y = g(b'x) + r,   g: a polynomial of degree 5,   b'x: a standard normal number,
 ///

@@ -76,19 +76,19 @@ std::string known_words(const std::vector<Knob>& knobs) {
 }
 
 /// What the effects `learned` of a channel still miss at these times of a run, within their hull (`misses`) and beyond it:
-/// one sigma, in the unit of the channel; 0 where they do not say.
+/// one sigma, in the unit of the channel; 0 where they do not say. Of several `misses` the last one counts, which was learned
+/// beside the others.
 Eigen::VectorXd remaining_of(const scenarios::MachineModel& machine, const Cyclogram& run, const Channel& channel,
                              const std::vector<double>& time_s) {
-  double squares = 0.0;
+  double misses = 0.0;
   for (const effects::Effect& e : machine.effects) {
-    if (e.kind->key == "learned" && e.place == channel.name && e.acts_in(run.name) && e.has("misses"))
-      squares += e["misses"] * e["misses"];
+    if (e.kind->key == "learned" && e.place == channel.name && e.acts_in(run.name) && e.has("misses")) misses = e["misses"];
   }
   const bool is_length = channel.unit == "um" || channel.unit == "urad";
   const effects::Place kind = is_length ? effects::Place::kDisplacement : effects::Place::kSensor;
   const Eigen::VectorXd beyond =
       (is_length ? 1e6 : 1.0) * effects::learned_sd_beyond(machine.effects, kind, channel.name, time_s, run).transpose();
-  return (beyond.array().square() + squares).sqrt();
+  return (beyond.array().square() + misses * misses).sqrt();
 }
 
 /// 95 % limits of what uncertain numbers change, at some rows of the record.
@@ -171,7 +171,7 @@ std::vector<double> with_differences(const Channel& channel, const std::vector<d
 /// widths add as roots of squares, which is exact for a linear machine.
 void widen(BandLimits& limits, const Eigen::VectorXd& half) {
   for (Eigen::Index i = 0; i < limits.low.size(); ++i) {
-    const double from = std::clamp(0.0, limits.low[i], limits.high[i]);
+    const double from = std::min(std::max(0.0, limits.low[i]), limits.high[i]);
     limits.low[i] = from - std::hypot(from - limits.low[i], half[i]);
     limits.high[i] = from + std::hypot(limits.high[i] - from, half[i]);
   }

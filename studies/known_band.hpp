@@ -32,9 +32,9 @@ struct BandedRun {
 /// A channel with effects `learned` that say what they still miss (`misses`, one sigma) has a band 1.96 times as wide about
 /// it, in all rows, independent of the numbers; that needs no draws.
 /// Drawn machines without a solution, at temperatures beyond a law's range for example, are left out, and the words say so.
-/// @returns none if no number of the scenario has a `known_to` and no effect says what it misses; no intervals, and the reason in words, for a machine that no
-///          reduced model follows (a temperature prescribed over time, a body that cannot lose its heat), and if more than
-///          half of the drawn machines have no solution
+/// @returns none if no number of the scenario has a `known_to` and no effect says what it misses; no intervals, and the
+///          reason in words, if there are numbers with `known_to` and no reduced model follows the machine (a temperature
+///          prescribed over time, a body that cannot lose its heat), or more than half of the drawn ones have no solution
 [[nodiscard]] std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const BandedRun& run,
                                                    const Listener& listener);
 

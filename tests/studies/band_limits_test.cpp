@@ -49,8 +49,8 @@ TEST(BandLimits, OfAQuotientNeedFewDraws) {
 }
 
 // A function that bends in other directions, too, and whose rest depends on the first number, which the method neglects.
-// Against 200,000 draws: over ten designs of 80 draws the shares outside a limit differ from 2.5 % by less than a quantile of
-// the draws would, whose standard deviation is sqrt(0.025 * 0.975 / 80) = 1.7 %.
+// Against 200,000 draws: over ten designs of 80 draws the shares outside a limit differ from 2.5 % by less than a quantile
+// of draws would, whose standard deviation is sqrt(0.025 * 0.975 / 80) = 1.7 %.
 TEST(BandLimits, ErrLessThanAQuantileWhereNoDirectionHoldsTheBend) {
   const auto function = [](const Eigen::MatrixXd& z) -> Eigen::VectorXd {
     return (0.4 * z.col(0).array()).exp() * (1.0 + 0.3 * z.col(1).array()) + 0.5 * z.col(2).array() -
