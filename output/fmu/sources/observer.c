@@ -150,8 +150,8 @@ void model_touched(void* scratch) {
   (void)scratch; /* steps are found by what they are made of */
 }
 
-/* Two neighbours of n pieces become one, at the mean of their drives: those at which a law that is curved errs least by it, by
- * its second derivative times the product of the lengths over their sum and the difference squared. */
+/* Two neighbours of n pieces become one, at the mean of their drives: those at which a curved law errs least by it. That is
+ * half its second derivative times the difference squared times the product of the lengths over their sum. */
 static void merge_pieces(double* pieces, int n) {
   const int size = piece_size();
   double least = HUGE_VAL, *first = pieces;
