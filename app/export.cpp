@@ -129,6 +129,13 @@ void export_formula(const ExportOptions& options) {
     throw InputError(fmt::format("--as {} requires --model FILE, a formula of models/ as `validate` writes it{}", options.as,
                                  options.as == "c" ? ", or a scenario, whose machine or observer becomes C" : ""));
   const bool is_of_axis = options.as == "siemens" || options.as == "heidenhain" || options.as == "fanuc";
+  if (!is_of_axis && !options.axis.empty())
+    throw InputError(fmt::format("--as {} corrects no axis by itself; leave --axis out", options.as));
+  if (options.as != "siemens" && options.axis_moves == "against_dk")
+    throw InputError(
+        fmt::format("--axis-moves is for --as siemens, whose sign differs from machine to machine; leave it "
+                    "out of --as {}",
+                    options.as));
   if (is_of_axis && options.axis.empty())
     throw InputError(fmt::format("--as {} requires --axis, the letter of the axis that is corrected", options.as));
   const output::PredictorFile file = output::read_predictor(options.model);

@@ -20,6 +20,7 @@ namespace driftwright::effects {
 namespace {
 
 constexpr std::size_t kDeepest = 64;  // values that are kept while a formula is evaluated
+constexpr std::size_t kRoom = 72;     // of laws put together (law_steps.hpp), which keep a few more
 
 using Step = Expression::Step;
 
@@ -323,7 +324,7 @@ double applied(Op op, const double* a) {
 /// Evaluates the steps. look(step, value, arguments, n) sees each value as it is made.
 template <class Look>
 double evaluated(std::span<const Step> steps, const double* values, Look look) {
-  std::array<double, kDeepest> stack;
+  std::array<double, kRoom> stack;
   double* top = stack.data();  // one after the last value
   for (const Step& s : steps) {
     const int n = n_arguments(s.op);
@@ -387,7 +388,7 @@ std::vector<Step> with_constants_folded(const std::vector<Step>& steps) {
 }
 
 const Step* failing_step(std::span<const Step> steps, const double* values) {
-  std::array<const Step*, kDeepest> stack;  // beside the values: the step that each owes it to if it is not finite
+  std::array<const Step*, kRoom> stack;  // beside the values: the step that each owes it to if it is not finite
   const Step** top = stack.data();
   (void)evaluated(steps, values, [&](const Step& s, double value, const double* arguments, int n) {
     top -= n;

@@ -37,14 +37,20 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// How many digits a language keeps of a constant: significant ones, and behind the point.
+/// How many digits a language keeps of a constant: significant ones, and after the point; the largest that it takes.
 struct NumberFormat {
   int significant = 17, decimals = 300;
+  double most = HUGE_VAL;
 };
 
 /// A number without exponent; a negative one in parentheses.
 std::string digits_of(double x, const NumberFormat& digits) {
   if (!std::isfinite(x)) throw std::logic_error("a control's program needs finite numbers");
+  if (std::abs(x) >= digits.most)
+    throw InputError(
+        fmt::format("the formula has the number {:g}, and a constant of this control must be below {:g}; let a "
+                    "PLC or PC compute this one (--as st, --as c)",
+                    x, digits.most));
   const int magnitude = x == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(x))));
   std::string text = fmt::format("{:.{}f}", std::abs(x), std::clamp(digits.significant - 1 - magnitude, 1, digits.decimals));
   while (text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
@@ -159,10 +165,14 @@ class Siemens final : public Dialect {
     head += fmt::format(
         "; $A_DBR is the memory that PLC and NCK share: 32 bits a reading, 4 bytes apart. Uses $AC_PARAM[0] to [{}], "
         "$AC_TIMER[0], $AC_MARKER[0], IDS 1 to {}.\n"
+        "; MD28254 must be at least {}, MD28256 and MD28258 at least 1 (timers are 0 as delivered), and MD28250 large "
+        "enough "
+        "for these actions: an alarm of an illegal array index or of too few elements names what is missing.\n"
         "; Call once after power-on. It needs MD32750 bit 0 = 1 of the axis; MD32760 limits the speed of the correction.\n"
         "; Measure the sign before use: SD43900 = 0.1 with the axis at rest and a dial gauge on it; an axis that moves "
         "{} by 0.1 mm agrees with this file, otherwise export with --axis-moves {}.\n",
-        index_.size() - 1, n_actions_, axis_.against_dk ? "to minus" : "to plus", axis_.against_dk ? "by_dk" : "against_dk");
+        index_.size() - 1, n_actions_, index_.size(), axis_.against_dk ? "to minus" : "to plus",
+        axis_.against_dk ? "by_dk" : "against_dk");
     for (std::size_t k = 0; k < index_.size(); ++k) head += fmt::format("$AC_PARAM[{}]=0\n", k);
     head += fmt::format("$AC_MARKER[0]=0\n$AC_TIMER[0]={}\n", number(period_s_));
     return {name_ + ".SPF", head + text_ + "RET\n"};
@@ -186,7 +196,9 @@ class Siemens final : public Dialect {
 class Heidenhain final : public Dialect {
  public:
   Heidenhain(const std::string& name, const ControlAxis& axis)
-      : Dialect({.significant = 12, .decimals = 14}), name_(upper(plain_name(name)).substr(0, 24)), axis_(axis) {}
+      : Dialect({.significant = 12, .decimals = 14, .most = 1e9}),
+        name_(upper(plain_name(name)).substr(0, 24)),
+        axis_(axis) {}
   bool is_called() const override { return true; }
   std::string variable(const std::string& name) override {
     return fmt::format("QL{}", locals_.emplace(name, locals_.size()).first->second);
@@ -247,7 +259,7 @@ class Heidenhain final : public Dialect {
 class Fanuc final : public Dialect {
  public:
   Fanuc(const std::string& name, const ControlAxis& axis, std::size_t n_readings)
-      : Dialect({.significant = 8}),
+      : Dialect({.significant = 8, .decimals = 7, .most = 1e7}),  // eight digits with the zero before the point
         name_(upper(plain_name(name))),
         axis_(axis),
         next_(kFanucFirst + static_cast<int>(n_readings)) {}

@@ -10,6 +10,7 @@
 #include "base/normal.hpp"
 #include "base/parallel.hpp"
 #include "diagnosis/scatter.hpp"
+#include "effects/learned.hpp"
 #include "studies/band_limits.hpp"
 #include "studies/prediction.hpp"
 

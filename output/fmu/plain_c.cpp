@@ -107,16 +107,20 @@ std::vector<FmuEntry> plain_c_files(const FmuOrder& order, const Provenance& mad
       "  union {{\n    double numbers[PLAIN_SCRATCH];\n    void *aligned;\n  }} scratch;\n"
       "  double outputs[PLAIN_OUTPUTS]; /* of the last row */\n}} plain_model;\n\n"
       "extern const char *const plain_output_names[PLAIN_OUTPUTS];\n\n"
-      "/* The first row. Returns 0, or what is wrong in words; the outputs then do not count. */\n"
+      "/* The first row. Returns 0, or what is wrong in words: such a row changes nothing, and outputs stay those of the "
+      "last\n"
+      " * one that was taken. */\n"
       "const char *plain_start(plain_model *m, const double *inputs);\n"
-      "/* The next row, dt_s after the one before. The drive has been what the row before said, {}.\n"
+      "/* The next row, dt_s after the last one that was taken. The drive has been what that row said, {}.\n"
       " * Returns as plain_start(). */\n"
       "const char *plain_row(plain_model *m, const double *inputs, double dt_s);\n\n#endif\n",
       model.description, words, (sizes.saved + sizes.scratch + outputs.size()) * sizeof(double) / 1024 + 1, input_lines,
       output_lines, inputs.size(), outputs.size(), sizes.saved, sizes.scratch,
-      is_observer ? fmt::format("and a sample is taken\n * every {:g} s: of rows that come sooner only the drive counts",
-                                model.observer->settings.period_s)
-                  : "the ambient\n * linear between the two");
+      is_observer
+          ? fmt::format("and a sample is taken\n * every {:g} s: of rows that come sooner only the drive counts. Before a "
+                        "row\n * that comes later its thermometers count as unchanged",
+                        model.observer->settings.period_s)
+          : "the ambient\n * linear between the two");
   std::vector<FmuEntry> files = {{"plain_model.h", header}};
   for (const SourceFile& s : fmu_source_files()) {
     if (is_plain(s.name, is_observer)) files.push_back({s.name, s.text});

@@ -398,6 +398,25 @@ std::string refusal(const std::function<void()>& what) {
   return "";
 }
 
+TEST_P(InCycle, ConstantsOfFanucHaveEightDigitsWithTheZeroBeforeThePoint) {
+  DeployedModel d = without_time(undoubted(GetParam(), 60.0));
+  for (auto& term : d.model.terms) term.coefficient = 0.123456789123 * (term.coefficient < 0.0 ? -1.0 : 1.0);
+  d.model.intercept = 0.012345678912;
+  const ControlProgram p = control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test");
+  EXPECT_THAT(p.text, HasSubstr("0.1234568"));
+  for (const std::string& line : lines_of(p.text)) {
+    if (line.starts_with("(")) continue;
+    static const std::regex number("[0-9]+\\.[0-9]+");
+    for (std::sregex_iterator n(line.begin(), line.end(), number), end; n != end; ++n)
+      EXPECT_LE(n->str().size(), 9u) << "eight digits and a point: " << line;
+  }
+  EXPECT_LT(p.error_um, 1e-3);
+  FanucControl control(p.text);
+  expect_judged(d, p, control, false);
+  d.model.intercept = 2e7;
+  EXPECT_THROW((void)control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test"), InputError);
+}
+
 TEST(ControlProgram, IsRefusedWhereTheLanguageCannotHoldTheFormula) {
   const DeployedModel d = undoubted(true, 60.0);
   for (ControlLanguage language : {ControlLanguage::kHeidenhain, ControlLanguage::kFanuc}) {

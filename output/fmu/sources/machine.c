@@ -172,12 +172,17 @@ void model_touched(void* scratch) {
   (void)scratch; /* the scratch looks at the inputs by itself */
 }
 
-const char* model_before_input(double* saved, int input, double value) {
+const char* model_check_input(int input, double value) {
   if (!(fabs(value) <= HUGE_VAL) || fabs(value) == HUGE_VAL) return "an input is no finite number";
   if (input < thermal.n_drive && !(value >= 0.0 && value <= thermal.most_drive[input] * (1.0 + 1e-12)))
     return "an input is outside its min and max, between which the model was reduced";
-  if (input == thermal.n_drive) saved[kAmbientSetAt] = saved[kTime];
   return 0;
+}
+
+const char* model_before_input(double* saved, int input, double value) {
+  const char* const wrong = model_check_input(input, value);
+  if (!wrong && input == thermal.n_drive) saved[kAmbientSetAt] = saved[kTime];
+  return wrong;
 }
 
 void model_start(double* saved, void* scratch) {
@@ -208,7 +213,10 @@ const char* model_step(double* saved, void* scratch, double h_s) {
     multiply(n, n, s->vectors, m->per_ambient, m->mode_per_ambient);
     m->in_modes = (int)(s - m->slots) + 1;
   }
-  multiply(n, n, s->vectors, z, m->modes);
+  if (m->live)
+    memcpy(m->along, z, (size_t)n * sizeof *z); /* live_advance() stops within the step where a law has no value */
+  else
+    multiply(n, n, s->vectors, z, m->modes);
   while (t_s < end_s) {
     const double knot_s = saved[kAmbientFromInput] == 0.0 ? next_ambient_knot_s(t_s) : HUGE_VAL;
     const double until_s = knot_s < end_s ? knot_s : end_s, piece_s = until_s - t_s;
@@ -216,7 +224,10 @@ const char* model_step(double* saved, void* scratch, double h_s) {
     if (m->live) {
       const live_system system = {m->drive, m->coefficient, s->lambda, s->vectors, m->mode_constant, m->mode_per_ambient};
       const char* const wrong = live_advance(m->live, &system, piece_s, ambient, slope, z, z + n);
-      if (wrong) return wrong;
+      if (wrong) {
+        memcpy(z, m->along, (size_t)n * sizeof *z);
+        return wrong;
+      }
       t_s = until_s;
       continue;
     }

@@ -28,11 +28,13 @@ int model_prepare(void* scratch);
 void model_reset(double* saved, void* scratch);
 /* What the scratch was made from may be something else now. */
 void model_touched(void* scratch);
-/* Before an input gets another value. Returns 0, or what is wrong in words. */
+/* Whether an input may have this value: 0, or what is wrong in words. */
+const char* model_check_input(int input, double value);
+/* Before an input gets another value. Returns as model_check_input(). */
 const char* model_before_input(double* saved, int input, double value);
 /* The start, from parameters and inputs at the start time. */
 void model_start(double* saved, void* scratch);
-/* To time + h, inputs held, the ambient going on at its rate. Returns 0, or what is wrong in words. */
+/* To time + h, inputs held, the ambient going on at its rate. Returns 0, or what is wrong in words; states are then as before. */
 const char* model_step(double* saved, void* scratch, double h_s);
 /* At an event. Returns 0, or what is wrong in words. */
 const char* model_event(double* saved, void* scratch);

@@ -3,14 +3,20 @@
 
 #include "model.h"
 
-static const char* take_inputs(plain_model* m, const double* inputs) {
+static const char* check_inputs(const double* inputs) {
   const char* wrong = 0;
   int k;
-  for (k = 0; k < PLAIN_INPUTS && !wrong; ++k) {
-    wrong = model_before_input(m->saved, k, inputs[k]);
-    if (!wrong) m->saved[kInputs + k] = inputs[k];
-  }
+  for (k = 0; k < PLAIN_INPUTS && !wrong; ++k) wrong = model_check_input(k, inputs[k]);
   return wrong;
+}
+
+/* Inputs that were checked. */
+static void take_inputs(plain_model* m, const double* inputs) {
+  int k;
+  for (k = 0; k < PLAIN_INPUTS; ++k) {
+    (void)model_before_input(m->saved, k, inputs[k]);
+    m->saved[kInputs + k] = inputs[k];
+  }
 }
 
 static const char* finish_row(plain_model* m) {
@@ -20,15 +26,15 @@ static const char* finish_row(plain_model* m) {
 }
 
 const char* plain_start(plain_model* m, const double* inputs) {
-  const char* wrong;
+  const char* const wrong = check_inputs(inputs);
+  if (wrong != 0) return wrong;
   if (model_n_saved() > (size_t)PLAIN_SAVED || model_scratch_size() > sizeof m->scratch ||
       model_n_outputs() != PLAIN_OUTPUTS)
     return "plain_model.h is not the one of model_data.c";
   if (model_prepare(m->scratch.numbers) != 0) return "the decomposition of a conduction matrix did not converge";
   model_reset(m->saved, m->scratch.numbers);
   if (!model_kind_is_observer) m->saved[kAmbientFromInput] = 1.0;
-  wrong = take_inputs(m, inputs);
-  if (wrong != 0) return wrong;
+  take_inputs(m, inputs);
   model_start(m->saved, m->scratch.numbers);
   return finish_row(m);
 }
@@ -37,12 +43,14 @@ const char* plain_row(plain_model* m, const double* inputs, double dt_s) {
   const double end_s = m->saved[kTime] + dt_s;
   const char* wrong;
   if (!(dt_s > 0.0 && dt_s < 1e9)) return "the time since the row before must be above 0";
+  wrong = check_inputs(inputs);
+  if (wrong != 0) return wrong;
   if (!model_kind_is_observer) /* the ambient was linear since the row before */
     m->saved[kInputs + PLAIN_INPUTS] = (inputs[PLAIN_INPUTS - 1] - m->saved[kInputs + PLAIN_INPUTS - 1]) / dt_s;
   wrong = model_step(m->saved, m->scratch.numbers, dt_s);
+  if (!model_kind_is_observer) m->saved[kInputs + PLAIN_INPUTS] = 0.0;
   if (wrong != 0) return wrong;
   m->saved[kTime] = end_s;
-  if (!model_kind_is_observer) m->saved[kInputs + PLAIN_INPUTS] = 0.0;
-  wrong = take_inputs(m, inputs);
-  return wrong != 0 ? wrong : finish_row(m);
+  take_inputs(m, inputs);
+  return finish_row(m);
 }
