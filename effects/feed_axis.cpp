@@ -125,21 +125,19 @@ void require_within_travel(const Effect& e, const Cyclogram& recorded) {
   const Cyclogram::Column* position = recorded.column(e.words.at("position"));
   const Cyclogram::Column* stroke = e.words.at("stroke").empty() ? nullptr : recorded.column(e.words.at("stroke"));
   if (!position) return;
-  const double low_mm = e["lowest"], high_mm = low_mm + e["travel"];
   for (const Cyclogram::Column* rows_of : {position, stroke}) {
     if (!rows_of) continue;
     for (std::size_t i = 0; i < rows_of->rows.time_s.size(); ++i) {
       const double time_s = rows_of->rows.time_s[i], middle_mm = position->at(time_s),
-                   half_mm = stroke ? 0.5 * stroke->at(time_s) : 0.0;
-      if (half_mm >= 0.0 && middle_mm - half_mm >= low_mm - kRounding_mm && middle_mm + half_mm <= high_mm + kRounding_mm)
-        continue;
+                   stroke_mm = stroke ? stroke->at(time_s) : 0.0;
+      if (is_within_travel(e, middle_mm, stroke_mm)) continue;
       throw InputError(
           e.where,
           fmt::format(
               "cyclogram '{}' moves the axis out of its travel of {:g} mm to {:g} mm: row {} of column '{}', at {:g} "
               "min, has {:g} mm{}; correct the row, or `lowest` and `travel`",
-              recorded.name, low_mm, high_mm, i + 1, rows_of->name, time_s / 60.0, middle_mm,
-              stroke ? fmt::format(" and a stroke of {:g} mm about it", 2.0 * half_mm) : ""));
+              recorded.name, e["lowest"], e["lowest"] + e["travel"], i + 1, rows_of->name, time_s / 60.0, middle_mm,
+              stroke ? fmt::format(" and a stroke of {:g} mm about it", stroke_mm) : ""));
     }
   }
 }
@@ -330,6 +328,16 @@ std::vector<std::pair<Body, double>> axis_error_at(const Effect& e, double posit
     if (weights_m_K[i] != 0.0) terms.emplace_back(sections[i], weights_m_K[i]);
   }
   return terms;
+}
+
+bool is_within_travel(const Effect& e, double middle_mm, double stroke_mm) {
+  const double low_mm = e["lowest"], high_mm = low_mm + e["travel"], half_mm = 0.5 * stroke_mm;
+  return half_mm >= 0.0 && middle_mm - half_mm >= low_mm - feed_axis::kRounding_mm &&
+         middle_mm + half_mm <= high_mm + feed_axis::kRounding_mm;
+}
+
+bool follows_positions(const Effect& e) {
+  return e.kind->key == "feed_axis" || e.kind->key == "linear_scale";
 }
 
 void read_out_at_nut(Effect& e, const std::string& displacement) {

@@ -24,6 +24,13 @@ namespace driftwright::effects {
 /// @throws RangeError  with the allowed range, for a place outside the travel
 [[nodiscard]] std::vector<std::pair<Body, double>> axis_error_at(const Effect& feed_axis, double position_m);
 
+/// Whether the nut stays within its travel. @param stroke_mm  about the middle, >= 0
+[[nodiscard]] bool is_within_travel(const Effect& feed_axis, double middle_mm, double stroke_mm);
+
+/// Whether all that a row says of this effect is in the row: positions that it only reads at that time, without a lag.
+/// True of `feed_axis` and `linear_scale`.
+[[nodiscard]] bool follows_positions(const Effect& effect);
+
 /// Makes the effect add the error at the nut's present place to a displacement. One displacement a screw.
 /// @throws RangeError  without a recorded position, for a second displacement
 void read_out_at_nut(Effect& feed_axis, const std::string& displacement);
