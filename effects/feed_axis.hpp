@@ -1,6 +1,8 @@
 #pragma once
 // What others need to know of the effect `feed_axis`: its sections, and the axis' error as sums over their temperatures.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +32,17 @@ namespace driftwright::effects {
 /// Whether all that a row says of this effect is in the row: positions that it only reads at that time, without a lag.
 /// True of `feed_axis` and `linear_scale`.
 [[nodiscard]] bool follows_positions(const Effect& effect);
+
+/// What an effect that follows positions adds to a displacement [m]: sums over mean temperatures, whose weights are cubics of
+/// the position within each piece.
+struct ErrorAlong {
+  std::string displacement, position;  ///< name and column
+  std::vector<Body> bodies;
+  std::vector<double> ends_mm;                             ///< of the pieces; empty: one piece, wherever the axis is
+  std::function<std::vector<double>(double)> weights_m_K;  ///< of the bodies, at a position [mm]
+};
+/// Of such an effect that reads a recorded position; none: it adds nothing. @throws RangeError  for a screw with `stretch`
+[[nodiscard]] std::optional<ErrorAlong> error_along(const Effect& effect);
 
 /// Makes the effect add the error at the nut's present place to a displacement. One displacement a screw.
 /// @throws RangeError  without a recorded position, for a second displacement
