@@ -38,7 +38,8 @@ struct Columns {
 };
 
 /// Time and drive, under the names of variables_of().
-Columns drive_columns(const output::FmuModel& model, const Cyclogram& cyclogram, const std::vector<double>& time_s) {
+Columns drive_columns(const output::FmuModel& model, const Cyclogram& recorded, const std::vector<double>& time_s) {
+  const Cyclogram cyclogram = output::with_places(recorded, model.drive);
   Columns columns;
   columns.add("time", time_s);
   const std::vector<output::FmuVariable> variables = output::variables_of(model);

@@ -8,6 +8,7 @@
 #include "base/quantity.hpp"
 #include "effects/axis.hpp"
 #include "effects/film_formulas.hpp"
+#include "effects/law_steps.hpp"
 #include "effects/recorded_column.hpp"
 
 namespace driftwright::effects {
@@ -47,6 +48,37 @@ std::function<double(const Drive&, int)> share_of(const Effect& e) {
   };
 }
 
+/// A factor times that share as a formula, share_of() at a recorded position. @param factor  in v, m/s of the axis
+std::function<std::vector<Expression::Step>()> share_steps(const Effect& e, const std::string& factor, int i) {
+  const std::string &position = e.words.at("position"), &stroke = e.words.at("stroke");
+  if (place_index(position) == kPlaces || (!stroke.empty() && place_index(stroke) == kPlaces)) return {};
+  return [rod = screw_rod(e), axis = axis_of(e), place = place_index(position),
+          way = stroke.empty() ? kPlaces : place_index(stroke), factor, i] {
+    const std::string a = written(rod.nut_length_m), b = way == kPlaces ? "0" : "0.001*s",
+                      middle = rod.sense > 0.0 ? "(" + written(rod.nearest_m - rod.lowest_m) + " + 0.001*p)"
+                                               : "(" + written(rod.nearest_m + rod.lowest_m + rod.travel_m) + " - 0.001*p)";
+    const auto within = [](const std::string& share) { return "min(max(" + share + ", 0), 1)"; };
+    const auto below = [&](double face_m) {  // share_below() of screw_rod.cpp
+      const std::string x = "(" + written(face_m) + " - " + middle + ")", box = within(x + "/" + a + " + 0.5");
+      if (way == kPlaces) return box;
+      const auto square = [&](const std::string& beyond) { return "max(" + x + beyond + ", 0)^2"; };
+      const std::string outer = "0.5*(" + a + " + " + b + ")", inner = "0.5*abs(" + a + " - " + b + ")",
+                        parts = square(" + " + outer) + " - " + square(" + " + inner) + " - " + square(" - " + inner) +
+                                " + " + square(" - " + outer);
+      return "if(" + b + " > 1e-6*" + a + ", " + within("(" + parts + ")/(2*" + a + "*" + b + ")") + ", " + box + ")";
+    };
+    const std::string share = "(" + (i + 1 == rod.n_sections ? std::string("1") : below((i + 1) * rod.section_m())) + " - " +
+                              (i == 0 ? std::string("0") : below(i * rod.section_m())) + ")";
+    std::vector<Expression::Step> steps =
+        with_constants_folded(parse_expression("(" + factor + ")*" + share, {"v", "p", "s"}).steps);
+    const std::size_t names[] = {1 + axis, kFirstPlace + place, kFirstPlace + way};  // v_x, v_y, v_z after n
+    for (Expression::Step& step : steps) {
+      if (step.op == Op::kName) step.name = names[step.name];
+    }
+    return steps;
+  };
+}
+
 void add_heat_of_nut(const Effect& e, const std::vector<Body>& sections, HeatBalance& balance) {
   const double in_screw = e["share"], conductance_W_K = e["nut_conductance"];
   const auto friction_W = [axis = axis_of(e), friction = screw_friction(e)](const Inputs& u) {
@@ -56,14 +88,16 @@ void add_heat_of_nut(const Effect& e, const std::vector<Body>& sections, HeatBal
   const auto share = share_of(e);
   for (int i = 0; i < static_cast<int>(sections.size()); ++i) {
     const Body& section = sections[static_cast<std::size_t>(i)];
-    balance.heats.push_back({e.name() + " in the screw", section, [=](const Inputs& u) {
-                               const double heat_W = in_screw * friction_W(u);
-                               return heat_W > 0.0 ? heat_W * share(u.drive, i) : 0.0;
-                             }});
-    if (conductance_W_K > 0.0)
-      balance.exchanges.push_back(make_link(
-          e.name() + " - screw", e.body(), [=](const Inputs& u) { return conductance_W_K * share(u.drive, i); },
-          section.name));
+    Law heat_W([=](const Inputs& u) {
+      const double all_W = in_screw * friction_W(u);
+      return all_W > 0.0 ? all_W * share(u.drive, i) : 0.0;
+    });
+    heat_W.steps = share_steps(e, written(in_screw * screw_friction(e).power_W(1.0)) + "*v", i);
+    balance.heats.push_back({e.name() + " in the screw", section, std::move(heat_W)});
+    if (!(conductance_W_K > 0.0)) continue;
+    Law link_W_K([=](const Inputs& u) { return conductance_W_K * share(u.drive, i); });
+    link_W_K.steps = share_steps(e, written(conductance_W_K), i);
+    balance.exchanges.push_back(make_link(e.name() + " - screw", e.body(), std::move(link_W_K), section.name));
   }
 }
 
@@ -125,21 +159,19 @@ void require_within_travel(const Effect& e, const Cyclogram& recorded) {
   const Cyclogram::Column* position = recorded.column(e.words.at("position"));
   const Cyclogram::Column* stroke = e.words.at("stroke").empty() ? nullptr : recorded.column(e.words.at("stroke"));
   if (!position) return;
-  const double low_mm = e["lowest"], high_mm = low_mm + e["travel"];
   for (const Cyclogram::Column* rows_of : {position, stroke}) {
     if (!rows_of) continue;
     for (std::size_t i = 0; i < rows_of->rows.time_s.size(); ++i) {
       const double time_s = rows_of->rows.time_s[i], middle_mm = position->at(time_s),
-                   half_mm = stroke ? 0.5 * stroke->at(time_s) : 0.0;
-      if (half_mm >= 0.0 && middle_mm - half_mm >= low_mm - kRounding_mm && middle_mm + half_mm <= high_mm + kRounding_mm)
-        continue;
+                   stroke_mm = stroke ? stroke->at(time_s) : 0.0;
+      if (is_within_travel(e, middle_mm, stroke_mm)) continue;
       throw InputError(
           e.where,
           fmt::format(
               "cyclogram '{}' moves the axis out of its travel of {:g} mm to {:g} mm: row {} of column '{}', at {:g} "
               "min, has {:g} mm{}; correct the row, or `lowest` and `travel`",
-              recorded.name, low_mm, high_mm, i + 1, rows_of->name, time_s / 60.0, middle_mm,
-              stroke ? fmt::format(" and a stroke of {:g} mm about it", 2.0 * half_mm) : ""));
+              recorded.name, e["lowest"], e["lowest"] + e["travel"], i + 1, rows_of->name, time_s / 60.0, middle_mm,
+              stroke ? fmt::format(" and a stroke of {:g} mm about it", stroke_mm) : ""));
     }
   }
 }
@@ -330,6 +362,45 @@ std::vector<std::pair<Body, double>> axis_error_at(const Effect& e, double posit
     if (weights_m_K[i] != 0.0) terms.emplace_back(sections[i], weights_m_K[i]);
   }
   return terms;
+}
+
+bool is_within_travel(const Effect& e, double middle_mm, double stroke_mm) {
+  const double low_mm = e["lowest"], high_mm = low_mm + e["travel"], half_mm = 0.5 * stroke_mm;
+  return half_mm >= 0.0 && middle_mm - half_mm >= low_mm - feed_axis::kRounding_mm &&
+         middle_mm + half_mm <= high_mm + feed_axis::kRounding_mm;
+}
+
+bool follows_positions(const Effect& e) {
+  return e.kind->key == "feed_axis" || e.kind->key == "linear_scale";
+}
+
+std::optional<ErrorAlong> error_along(const Effect& e) {
+  if (!follows_positions(e)) return std::nullopt;
+  if (e.kind->key == "linear_scale") {
+    const std::string& position = e.words.at("position");
+    const auto weights = [per_mm = 1e-3 * e["expansion"], fixed_mm = e["fixed_at"]](double mm) {
+      return std::vector<double>{per_mm * (mm - fixed_mm)};
+    };
+    if (!position.empty()) return ErrorAlong{e.place, position, {e.references.at("body")}, {}, weights};
+    return ErrorAlong{
+        e.place, "", {e.references.at("body")}, {}, [weights, at_mm = e["at"]](double) { return weights(at_mm); }};
+  }
+  const auto displacement = e.words.find(feed_axis::kAtNut);
+  if (displacement == e.words.end()) return std::nullopt;
+  if (e.has("stretch"))
+    throw RangeError(fmt::format("screw '{}' has a `stretch`, and grows freely once it is used up", e.words.at("screw")));
+  const ScrewRod rod = screw_rod(e);
+  const double low_mm = e["lowest"], high_mm = low_mm + e["travel"];
+  std::vector<double> ends_mm = {low_mm, high_mm};
+  for (int i = 1; i < rod.n_sections; ++i) {
+    const double from_near_mm = 1e3 * (i * rod.section_m() - rod.nearest_m),
+                 face_mm = rod.sense > 0.0 ? low_mm + from_near_mm : high_mm - from_near_mm;
+    if (face_mm > low_mm + feed_axis::kRounding_mm && face_mm < high_mm - feed_axis::kRounding_mm)
+      ends_mm.push_back(face_mm);
+  }
+  std::sort(ends_mm.begin(), ends_mm.end());
+  return ErrorAlong{displacement->second, e.words.at("position"), screw_sections(e), std::move(ends_mm),
+                    [rod](double mm) { return axis_error_m_K(rod, 1e-3 * mm); }};
 }
 
 void read_out_at_nut(Effect& e, const std::string& displacement) {

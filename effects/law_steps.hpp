@@ -2,6 +2,7 @@
 // A law of a heat balance as steps of a formula, beside the function that the program calls: for units, which hold laws
 // as data.
 
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace driftwright::effects {
 /// law's probes T0, T1, ... [K].
 [[nodiscard]] std::vector<std::string> law_names(std::size_t n_probes);
 inline constexpr std::size_t kDriveNames = 5;
+
+/// Recorded columns of places [mm]: those that cyclograms may have. Names of a law from kFirstPlace on; absent: 0.
+inline constexpr const char* kPlaceNames[] = {"position_x", "position_y", "position_z", "stroke_x", "stroke_y", "stroke_z"};
+inline constexpr std::size_t kPlaces = std::size(kPlaceNames), kFirstPlace = 1000;
+/// Index of the place that a column is, with or without its unit; kPlaces for another one.
+[[nodiscard]] std::size_t place_index(const std::string& column);
+[[nodiscard]] double place_mm(const Drive& drive, std::size_t place);
+void set_place(Drive& drive, std::size_t place, double value_mm);
 
 /// A number as a formula has it, exact, and with brackets if it is negative.
 [[nodiscard]] std::string written(double number);

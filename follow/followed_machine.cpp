@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/quantity.hpp"
+#include "effects/feed_axis.hpp"
 #include "effects/learned.hpp"
 #include "effects/recorded_column.hpp"
 #include "follow/state_json.hpp"
@@ -29,10 +30,11 @@ void require_streamable(const MachineModel& machine) {
           e.where, fmt::format("{} {}; a stream does not say enough about it, and `follow` requires a machine without it",
                                e.name(), why));
     };
-    if (effects::changes_drive(e))
+    const bool is_of_positions = effects::follows_positions(e);
+    if (effects::changes_drive(e) && !is_of_positions)
       refuse("changes what the record of the drive or of the ambient says, by what comes before or after a row");
     const bool is_learned = e.kind->key == "learned";
-    if (effects::changes_readings(e) && e.place_kind != effects::Place::kSensor && !is_learned)
+    if (effects::changes_readings(e) && e.place_kind != effects::Place::kSensor && !is_learned && !is_of_positions)
       refuse("changes what instruments say of displacements, by all that came before");
     if (is_learned && e.place_kind != effects::Place::kSensor && e.words.at("follows") == "column" &&
         !effects::is_drive_channel(e.words.at("column")))
@@ -41,6 +43,29 @@ void require_streamable(const MachineModel& machine) {
     if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));
     if (e.from_s > 0.0 || e.until_s < effects::kNever_s) refuse("holds for a part of a run");
   }
+}
+
+/// The columns of positions that effects follow.
+std::vector<FollowedColumn> columns_of_positions(const MachineModel& machine) {
+  std::vector<FollowedColumn> columns;
+  for (const effects::Effect& e : machine.effects) {
+    if (!effects::follows_positions(e)) continue;
+    for (const effects::Mention& m : e.kind->mentions) {
+      if (m.of != effects::Mention::Of::kColumn) continue;
+      const std::string &word = e.words.at(m.name), ending = "_" + m.unit;
+      const auto is_it = [&](const FollowedColumn& c) { return c.signal == word; };
+      if (word.empty() || std::any_of(columns.begin(), columns.end(), is_it)) continue;
+      columns.push_back({word, word.ends_with(ending) ? word.substr(0, word.size() - ending.size()) : word, m.unit});
+    }
+  }
+  return columns;
+}
+
+/// What effects add to displacements by positions.
+effects::ReadingChain growth_by_positions(const MachineModel& machine) {
+  std::vector<effects::Effect> list;
+  std::copy_if(machine.effects.begin(), machine.effects.end(), std::back_inserter(list), effects::follows_positions);
+  return effects::reading_chain(list, "");
 }
 
 /// `speed` of `limits`, else a fifth above all that the scenario says something of; beyond, laws may have no value.
@@ -57,7 +82,9 @@ class FollowedMachine final : public Followed {
       : path_(scenario.path),
         machine_(*scenario.machine),
         most_speed_rpm_(most_speed_rpm(scenario)),
-        tolerances_(scenario.solver.transient) {
+        tolerances_(scenario.solver.transient),
+        columns_(columns_of_positions(machine_)),
+        by_positions_(growth_by_positions(machine_)) {
     require_streamable(machine_);
     scenarios::Scenario asked = scenario;
     asked.solver.model = studies::predicting_model(scenario);
@@ -90,19 +117,32 @@ class FollowedMachine final : public Followed {
   }
 
   [[nodiscard]] std::vector<WantedChannel> wanted() const override {
-    return {{"speed", "rpm", path_}, {ambient_, "degC", path_}};
+    std::vector<WantedChannel> channels = {{"speed", "rpm", path_}, {ambient_, "degC", path_}};
+    for (const effects::Effect& e : machine_.effects) {
+      if (e.kind->key == "feed_axis") channels.push_back({"feed_" + e.words.at("axis"), "mm_min", path_});
+    }
+    for (const FollowedColumn& c : columns_) channels.push_back({c.name, c.unit, path_});
+    return channels;
   }
   void begin(const std::vector<Channel>& channels) override {
     for (std::size_t k = 0; k < channels.size(); ++k) {
       if (channels[k].name == "speed" && channels[k].unit == "rpm") speed_ = k;
     }
-    run_.emplace(channels, ambient_, machine_.reference_K, true);
+    for (const FollowedColumn& c : columns_) {
+      const auto is_it = [&](const Channel& channel) { return channel.name == c.name && channel.unit == c.unit; };
+      column_.push_back(static_cast<std::size_t>(std::find_if(channels.begin(), channels.end(), is_it) - channels.begin()));
+    }
+    run_.emplace(channels, ambient_, machine_.reference_K, true, columns_);
   }
 
   bool take(double run_s, const std::vector<double>& as_read, double step_s) override {
     std::vector<double> values = as_read;
-    is_too_fast_ = values[speed_] > most_speed_rpm_;
-    if (is_too_fast_) values[speed_] = std::numeric_limits<double>::quiet_NaN();  // the model goes on with the last one
+    beyond_.clear();  // what is beyond the machine: the model goes on with the last value
+    if (values[speed_] > most_speed_rpm_) {
+      values[speed_] = std::numeric_limits<double>::quiet_NaN();
+      beyond_.emplace_back("speed");
+    }
+    leave_out_beyond_travel(values);
     const double ambient_before_K = run_->ambient_K();
     const bool is_first = run_->n_rows() == 0;
     if (!run_->add(run_s, values)) return false;
@@ -116,7 +156,7 @@ class FollowedMachine final : public Followed {
     }
     show_predicted();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-      if (is_too_fast_) {
+      if (!beyond_.empty()) {
         stages_[a].wait(step_s);  // the correction is held, and fades if that lasts
       } else {
         stages_[a].take(axes_[a].predicted_um, step_s, run_->drive_age_s());
@@ -141,9 +181,10 @@ class FollowedMachine final : public Followed {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
       if (has_begun()) axes[a].doubted = run_->older_than(stages_[a].most_age_s());
-      if (has_begun() && is_too_fast_ &&
-          std::find(axes[a].doubted.begin(), axes[a].doubted.end(), "speed") == axes[a].doubted.end())
-        axes[a].doubted.emplace_back("speed");
+      for (const std::string& name : beyond_) {
+        std::vector<std::string>& doubted = axes[a].doubted;
+        if (has_begun() && std::find(doubted.begin(), doubted.end(), name) == doubted.end()) doubted.push_back(name);
+      }
     }
     return axes;
   }
@@ -191,6 +232,29 @@ class FollowedMachine final : public Followed {
       axes_[a].predicted_um = 1e6 * learned_[a].with_learned(outputs[output_[a]], run_->drive());
   }
 
+  /// Positions of a row that would move a nut out of its travel count as missing.
+  void leave_out_beyond_travel(std::vector<double>& values) {
+    const auto index_of = [&](const std::string& word) {
+      const auto is_it = [&](const FollowedColumn& c) { return c.signal == word; };
+      return static_cast<std::size_t>(std::find_if(columns_.begin(), columns_.end(), is_it) - columns_.begin());
+    };
+    const std::vector<double> row = values;
+    const auto value = [&](std::size_t column) {
+      const double now = row[column_[column]];
+      return std::isnan(now) ? run_->drive().signals[column].value : now;
+    };
+    for (const effects::Effect& e : machine_.effects) {
+      if (e.kind->key != "feed_axis" || e.words.at("position").empty()) continue;
+      const std::size_t position = index_of(e.words.at("position"));
+      const bool has_stroke = !e.words.at("stroke").empty();
+      const std::size_t stroke = has_stroke ? index_of(e.words.at("stroke")) : position;
+      const double middle_mm = value(position), stroke_mm = has_stroke ? value(stroke) : 0.0;
+      if (std::isnan(middle_mm) || std::isnan(stroke_mm) || effects::is_within_travel(e, middle_mm, stroke_mm)) continue;
+      values[column_[position]] = values[column_[stroke]] = std::numeric_limits<double>::quiet_NaN();
+      beyond_.push_back(columns_[position].name);
+    }
+  }
+
   /// Starts at the ambient of the first row if the scenario's start is the ambient or in balance with it.
   void begin_state() {
     const double warmer_K = scenarios::warmer_start_K(machine_, TimeSeries{{0.0}, {run_->ambient_K()}});
@@ -222,17 +286,28 @@ class FollowedMachine final : public Followed {
     }
   }
 
+  /// The outputs of the model, with what positions add in the last row.
   [[nodiscard]] Eigen::VectorXd observed() const {
-    return model_->reduced() ? model_->reduced()->system.observe(state_, run_->ambient_K())
-                             : model_->full()->system.observe(state_, run_->ambient_K());
+    const double ambient_K = run_->ambient_K();
+    Eigen::VectorXd outputs = model_->reduced() ? model_->reduced()->system.observe(state_, ambient_K)
+                                                : model_->full()->system.observe(state_, ambient_K);
+    if (by_positions_.empty()) return outputs;
+    Cyclogram row{.name = "stream", .sections = {}};
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      row.columns.push_back({columns_[k].signal, columns_[k].unit, {{0.0}, {run_->drive().signals[k].value}}});
+    const solver::Outputs& of = model_->outputs();
+    return by_positions_.apply(of.name, of.unit, {0.0}, row, {{0.0}, {ambient_K}}, outputs);
   }
 
   std::string path_, ambient_;
   MachineModel machine_;
   double most_speed_rpm_;
-  bool is_too_fast_ = false;  // in the last row
-  std::size_t speed_ = 0;     // channel
+  std::vector<std::string> beyond_;  // channels of the last row with a value that the machine cannot have
+  std::size_t speed_ = 0;            // channel
   solver::TransientOptions tolerances_;
+  std::vector<FollowedColumn> columns_;
+  std::vector<std::size_t> column_;  // channel of each
+  effects::ReadingChain by_positions_;
   std::optional<scenarios::Model> model_;
   std::optional<solver::Propagator> exact_;  // for a linear reduced model
   std::optional<LiveRows> run_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "base/quantity.hpp"
 
 namespace driftwright::follow {
@@ -14,7 +15,8 @@ constexpr std::size_t kMostKept = 8 * kRowsBack;
 
 }  // namespace
 
-LiveRows::LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive)
+LiveRows::LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive,
+                   const std::vector<FollowedColumn>& columns)
     : reference_C_(reference_K - kZeroCelsius_K),
       ambient_K_(ambient.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN()),
       wants_drive_(wants_drive) {
@@ -30,6 +32,10 @@ LiveRows::LiveRows(const std::vector<Channel>& channels, const std::string& ambi
   cutting_ = find("cutting_power", "W");
   feed_ = {find("feed_x", "mm_min"), find("feed_y", "mm_min"), find("feed_z", "mm_min")};
   ambient_ = find(ambient, "degC");
+  for (const FollowedColumn& c : columns) {
+    followed_.push_back({find(c.name, c.unit.c_str()), 0.0});
+    drive_.signals.push_back({c.signal, std::numeric_limits<double>::quiet_NaN()});
+  }
 }
 
 void LiveRows::hear(double run_s, const std::vector<double>& values) {
@@ -53,6 +59,12 @@ void LiveRows::hear(double run_s, const std::vector<double>& values) {
     if (const double feed = value(feed_[a]); !std::isnan(feed)) drive_.feed_m_s[a] = std::abs(feed) / 60e3;
   }
   if (const double power_W = value(cutting_); !std::isnan(power_W)) drive_.cutting_power_W = power_W;
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    const double now = value(followed_[k].channel);
+    if (std::isnan(now)) continue;
+    drive_.signals[k].value = now;
+    followed_[k].at_s = run_s;
+  }
 }
 
 /// A section of the drive before the last values, up to a time.
@@ -73,6 +85,9 @@ bool LiveRows::add(double run_s, const std::vector<double>& values) {
   Record& readings = run_.readings;
   if (readings.time_s.empty()) {
     if (std::isnan(ambient_K_) || (wants_drive_ && !has_drive_)) return false;
+    for (const Signal& s : drive_.signals) {
+      if (std::isnan(s.value)) return false;
+    }
     before_ = drive_;
     start_s_ = run_s;
   }
@@ -91,13 +106,19 @@ bool LiveRows::add(double run_s, const std::vector<double>& values) {
 }
 
 double LiveRows::drive_age_s() const {
-  return std::max(wants_drive_ ? now_s_ - speed_at_s_ : 0.0, ambient_ == kNone ? 0.0 : now_s_ - ambient_at_s_);
+  double age_s = std::max(wants_drive_ ? now_s_ - speed_at_s_ : 0.0, ambient_ == kNone ? 0.0 : now_s_ - ambient_at_s_);
+  for (const ColumnAge& f : followed_) age_s = std::max(age_s, now_s_ - f.at_s);
+  return age_s;
 }
 
 std::vector<std::string> LiveRows::older_than(double age_s) const {
   std::vector<std::string> names;
   if (wants_drive_ && now_s_ - speed_at_s_ > age_s) names.emplace_back("speed");
   if (ambient_ != kNone && now_s_ - ambient_at_s_ > age_s) names.push_back(run_.readings.channels[ambient_].name);
+  for (const ColumnAge& f : followed_) {
+    const std::string& name = run_.readings.channels[f.channel].name;
+    if (now_s_ - f.at_s > age_s && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
   return names;
 }
 
@@ -131,17 +152,30 @@ LiveRows::State LiveRows::state() const {
           .values = {},
           .drive = drive_};
   for (const Channel& c : run_.readings.channels) s.values.push_back(c.values.back());
+  s.drive.signals.clear();
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    s.followed.push_back(drive_.signals[k].value);
+    s.followed_age_s.push_back(now_s_ - followed_[k].at_s);
+  }
   return s;
 }
 
 void LiveRows::recall(const State& s) {
+  if (s.followed.size() != followed_.size() || s.followed_age_s.size() != followed_.size())
+    throw InputError("the state is of a machine that follows other recorded columns");
   start_s_ = s.start_s;
   now_s_ = s.start_s + s.time_s;
   speed_at_s_ = now_s_ - s.speed_age_s;
   ambient_at_s_ = now_s_ - s.ambient_age_s;
   ambient_K_ = s.ambient_K;
   top_rpm_ = s.top_rpm;
+  std::vector<Signal> signals = std::move(drive_.signals);
   drive_ = s.drive;
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    signals[k].value = s.followed[k];
+    followed_[k].at_s = now_s_ - s.followed_age_s[k];
+  }
+  drive_.signals = std::move(signals);
   has_drive_ = true;
   run_.n_forgotten = s.n_rows - 1;
   run_.cyclogram_from_s = s.time_s;

@@ -8,16 +8,24 @@
 
 namespace driftwright::follow {
 
+/// A recorded column that a machine follows at the value of the last row (Drive::signals).
+struct FollowedColumn {
+  std::string signal;  ///< as the effect calls it
+  std::string name, unit;
+};
+
 class LiveRows {
  public:
   /// @param channels     of the stream
   /// @param ambient      channel in degC that reads the ambient; "": not needed
   /// @param reference_K  reference temperature that the ambient is counted from
   /// @param wants_drive  whether the rows must contain the spindle speed
-  LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive);
+  /// @param columns      that must be among the channels
+  LiveRows(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive,
+           const std::vector<FollowedColumn>& columns = {});
 
   /// Takes a row; a missing drive or ambient keeps its last value.
-  /// @return false if drive or ambient is still unknown, so that the run has not begun
+  /// @return false if drive, ambient or a followed column is still unknown, so that the run has not begun
   bool add(double run_s, const std::vector<double>& values);
   /// Takes speed, feeds and cutting power alone, of a row that comes sooner than the predictor wants one.
   void between(double run_s, const std::vector<double>& values);
@@ -28,7 +36,7 @@ class LiveRows {
   [[nodiscard]] const MachineRun& run() const { return run_; }
   /// Rows since the start of the run, including those no longer kept.
   [[nodiscard]] std::size_t n_rows() const { return run_.n_forgotten + run_.readings.n_samples(); }
-  /// Age [s], at the last row, of the older of the spindle speed and the ambient, as far as they are needed.
+  /// Age [s], at the last row, of the oldest of spindle speed, ambient and followed columns, as far as they are needed.
   [[nodiscard]] double drive_age_s() const;
   /// The names of those that are older than `age_s`.
   [[nodiscard]] std::vector<std::string> older_than(double age_s) const;
@@ -44,9 +52,11 @@ class LiveRows {
     double time_s = 0.0, ambient_K = 0.0, top_rpm = 0.0;
     double speed_age_s = 0.0, ambient_age_s = 0.0;
     std::vector<double> values;
-    Drive drive;  ///< from the last row on
+    Drive drive;                                             ///< from the last row on; its signals are in `followed`
+    std::vector<double> followed = {}, followed_age_s = {};  ///< value and age of each followed column
   };
   [[nodiscard]] State state() const;
+  /// @throws InputError  for a state with another number of followed columns
   void recall(const State& state);
 
  private:
@@ -63,6 +73,11 @@ class LiveRows {
   bool wants_drive_, has_drive_ = false;
   std::size_t speed_, cutting_, ambient_;  ///< indices of channels; kNone if missing
   std::array<std::size_t, 3> feed_{};
+  struct ColumnAge {
+    std::size_t channel;
+    double at_s;  ///< of its last value, by the guard's time
+  };
+  std::vector<ColumnAge> followed_;  // as drive_.signals
   Drive drive_, before_;
 };
 

@@ -28,17 +28,21 @@ std::vector<double> numbers_of(const Json& j, const char* key) {
 }
 
 Json state_json(const LiveRows::State& s) {
-  return {{"start_s", s.start_s},
-          {"rows", s.n_rows},
-          {"time_s", s.time_s},
-          {"hall_K", s.ambient_K},
-          {"top_rpm", s.top_rpm},
-          {"speed_age_s", s.speed_age_s},
-          {"ambient_age_s", s.ambient_age_s},
-          {"values", numbers_json(s.values)},
-          {"speed_rpm", s.drive.speed_rpm},
-          {"feed_m_s", s.drive.feed_m_s},
-          {"cutting_power_W", s.drive.cutting_power_W}};
+  Json j = {{"start_s", s.start_s},
+            {"rows", s.n_rows},
+            {"time_s", s.time_s},
+            {"hall_K", s.ambient_K},
+            {"top_rpm", s.top_rpm},
+            {"speed_age_s", s.speed_age_s},
+            {"ambient_age_s", s.ambient_age_s},
+            {"values", numbers_json(s.values)},
+            {"speed_rpm", s.drive.speed_rpm},
+            {"feed_m_s", s.drive.feed_m_s},
+            {"cutting_power_W", s.drive.cutting_power_W}};
+  if (s.followed.empty()) return j;
+  j["followed"] = numbers_json(s.followed);
+  j["followed_age_s"] = numbers_json(s.followed_age_s);
+  return j;
 }
 
 LiveRows::State live_run_of(const Json& j) {
@@ -52,7 +56,9 @@ LiveRows::State live_run_of(const Json& j) {
           .values = numbers_of(j, "values"),
           .drive = {.speed_rpm = finite(j, "speed_rpm"),
                     .feed_m_s = value<std::array<double, 3>>(j, "feed_m_s"),
-                    .cutting_power_W = finite(j, "cutting_power_W")}};
+                    .cutting_power_W = finite(j, "cutting_power_W")},
+          .followed = j.contains("followed") ? numbers_of(j, "followed") : std::vector<double>{},
+          .followed_age_s = j.contains("followed") ? numbers_of(j, "followed_age_s") : std::vector<double>{}};
 }
 
 Json state_json(const OutputStage::State& s) {

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "effects/law_steps.hpp"
+
 namespace driftwright::output {
 namespace {
 
@@ -82,7 +84,7 @@ double value_of(DriveVariable variable, const Drive& drive) {
     case DriveVariable::kCuttingPower:
       return drive.cutting_power_W;
   }
-  return 0.0;
+  return effects::place_mm(drive, place_of(variable));
 }
 
 void set_value(DriveVariable variable, Drive& drive, double value) {
@@ -103,6 +105,7 @@ void set_value(DriveVariable variable, Drive& drive, double value) {
       drive.cutting_power_W = value;
       break;
   }
+  if (is_place(variable)) effects::set_place(drive, place_of(variable), value);
 }
 
 std::vector<DriveRange> largest_drives(const std::vector<Cyclogram>& cyclograms) {
@@ -134,7 +137,9 @@ double DriveLaw::at(const std::vector<double>& x) const {
 
 std::optional<DriveLaw> tabulated(const std::function<double(const Drive&)>& law, const std::vector<DriveRange>& ranges) {
   DriveLaw table{.at_rest = law({})};
+  const bool has_places = std::any_of(ranges.begin(), ranges.end(), [](const auto& r) { return is_place(r.variable); });
   for (std::size_t v = 0; v < ranges.size(); ++v) {
+    if (is_place(ranges[v].variable)) continue;  // the check below finds whether it acts
     const std::function<double(double)> beyond_rest = [&](double log_x) {
       Drive drive;
       set_value(ranges[v].variable, drive, std::exp(log_x));
@@ -151,11 +156,11 @@ std::optional<DriveLaw> tabulated(const std::function<double(const Drive&)>& law
   }
   std::mt19937 random(1);  // drives in which no variable is 0
   std::uniform_real_distribution<double> share(0.05, 1.0);
-  for (int k = 0; k < kChecks && ranges.size() > 1; ++k) {
+  for (int k = 0; k < kChecks && (ranges.size() > 1 || has_places); ++k) {
     Drive drive;
     std::vector<double> x;
     for (const DriveRange& r : ranges) {
-      x.push_back(share(random) * r.most);
+      x.push_back(r.least + share(random) * (r.most - r.least));
       set_value(r.variable, drive, x.back());
     }
     const double value = law(drive);

@@ -8,8 +8,10 @@
 
 #include "base/quantity.hpp"
 #include "base/shown_units.hpp"
+#include "effects/feed_axis.hpp"
 #include "effects/law_steps.hpp"
 #include "effects/reading_chain.hpp"
+#include "effects/recorded_column.hpp"
 #include "output/fmu/sources/formula.h"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -23,7 +25,7 @@ std::vector<std::vector<double>> drives_of(const Scenario& scenario, const std::
   constexpr std::size_t kMost = 24;  // each needs a decomposition; others are decomposed when they occur
   std::vector<std::vector<double>> drives;
   for (const Cyclogram& c : scenario.cyclograms) {
-    for (const Cyclogram::Section& s : c.sections) {
+    for (const Cyclogram::Section& s : with_places(c, ranges).sections) {
       std::vector<double> x;
       for (const DriveRange& r : ranges) x.push_back(value_of(r.variable, s.drive));
       if (drives.size() < kMost && std::find(drives.begin(), drives.end(), x) == drives.end())
@@ -31,6 +33,35 @@ std::vector<std::vector<double>> drives_of(const Scenario& scenario, const std::
     }
   }
   return drives;
+}
+
+/// The drives of the cyclograms, and the places that effects follow: a feed axis' travel, else what the cyclograms reach.
+std::vector<DriveRange> inputs_of(const Scenario& scenario) {
+  std::vector<DriveRange> ranges = largest_drives(scenario.cyclograms);
+  for (std::size_t place = 0; place < effects::kPlaces; ++place) {
+    std::optional<DriveRange> range;
+    const auto reach = [&](double mm) {
+      if (!range) range = {static_cast<DriveVariable>(kDriveVariables + place), mm, mm};
+      range->least = std::min(range->least, mm);
+      range->most = std::max(range->most, mm);
+    };
+    bool is_followed = false;
+    for (const effects::Effect& e : scenario.machine->effects) {
+      if (!effects::follows_positions(e)) continue;
+      is_followed = is_followed || effects::place_index(e.words.at("position")) == place;
+      if (e.kind->key != "feed_axis") continue;
+      if (effects::place_index(e.words.at("position")) == place) reach(e["lowest"]), reach(e["lowest"] + e["travel"]);
+      if (effects::place_index(e.words.at("stroke")) == place) reach(0.0), reach(e["travel"]);
+    }
+    for (const Cyclogram& c : scenario.cyclograms) {
+      const Cyclogram::Column* column = is_followed && !range ? c.column(effects::kPlaceNames[place]) : nullptr;
+      if (!column) continue;
+      const auto [low, high] = std::minmax_element(column->rows.value.begin(), column->rows.value.end());
+      reach(*low), reach(*high);
+    }
+    if (range) ranges.push_back(*range);
+  }
+  return ranges;
 }
 
 static_assert(static_cast<int>(effects::Op::kName) == kFormulaName && static_cast<int>(effects::Op::kMax) == kFormulaMax &&
@@ -54,14 +85,6 @@ constexpr FormulaDrive kFormulaDrive[effects::kDriveNames] = {{DriveVariable::kS
                    fmt::format("'{}' {}; no FMU is made of such a machine yet (docs/how-to/fmu.md)", name, why));
 }
 
-DriveLaw table_of(const Scenario& scenario, const solver::BoundLaw& law, const std::string& name,
-                  const std::vector<DriveRange>& ranges) {
-  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
-  std::optional<DriveLaw> table = tabulated([&](const Drive& drive) { return law({.drive = drive}); }, ranges);
-  if (!table) refuse_law(scenario, name, "depends on two variables of the drive together, or jumps about");
-  return *table;
-}
-
 /// Checks that the formula of a law is the law: at drives and temperatures at random, and at rest.
 void require_same(const solver::BoundLaw& law, const std::string& name, const std::vector<effects::Expression::Step>& steps,
                   const std::vector<DriveRange>& ranges) {
@@ -71,7 +94,8 @@ void require_same(const solver::BoundLaw& law, const std::string& name, const st
   std::uniform_real_distribution<double> share(0.05, 1.0), temperature_K(275.0, 335.0);
   for (int trial = 0; trial < kTrials; ++trial) {
     effects::Inputs at;
-    for (const DriveRange& r : ranges) set_value(r.variable, at.drive, trial == 0 ? 0.0 : share(random) * r.most);
+    for (const DriveRange& r : ranges)
+      set_value(r.variable, at.drive, trial == 0 ? r.least : r.least + share(random) * (r.most - r.least));
     for (std::size_t p = 0; p < law.probes.size(); ++p) at.probe_K.push_back(temperature_K(random));
     double value = 0.0;
     try {
@@ -85,25 +109,25 @@ void require_same(const solver::BoundLaw& law, const std::string& name, const st
   }
 }
 
-FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& system, const solver::BoundLaw& law,
-                       const std::string& name, const std::vector<DriveRange>& ranges) {
-  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
-  if (!law.law.steps)
-    refuse_law(scenario, name, "follows temperatures of the machine, and has no formula that a unit can hold");
+/// A law's formula in the variables of a unit, then its probes.
+std::vector<double> formula_of(const solver::BoundLaw& law, const std::string& name, const std::vector<DriveRange>& ranges) {
   const std::vector<effects::Expression::Step> steps = law.law.steps();
   require_same(law, name, steps, ranges);
-  FmuLiveLaw live;
+  std::vector<double> pairs;
   const auto add = [&](effects::Op op, double number) {
-    live.steps.push_back(static_cast<double>(static_cast<int>(op)));
-    live.steps.push_back(number);
+    pairs.push_back(static_cast<double>(static_cast<int>(op)));
+    pairs.push_back(number);
   };
   for (const effects::Expression::Step& s : steps) {
     if (s.op != effects::Op::kName) {
       add(s.op, s.number);
-    } else if (s.name >= effects::kDriveNames) {
+    } else if (s.name >= effects::kDriveNames && s.name < effects::kFirstPlace) {
       add(s.op, static_cast<double>(ranges.size() + s.name - effects::kDriveNames));
     } else {
-      const FormulaDrive& drive = kFormulaDrive[s.name];
+      const FormulaDrive drive =
+          s.name < effects::kDriveNames
+              ? kFormulaDrive[s.name]
+              : FormulaDrive{static_cast<DriveVariable>(kDriveVariables + s.name - effects::kFirstPlace), 1.0};
       const auto at =
           std::find_if(ranges.begin(), ranges.end(), [&](const auto& r) { return r.variable == drive.variable; });
       if (at == ranges.end()) {
@@ -116,6 +140,15 @@ FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& sy
       add(effects::Op::kMultiply, 0.0);
     }
   }
+  return pairs;
+}
+
+FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& system, const solver::BoundLaw& law,
+                       const std::string& name, const std::vector<DriveRange>& ranges) {
+  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
+  if (!law.law.steps)
+    refuse_law(scenario, name, "follows temperatures of the machine, and has no formula that a unit can hold");
+  FmuLiveLaw live{.steps = formula_of(law, name, ranges)};
   live.weights.resize(system.size(), static_cast<Eigen::Index>(law.probes.size()));
   for (std::size_t p = 0; p < law.probes.size(); ++p) {
     const solver::Probe& probe = system.probes[static_cast<std::size_t>(law.probes[p])];
@@ -124,6 +157,69 @@ FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& sy
     live.offset_K.push_back(system.reference_K + probe.offset_K);
   }
   return live;
+}
+
+/// A law of the drive as a table, or as a formula where variables act together.
+void set_law_of_drive(const Scenario& scenario, const solver::BoundLaw& law, const std::string& name,
+                      const std::vector<DriveRange>& ranges, bool takes_formulas, DriveLaw& table, FmuFormula& formula) {
+  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
+  if (auto found = tabulated([&](const Drive& drive) { return law({.drive = drive}); }, ranges)) {
+    table = *std::move(found);
+  } else if (takes_formulas && law.law.steps) {
+    formula = formula_of(law, name, ranges);
+  } else {
+    refuse_law(scenario, name, "depends on two variables of the drive together, or jumps about, and has no formula");
+  }
+}
+
+/// What positions add to outputs. @param system  whose outputs contain mean temperatures  @param kept  those of the unit
+std::vector<FmuAlong> along_of(const MachineModel& machine, const solver::Outputs& outputs,
+                               const std::vector<FmuOutput>& kept, const std::vector<DriveRange>& ranges) {
+  std::vector<FmuAlong> list;
+  const Eigen::Index n = outputs.state.rows();
+  for (const effects::Effect& e : machine.effects) {
+    const std::optional<effects::ErrorAlong> error = effects::error_along(e);
+    if (!error) continue;
+    Eigen::MatrixXd means = Eigen::MatrixXd::Zero(n + 1, static_cast<Eigen::Index>(error->bodies.size()));
+    for (std::size_t b = 0; b < error->bodies.size(); ++b) {
+      auto mean = means.col(static_cast<Eigen::Index>(b));
+      if (error->bodies[b] == effects::ambient_node()) {
+        mean[n] = 1.0;
+        continue;
+      }
+      const auto name = std::find(outputs.name.begin(), outputs.name.end(), effects::mean_output(error->bodies[b].name));
+      if (name == outputs.name.end()) throw std::logic_error("a mean temperature is no output of the model");
+      const Eigen::Index at = name - outputs.name.begin();
+      mean << outputs.state.col(at), outputs.ambient[at];
+    }
+    const auto weights = [&](double mm) {
+      const std::vector<double> w = error->weights_m_K(mm);
+      return Eigen::VectorXd(means * Eigen::Map<const Eigen::VectorXd>(w.data(), static_cast<Eigen::Index>(w.size())));
+    };
+    const auto output =
+        std::find_if(kept.begin(), kept.end(), [&](const FmuOutput& o) { return o.name == error->displacement; });
+    const auto variable = std::find_if(ranges.begin(), ranges.end(), [&](const DriveRange& r) {
+      return is_place(r.variable) && place_of(r.variable) == effects::place_index(error->position);
+    });
+    FmuAlong along{.output = static_cast<int>(output - kept.begin()), .ends_mm = error->ends_mm};
+    if (!error->position.empty()) along.variable = static_cast<int>(variable - ranges.begin());
+    if (along.ends_mm.empty() && error->position.empty()) along.ends_mm = {0.0, 1.0};  // the same wherever
+    if (along.ends_mm.empty()) along.ends_mm = {variable->least, std::max(variable->most, variable->least + 1.0)};
+    for (std::size_t k = 0; k + 1 < along.ends_mm.size(); ++k) {
+      const double begin_mm = along.ends_mm[k], third_mm = (along.ends_mm[k + 1] - begin_mm) / 3.0;
+      Eigen::MatrixXd at(n + 1, 4);  // at thirds of the piece, then their differences: Newton's cubic
+      for (int j = 0; j < 4; ++j) at.col(j) = weights(begin_mm + j * third_mm);
+      for (int order = 1; order < 4; ++order) {
+        for (int j = 3; j >= order; --j) at.col(j) = (at.col(j) - at.col(j - 1)).eval() / (order * third_mm);
+      }
+      const double h = third_mm;
+      const Eigen::VectorXd power[] = {at.col(0), at.col(1) - h * at.col(2) + 2.0 * h * h * at.col(3),
+                                       at.col(2) - 3.0 * h * at.col(3), at.col(3)};
+      for (const Eigen::VectorXd& row : power) along.cubics.insert(along.cubics.end(), row.begin(), row.end());
+    }
+    list.push_back(std::move(along));
+  }
+  return list;
 }
 
 /// A law over the drive at the temperatures of a state; where two variables of the drive act together, at rest.
@@ -167,7 +263,7 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
   if (!system.change_times_s.empty())
     throw InputError(machine.where,
                      "a law changes with time on its own; no FMU is made of such a machine yet (docs/how-to/fmu.md)");
-  FmuModel model{.name = scenario.name, .drive = largest_drives(scenario.cyclograms), .reference_K = system.reference_K};
+  FmuModel model{.name = scenario.name, .drive = inputs_of(scenario), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;
   model.constant_load = model.ambient_load = Eigen::VectorXd::Zero(n);
@@ -181,7 +277,9 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
     if (is_live(s.power_W, s.name)) {
       model.sources.push_back({s.load, {}, live_law_of(scenario, system, s.power_W, s.name, model.drive)});
     } else {
-      model.sources.push_back({s.load, table_of(scenario, s.power_W, s.name, model.drive)});
+      FmuSource source{.load = s.load, .power_W = {}};
+      set_law_of_drive(scenario, s.power_W, s.name, model.drive, start != nullptr, source.power_W, source.formula);
+      model.sources.push_back(std::move(source));
     }
   }
   for (const auto& e : system.exchanges) {
@@ -194,7 +292,8 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
       exchange.coefficient =
           table_at(system, e.coefficient, model.drive, *start, scenarios::felt_ambient_at_start_K(machine));
     } else {
-      exchange.coefficient = table_of(scenario, e.coefficient, e.name, model.drive);
+      set_law_of_drive(scenario, e.coefficient, e.name, model.drive, start != nullptr, exchange.coefficient,
+                       exchange.formula);
     }
     model.exchanges.push_back(std::move(exchange));
   }
@@ -207,12 +306,12 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
 
 void sum_up_constants(FmuModel& model) {
   std::erase_if(model.sources, [&](const FmuSource& s) {
-    if (!s.power_W.terms.empty() || s.live) return false;
+    if (!s.power_W.terms.empty() || s.live || !s.formula.empty()) return false;
     model.constant_load += s.power_W.at_rest * s.load;
     return true;
   });
   std::erase_if(model.exchanges, [&](const FmuExchange& e) {
-    if (!e.coefficient.terms.empty() || e.live) return false;
+    if (!e.coefficient.terms.empty() || e.live || !e.formula.empty()) return false;
     const double c = e.coefficient.at_rest;
     model.conduction += c * e.matrix;
     model.ambient_load += c * e.to_ambient;
@@ -230,20 +329,38 @@ void require_exportable(const Scenario& scenario) {
                      fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
   };
   for (const effects::Effect& e : machine.effects) {
-    if (effects::changes_readings(e)) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
-    if (effects::changes_drive(e))
+    const bool is_of_positions = effects::follows_positions(e);
+    if (is_of_positions) {
+      try {
+        (void)effects::error_along(e);
+      } catch (const RangeError& wrong) {
+        refuse(e, fmt::format("cannot be read out at the nut: {}", wrong.what()));
+      }
+    }
+    if (effects::changes_readings(e) && !is_of_positions)
+      refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
+    if (effects::changes_drive(e) && !is_of_positions)
       refuse(e, e.kind->contribute ? "follows what the drive was before, and an FMU knows it as it is"
                                    : "says that drive or ambient were recorded wrongly, and an FMU is given the true ones");
     if (!e.in.empty() || e.from_s > 0.0 || e.until_s < effects::kNever_s)
       refuse(e, "acts for a time or in one cyclogram alone, and an FMU knows neither");
   }
   for (const Cyclogram& c : scenario.cyclograms) {
-    if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
+    for (const std::string& column : scenarios::wanted_columns(machine, c.name)) {
+      if (effects::place_index(column) < effects::kPlaces) continue;
       throw InputError(machine.where,
                        fmt::format("an effect follows the recorded column '{}', which is no input of an FMU yet "
                                    "(docs/how-to/fmu.md)",
-                                   columns.front()));
+                                   column));
+    }
   }
+}
+
+Cyclogram with_places(Cyclogram cyclogram, const std::vector<DriveRange>& drive) {
+  for (const DriveRange& r : drive) {
+    if (is_place(r.variable)) cyclogram = effects::with_signal(cyclogram, effects::kPlaceNames[place_of(r.variable)], 0.0);
+  }
+  return cyclogram;
 }
 
 FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& reduced) {
@@ -251,6 +368,7 @@ FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& 
   FmuModel model = model_of(scenario, reduced.system, &reduced.start);
   std::erase_if(model.outputs,
                 [](const FmuOutput& o) { return effects::is_mean_output(o.name); });  // no instrument reads them
+  model.along = along_of(machine, reduced.system.outputs, model.outputs, model.drive);
   sum_up_constants(model);
   model.start = reduced.start;
   model.start_ambient_K = scenarios::felt_ambient_at_start_K(machine);
@@ -266,6 +384,12 @@ FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& 
 FmuModel observer_fmu(const Scenario& scenario, const compensation::Observer& observer,
                       const std::optional<probe_process>& probing) {
   compensation::Observer::State state = observer.state();
+  for (const effects::Effect& e : scenario.machine->effects) {
+    if (effects::follows_positions(e))
+      throw InputError(e.where, fmt::format("{} follows positions, and an observer as an FMU has no such input "
+                                            "(docs/how-to/fmu.md)",
+                                            e.name()));
+  }
   FmuModel model = model_of(scenario, state.system, nullptr);
   model.start = state.start;
   model.start_ambient_K = state.start_ambient_K;

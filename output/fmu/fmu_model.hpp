@@ -25,16 +25,27 @@ struct FmuLiveLaw {
   Eigen::MatrixXd weights = {};    ///< n_states x n_probes
   std::vector<double> ambient_share = {}, offset_K = {};
 };
+/// A law of several variables of the drive as a formula (drive_formula of sources/model_data.h); empty: none.
+using FmuFormula = std::vector<double>;
+/// What an output has of a place of an axis (output_along of sources/model_data.h).
+struct FmuAlong {
+  int output = 0, variable = 0;
+  std::vector<double> ends_mm = {};  ///< of the pieces
+  std::vector<double> cubics =
+      {};  ///< of each piece four rows: of the states and of the ambient, by powers of mm from its begin
+};
 struct FmuSource {
   Eigen::VectorXd load;
-  DriveLaw power_W;  ///< 0 beside a live law
+  DriveLaw power_W;  ///< 0 beside a live law or a formula
   std::optional<FmuLiveLaw> live = {};
+  FmuFormula formula = {};
 };
 struct FmuExchange {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd to_ambient, offset;
-  DriveLaw coefficient;  ///< beside a live law: its value at the temperatures of the start
+  DriveLaw coefficient;  ///< beside a live law: its value at the temperatures of the start; 0 beside a formula
   std::optional<FmuLiveLaw> live = {};
+  FmuFormula formula = {};
 };
 
 /// What an observer unit has in addition: its sensors, settings and learned factors.
@@ -59,6 +70,7 @@ struct FmuModel {
   std::vector<FmuSource> sources = {};
   std::vector<FmuExchange> exchanges = {};
   std::vector<FmuOutput> outputs = {};
+  std::vector<FmuAlong> along = {};
   Eigen::VectorXd start = {}, ones = {};
   double start_ambient_K = 0.0;
   bool start_follows_ambient = false;
@@ -71,12 +83,14 @@ struct FmuModel {
 /// Checks whether a scenario's machine can be exported, that is, whether drive and ambient determine it. Fast; call it
 /// before anything is computed.
 /// @throws InputError  naming the effect: one of drive, ambient or instruments, one limited to a time or a cyclogram, one
-/// that follows a column
+/// that follows a column, unless it is the place of a feed axis
 void require_exportable(const scenarios::Scenario& scenario);
 
-/// @throws InputError  naming the law: a thermostat; two variables of the drive that act together; one that depends on
-/// temperatures and has no formula (effects::Law::steps)
+/// @throws InputError  naming the law: a thermostat; without a formula (effects::Law::steps) one that depends on
+/// temperatures, or on two variables of the drive together
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
+/// The cyclogram with the places of a unit's inputs in its drive.
+[[nodiscard]] Cyclogram with_places(Cyclogram cyclogram, const std::vector<DriveRange>& drive);
 /// @param probing  what the observer leaves and the probe, of a unit that takes probings
 /// @throws InputError  as machine_fmu(), and for each law that depends on temperatures
 [[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer,

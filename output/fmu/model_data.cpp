@@ -61,6 +61,11 @@ std::vector<double> nominal_of(const FmuModel& model) {
       const double scale = o.unit == "degC" ? 1.0 : o.unit == "um" ? 2e-6 : 2e-5;
       per_unit = std::max(per_unit, std::abs(o.state[i]) / scale);
     }
+    for (const FmuAlong& along : model.along) {  // at the beginning of each piece
+      const auto row = static_cast<std::size_t>(model.start.size()) + 1;
+      for (std::size_t at = 0; at < along.cubics.size(); at += 4 * row)
+        per_unit = std::max(per_unit, std::abs(along.cubics[at + static_cast<std::size_t>(i)]) / 2e-6);
+    }
     nominal.push_back(1.0 / per_unit);
   }
   return nominal;
@@ -69,13 +74,18 @@ std::vector<double> nominal_of(const FmuModel& model) {
 /// The lists of a model, in the order of thermal_data and observer_data (sources/model_data.h).
 struct ModelLists {
   std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
-      offset, start, ones, most, known, factor_mean, factor_covariance;
+      offset, start, ones, most, least, known, factor_mean, factor_covariance;
   std::vector<const DriveLaw*> powers, coefficients;
   struct Live {
     double source, exchange;  ///< index of one, -1 for the other
     const FmuLiveLaw* law;
   };
   std::vector<Live> live;
+  struct Formula {
+    double source, exchange;  ///< as of Live
+    const FmuFormula* steps;
+  };
+  std::vector<Formula> formulas;
 };
 
 ModelLists lists_of(const FmuModel& model) {
@@ -86,6 +96,7 @@ ModelLists lists_of(const FmuModel& model) {
   for (const FmuSource& s : model.sources) {
     append(lists.loads, s.load);
     if (s.live) lists.live.push_back({static_cast<double>(lists.powers.size()), -1.0, &*s.live});
+    if (!s.formula.empty()) lists.formulas.push_back({static_cast<double>(lists.powers.size()), -1.0, &s.formula});
     lists.powers.push_back(&s.power_W);
   }
   for (const FmuExchange& e : model.exchanges) {
@@ -93,6 +104,7 @@ ModelLists lists_of(const FmuModel& model) {
     append(lists.to_ambient, e.to_ambient);
     append(lists.offsets, e.offset);
     if (e.live) lists.live.push_back({-1.0, static_cast<double>(lists.coefficients.size()), &*e.live});
+    if (!e.formula.empty()) lists.formulas.push_back({-1.0, static_cast<double>(lists.coefficients.size()), &e.formula});
     lists.coefficients.push_back(&e.coefficient);
   }
   for (const FmuOutput& o : model.outputs) {
@@ -103,7 +115,10 @@ ModelLists lists_of(const FmuModel& model) {
   }
   append(lists.start, model.start);
   append(lists.ones, model.ones);
-  for (const DriveRange& r : model.drive) lists.most.push_back(r.most);
+  for (const DriveRange& r : model.drive) {
+    lists.most.push_back(r.most);
+    lists.least.push_back(r.least);
+  }
   for (const std::vector<double>& x : model.known_drives) lists.known.insert(lists.known.end(), x.begin(), x.end());
   if (model.observer) {
     append(lists.factor_mean, model.observer->factors.mean);
@@ -128,6 +143,26 @@ std::string live_laws(const std::vector<ModelLists::Live>& live) {
                         live[k].exchange, law.steps.size() / 2, own, law.weights.cols(), own, own, own);
   }
   return rows.empty() ? "" : text + fmt::format("static const live_law live[] = {{\n{}}};\n", rows);
+}
+
+/// The lists `formulas` and `along`, after their arrays; nothing for an empty one.
+std::string formulas_text(const std::vector<ModelLists::Formula>& formulas) {
+  std::string text, rows;
+  for (std::size_t k = 0; k < formulas.size(); ++k) {
+    text += array(fmt::format("formula_{}", k), *formulas[k].steps);
+    rows += fmt::format("  {{{:g}, {:g}, {}, formula_{}}},\n", formulas[k].source, formulas[k].exchange,
+                        formulas[k].steps->size() / 2, k);
+  }
+  return rows.empty() ? "" : text + fmt::format("static const drive_formula formulas[] = {{\n{}}};\n", rows);
+}
+std::string along_text(const std::vector<FmuAlong>& along) {
+  std::string text, rows;
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    text += array(fmt::format("along_{}_ends", k), along[k].ends_mm) + array(fmt::format("along_{}_c", k), along[k].cubics);
+    rows += fmt::format("  {{{}, {}, {}, along_{}_ends, along_{}_c}},\n", along[k].output, along[k].variable,
+                        along[k].ends_mm.size() - 1, k, k);
+  }
+  return rows.empty() ? "" : text + fmt::format("static const output_along along[] = {{\n{}}};\n", rows);
 }
 
 /// In the order of observer_settings (compensation/control/observer_filter.h).
@@ -198,24 +233,26 @@ std::string model_data_c(const FmuModel& model, const std::string& guid, const s
   const ModelLists lists = lists_of(model);
   std::string text = fmt::format("/* {} {} */\n#include \"model_data.h\"\n\n", comment(model.description), comment(made_by));
   text += fmt::format("const char *const model_guid = \"{}\";\n\n", guid);
-  text += array("conduction", lists.conduction) + array("constant_load", lists.constant) +
-          array("ambient_load", lists.ambient) + array("loads", lists.loads) + laws("powers", lists.powers) +
-          array("exchanges", lists.exchanges) + array("to_ambient", lists.to_ambient) + array("offsets", lists.offsets) +
-          laws("coefficients", lists.coefficients) + array("outputs", lists.outputs) +
-          array("outputs_ambient", lists.outputs_ambient) + array("output_factor", lists.factor) +
-          array("output_offset", lists.offset) + array("start", lists.start) + array("ones", lists.ones) +
-          array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
-          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
-          live_laws(lists.live);
+  text +=
+      array("conduction", lists.conduction) + array("constant_load", lists.constant) + array("ambient_load", lists.ambient) +
+      array("loads", lists.loads) + laws("powers", lists.powers) + array("exchanges", lists.exchanges) +
+      array("to_ambient", lists.to_ambient) + array("offsets", lists.offsets) + laws("coefficients", lists.coefficients) +
+      array("outputs", lists.outputs) + array("outputs_ambient", lists.outputs_ambient) +
+      array("output_factor", lists.factor) + array("output_offset", lists.offset) + array("start", lists.start) +
+      array("ones", lists.ones) + array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
+      array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
+      live_laws(lists.live) + array("least_drive", lists.least) + formulas_text(lists.formulas) + along_text(model.along);
   text += fmt::format(
       "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "
       "to_ambient, offsets, coefficients,\n  outputs, outputs_ambient, output_factor, output_offset, start, ones, {:a}, {}, "
       "{:a},\n  {}, "
-      "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive, {}, {}}};\n",
+      "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive, {}, {},\n  least_drive, {}, {}, {}, "
+      "{}}};\n",
       model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(), model.outputs.size(),
       model.start_ambient_K, model.start_follows_ambient ? 1 : 0, model.reference_K - 273.15, model.ambient.time_s.size(),
-      model.known_drives.size(), lists.live.size(), lists.live.empty() ? "0" : "live");
+      model.known_drives.size(), lists.live.size(), lists.live.empty() ? "0" : "live", lists.formulas.size(),
+      lists.formulas.empty() ? "0" : "formulas", model.along.size(), model.along.empty() ? "0" : "along");
   return text + observer_text(model, lists);
 }
 
@@ -247,6 +284,18 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
     block.add(live.law->steps);
     block.add_counts(live.law->weights.cols());
     for (const auto& list : {columns_of(live.law->weights), live.law->ambient_share, live.law->offset_K}) block.add(list);
+  }
+  block.add(lists.least);
+  block.add_counts(lists.formulas.size());
+  for (const ModelLists::Formula& f : lists.formulas) {
+    block.add_counts(f.source, f.exchange, f.steps->size() / 2);
+    block.add(*f.steps);
+  }
+  block.add_counts(model.along.size());
+  for (const FmuAlong& a : model.along) {
+    block.add_counts(a.output, a.variable, a.ends_mm.size() - 1);
+    block.add(a.ends_mm);
+    block.add(a.cubics);
   }
   block.add_counts(model.observer ? 1 : 0);
   if (model.observer) {

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
+#include "effects/law_steps.hpp"
 #include "output/markup.hpp"
 
 namespace driftwright::output {
@@ -23,6 +24,7 @@ struct Unit {
 constexpr Unit kUnits[] = {{"s", "s=\"1\""},
                            {"rpm", "rad=\"1\" s=\"-1\" factor=\"0.10471975511965977\""},
                            {"mm/min", "m=\"1\" s=\"-1\" factor=\"1.6666666666666667e-05\""},
+                           {"mm", "m=\"1\" factor=\"0.001\""},
                            {"W", "kg=\"1\" m=\"2\" s=\"-3\""},
                            {"K", "K=\"1\""},
                            {"K/s", "K=\"1\" s=\"-1\""},
@@ -46,8 +48,12 @@ std::string attribute(const char* name, const std::optional<double>& value) {
 }
 
 FmuVariable drive_input(const DriveRange& range, unsigned reference) {
-  FmuVariable v{
-      .reference = reference, .causality = "input", .variability = "discrete", .start = 0.0, .min = 0.0, .max = range.most};
+  FmuVariable v{.reference = reference,
+                .causality = "input",
+                .variability = "discrete",
+                .start = std::clamp(0.0, range.least, range.most),
+                .min = range.least,
+                .max = range.most};
   const auto named = [&](const char* name, const char* unit, const char* what) {
     v.name = name;
     v.unit = unit;
@@ -69,6 +75,12 @@ FmuVariable drive_input(const DriveRange& range, unsigned reference) {
     case DriveVariable::kCuttingPower:
       named("cutting_power", "W", "power at the cutting edge, piecewise constant");
       break;
+  }
+  if (is_place(range.variable)) {
+    const std::string name = effects::kPlaceNames[place_of(range.variable)];
+    named(name.c_str(), "mm",
+          name.starts_with("stroke") ? "way over which the nut moves about the position, piecewise constant"
+                                     : "position of the axis, piecewise constant");
   }
   return v;
 }
@@ -194,7 +206,12 @@ std::vector<std::size_t> dependencies(const FmuModel& model, const std::vector<F
     const FmuVariable& v = variables[i];
     const bool is_ambient =
         v.name == "ambient_temperature" || v.name == "ambient_temperature_rate" || v.causality == "independent";
-    if ((is_ambient && o.ambient != 0.0) || (is_state(v) && o.state[v.reference - kStates] != 0.0)) list.push_back(i);
+    const bool has_along = std::any_of(model.along.begin(), model.along.end(), [&](const FmuAlong& a) {
+      const bool is_own = a.output == static_cast<int>(output.reference - kOutputs);
+      return is_own && (is_state(v) || is_ambient || v.reference == kInputs + static_cast<unsigned>(a.variable));
+    });
+    if (has_along || (is_ambient && o.ambient != 0.0) || (is_state(v) && o.state[v.reference - kStates] != 0.0))
+      list.push_back(i);
   }
   return list;
 }

@@ -52,7 +52,7 @@ PlainSizes sizes_of_machine(const FmuModel& model, std::size_t n_inputs) {
   const std::size_t live =
       has_live ? kLiveHead + 2 * (model.drive.size() + static_cast<std::size_t>(n_probes)) + kLiveVectors * n : 0;
   return {kFirstInput + n_inputs + 1 + n + (has_live ? 1 : 0),  // the rate of the ambient is no input here
-          kMachineHead + slots * (kSlotHead + exchanges + n + n * n + 3 * n) + model.drive.size() +
+          kMachineHead + slots * (kSlotHead + exchanges + n + n * n + 3 * n) + 2 * model.drive.size() +
               2 * (exchanges + sources) + 8 * n + 2 * n * n + live};
 }
 
@@ -86,7 +86,7 @@ std::vector<FmuEntry> plain_c_files(const FmuOrder& order, const Provenance& mad
     if (v.causality == "output") outputs.push_back(v.name);
     if (v.causality != "input" || v.name == "ambient_temperature_rate") continue;
     input_lines += fmt::format(" *   {} {}{}{}\n", inputs.size(), v.name, v.unit.empty() ? "" : ", " + v.unit,
-                               v.max ? fmt::format(", from 0 to {:g}", *v.max) : "");
+                               v.max ? fmt::format(", from {:g} to {:g}", *v.min, *v.max) : "");
     inputs.push_back(v.name);
   }
   std::string output_lines;

@@ -61,22 +61,19 @@ Followed follow(const std::string& arguments, const std::string& rows_from) {
   return f;
 }
 
-/// The record that `predict` writes of the day.
-Record predicted_day() {
-  write_file("head.yaml", kHead);
-  const CommandOutcome outcome =
-      run_program("predict " + (temporary_folder() / "head.yaml").string() + " --cyclogram day -o " +
-                  (temporary_folder() / "predicted").string() + " --force --quiet");
+/// The record that `predict` writes of a cyclogram of the scenario NAME.yaml, also as CYCLOGRAM.csv.
+Record predicted_of(const std::string& name, const std::string& text, const std::string& cyclogram) {
+  const auto folder = temporary_folder();
+  write_file(name + ".yaml", text);
+  const CommandOutcome outcome = run_program("predict " + (folder / (name + ".yaml")).string() + " --cyclogram " +
+                                             cyclogram + " -o " + (folder / "predicted").string() + " --force --quiet");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(temporary_folder() / "predicted")) {
-    if (entry.path().filename() == "record.csv") {
-      std::filesystem::copy_file(entry.path(), temporary_folder() / "day.csv",
-                                 std::filesystem::copy_options::overwrite_existing);
-      return read_record_csv((temporary_folder() / "day.csv").string());
-    }
-  }
-  ADD_FAILURE() << "predict has written no record";
-  return {};
+  const auto csv = folder / (cyclogram + ".csv");
+  std::filesystem::copy_file(folder / "predicted" / "record.csv", csv, std::filesystem::copy_options::overwrite_existing);
+  return read_record_csv(csv.string());
+}
+Record predicted_day() {
+  return predicted_of("head", kHead, "day");
 }
 
 TEST(FollowVerb, TellsTheDriftThatPredictTells) {
@@ -97,6 +94,78 @@ TEST(FollowVerb, TellsTheDriftThatPredictTells) {
     EXPECT_LT(off_um, 2e-5) << axis;  // seven digits of the record
   }
   EXPECT_EQ(f.lines.back()["state"], "on");
+}
+
+/// A ball screw in the motor encoder's loop, beside the same axis closed by a scale.
+constexpr const char* kAxis = R"(name: axis
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: nut, capacity: 2 kJ/K}
+  - {type: node, node: scale, capacity: 1 kJ/K}
+  - {type: link, node: nut, to: ambient, conductance: 5 W/K}
+  - {type: link, node: scale, to: nut, conductance: 1 W/K}
+  - {type: feed_axis, node: nut, screw: s, axis: x, travel: 800 mm, fixed_gap: 100 mm, far_gap: 100 mm, diameter: 36 mm,
+     lead: 10 mm, nut_length: 80 mm, torque: 1 N m, nut_conductance: 4 W/K, mounting: fixed_free, position: position_x,
+     stroke: stroke_x_mm}
+  - {type: linear_scale, displacement: by_scale, body: scale, expansion: 8e-6 1/K, fixed_at: 100 mm, position: position_x_mm}
+start: ambient
+ambient: [[0 h, 21 degC]]
+displacements:
+  - {name: at_nut, screw: s}
+  - {name: by_scale, sensitivities: [{node: nut, sensitivity: 0.5 um/K}]}
+cyclograms:
+  strokes:
+    columns: [duration, feed_x, position_x_mm, stroke_x_mm]
+    rows: [[10 min, 6 m/min, 400 mm, 800 mm], [9 min, 3 m/min, 700 mm, 200 mm], [1 min, 6 m/min, 20 mm, 0 mm],
+           [15 min, 6 m/min, 150 mm, 60 mm], [5 min, 0 m/min, 790 mm, 0 mm]]
+solver: {relative_tolerance: 1e-8, absolute_tolerance: 1e-8 K, output_interval: 1 min}
+)";
+
+// Heat where the nut was, the error where it is: from 53 um to 5 um within a row as the nut goes to the fixed bearing.
+TEST(FollowVerb, FollowsTheRecordedPositionOfAFeedAxis) {
+  const Record strokes = predicted_of("axis", kAxis, "strokes");
+  const Followed f = follow("axis.yaml --slew '100 um/s'", "cat strokes.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  ASSERT_EQ(f.lines.size(), strokes.n_samples());
+  for (const char* axis : {"at_nut", "by_scale"}) {
+    for (std::size_t i = 0; i < strokes.n_samples(); ++i)
+      EXPECT_NEAR(f.lines[i]["axes"][axis]["predicted_um"].get<double>(), strokes.at(axis).values[i], 1e-3) << axis << i;
+  }
+  EXPECT_GT(strokes.at("at_nut").values[18], 45.0);
+  EXPECT_LT(strokes.at("at_nut").values[19], 6.0);
+  // a restart changes nothing: the heat goes on to where the nut was
+  std::filesystem::remove(temporary_folder() / "axis.state");
+  const Followed first = follow("axis.yaml --slew '100 um/s' --state axis.state", "head -n 26 strokes.csv |");
+  const Followed second = follow("axis.yaml --slew '100 um/s' --state axis.state", "sed '/^[0-9]/{1,26d}' strokes.csv |");
+  EXPECT_EQ(first.text + second.text, f.text);
+}
+
+// Rows 3 to 5 have no position: it is held. A nut 20 mm past its travel is none: the correction is held, and says why.
+TEST(FollowVerb, HoldsAPositionThatIsMissingOrPastTheTravel) {
+  write_file("axis.yaml", kAxis);
+  const auto rows = [](const std::string& held, const std::string& end) {
+    std::string text = "time_s,speed_rpm,feed_x_mm_min,position_x_mm,stroke_x_mm,ambient_degC\n";
+    for (int minute = 0; minute <= 20; ++minute) {
+      const std::string at = minute >= 3 && minute <= 5 ? held : minute >= 19 ? end : "600";
+      text += std::to_string(60 * minute) + ",0,6000," + at + ",40,21\n";
+    }
+    write_file("rows.csv", text);
+    return follow("axis.yaml --slew '100 um/s'", "cat rows.csv |");
+  };
+  const Followed whole = rows("600", "600"), missing = rows("", "600"), past = rows("600", "820");
+  ASSERT_EQ(whole.exit_code, 0) << whole.words;
+  EXPECT_EQ(missing.text, whole.text);
+  ASSERT_EQ(past.lines.size(), 21U);
+  const auto corrected_um = [&](std::size_t row) {
+    return past.lines[row]["axes"]["at_nut"]["correction_um"].get<double>();
+  };
+  EXPECT_GT(corrected_um(18), 10.0);
+  EXPECT_EQ(corrected_um(20), corrected_um(18));
+  EXPECT_THAT(past.lines[20].dump(), HasSubstr("\"doubted\":[\"position_x\"]"));
+  const Followed none = follow("axis.yaml", "echo 'time_s,speed_rpm,feed_x_mm_min,stroke_x_mm,ambient_degC' |");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.words, HasSubstr("'position_x_mm', which the stream does not have"));
 }
 
 // A control that no longer gives its speed, or a thermometer of the air that came off: the machine's drive is unknown now.

@@ -18,6 +18,8 @@ observer_data observer;
 static double* numbers; /* all of them; the tables point into it */
 static drive_law *powers, *coefficients;
 static live_law* live;
+static drive_formula* formulas;
+static output_along* along;
 static int* sensor_output;
 
 /* What has not been taken yet. `left` below 0: there was less than the counts say. */
@@ -90,6 +92,31 @@ static live_law* live_laws(reader* r, int n, int n_states) {
   return all;
 }
 
+static drive_formula* formulas_of(reader* r, int n) {
+  drive_formula* const all = r->left < n ? 0 : calloc((size_t)n + 1, sizeof *all);
+  int k;
+  for (k = 0; all && k < n; ++k) {
+    all[k].source = count(r);
+    all[k].exchange = count(r);
+    all[k].n_steps = count(r);
+    all[k].steps = list(r, 2L * all[k].n_steps);
+  }
+  return all;
+}
+
+static output_along* along_of(reader* r, int n, int n_states) {
+  output_along* const all = r->left < n ? 0 : calloc((size_t)n + 1, sizeof *all);
+  int k;
+  for (k = 0; all && k < n; ++k) {
+    all[k].output = count(r);
+    all[k].variable = count(r);
+    all[k].n_pieces = count(r);
+    all[k].ends = list(r, all[k].n_pieces + 1L);
+    all[k].cubics = list(r, (long)all[k].n_pieces * 4L * (n_states + 1L));
+  }
+  return all;
+}
+
 /* Returns whether the tables are complete. */
 static int take(reader* r, const char** guid) {
   const long guid_length = count(r);
@@ -128,6 +155,11 @@ static int take(reader* r, const char** guid) {
   thermal.known_drive = list(r, (long)thermal.n_known * thermal.n_drive);
   thermal.n_live = count(r);
   if (r->left < 0 || !(thermal.live = live = live_laws(r, thermal.n_live, thermal.n))) return 0;
+  thermal.least_drive = list(r, thermal.n_drive);
+  thermal.n_formulas = count(r);
+  if (r->left < 0 || !(thermal.formulas = formulas = formulas_of(r, thermal.n_formulas))) return 0;
+  thermal.n_along = count(r);
+  if (r->left < 0 || !(thermal.along = along = along_of(r, thermal.n_along, thermal.n))) return 0;
   if (count(r)) {
     const long f = thermal.n_sources + thermal.n_exchanges + 1L;
     const double* of;
@@ -207,6 +239,8 @@ __attribute__((destructor)) static void free_numbers(void) {
   free_laws(powers, thermal.n_sources);
   free_laws(coefficients, thermal.n_exchanges);
   free(live);
+  free(formulas);
+  free(along);
   free(sensor_output);
   free(numbers);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "formula.h"
 #include "live.h"
 #include "model.h"
 #include "symmetric_eigen.h"
@@ -30,7 +31,7 @@ typedef struct {
   double *drive, *coefficient, *power, *constant, *per_ambient, *matrix;
   double *mode_constant, *mode_per_ambient;
   /* Room for a while. */
-  double *modes, *eigen_work, *matrix_work, *slope, *along;
+  double *modes, *eigen_work, *matrix_work, *slope, *along, *d_drive;
   live_room* live; /* null: no law follows temperatures */
 } machine;
 
@@ -42,7 +43,7 @@ static size_t n_doubles(void) {
   const size_t n = (size_t)thermal.n, slots = (size_t)n_slots();
   return slots * ((size_t)thermal.n_exchanges + n + n * n + 3 * n) + (size_t)thermal.n_drive + (size_t)thermal.n_exchanges +
          (size_t)thermal.n_sources + 2 * n + n * n + 2 * n + n + 2 * n + n * n + (size_t)thermal.n_exchanges +
-         (size_t)thermal.n_sources + n;
+         (size_t)thermal.n_sources + n + (size_t)thermal.n_drive;
 }
 
 /* After the states, where laws follow temperatures: the length of a step that fits. */
@@ -100,6 +101,10 @@ static slot* slot_of(machine* m, const double* coefficient) {
 static void coefficients_of(const double* drive, double* coefficient) {
   int e;
   for (e = 0; e < thermal.n_exchanges; ++e) coefficient[e] = law_value(&thermal.coefficients[e], drive);
+  for (e = 0; e < thermal.n_formulas; ++e) {
+    const drive_formula* const f = &thermal.formulas[e];
+    if (f->exchange >= 0) coefficient[f->exchange] = formula_value(f->n_steps, f->steps, drive, 0, 0);
+  }
 }
 
 static void take_drive(machine* m, const double* saved) {
@@ -110,6 +115,10 @@ static void take_drive(machine* m, const double* saved) {
   memcpy(m->drive, drive, bytes);
   coefficients_of(drive, m->coefficient);
   for (s = 0; s < thermal.n_sources; ++s) m->power[s] = law_value(&thermal.powers[s], drive);
+  for (s = 0; s < thermal.n_formulas; ++s) {
+    const drive_formula* const f = &thermal.formulas[s];
+    if (f->source >= 0) m->power[f->source] = formula_value(f->n_steps, f->steps, drive, 0, 0);
+  }
   thermal_loads(m->coefficient, m->power, m->constant, m->per_ambient);
   m->has_drive = 1;
   m->has_matrix = 0;
@@ -154,6 +163,7 @@ int model_prepare(void* scratch) {
   m->matrix_work = take(&room, n * n);
   m->slope = take(&room, (size_t)thermal.n_exchanges + (size_t)thermal.n_sources);
   m->along = take(&room, n);
+  m->d_drive = take(&room, (size_t)thermal.n_drive);
   if (thermal.n_live > 0) m->live = live_prepare(room);
   for (k = 0; k < thermal.n_known; ++k) {
     coefficients_of(thermal.known_drive + (size_t)k * (size_t)thermal.n_drive, m->coefficient);
@@ -163,7 +173,9 @@ int model_prepare(void* scratch) {
 }
 
 void model_reset(double* saved, void* scratch) {
+  int k;
   memset(saved, 0, model_n_saved() * sizeof *saved);
+  for (k = 0; k < thermal.n_drive; ++k) saved[kInputs + k] = fmin(fmax(0.0, thermal.least_drive[k]), thermal.most_drive[k]);
   saved[kInputs + thermal.n_drive] = thermal.start_ambient_K + thermal.reference_degC;
   model_touched(scratch);
 }
@@ -174,7 +186,8 @@ void model_touched(void* scratch) {
 
 const char* model_check_input(int input, double value) {
   if (!(fabs(value) <= HUGE_VAL) || fabs(value) == HUGE_VAL) return "an input is no finite number";
-  if (input < thermal.n_drive && !(value >= 0.0 && value <= thermal.most_drive[input] * (1.0 + 1e-12)))
+  if (input < thermal.n_drive && !(value >= thermal.least_drive[input] - 1e-12 * fabs(thermal.least_drive[input]) &&
+                                   value <= thermal.most_drive[input] + 1e-12 * fabs(thermal.most_drive[input])))
     return "an input is outside its min and max, between which the model was reduced";
   return 0;
 }
@@ -259,11 +272,35 @@ double model_next_event_s(const double* saved) {
   return saved[kAmbientFromInput] == 0.0 ? next_ambient_knot_s(saved[kTime]) : HUGE_VAL;
 }
 
+/* How an output's cubics change with its state `state` (the ambient: n), at the place x; or along x, per mm. */
+static double along_weight(const output_along* a, double x, int state, int is_slope) {
+  const double* c;
+  double t;
+  int k = 0;
+  while (k + 1 < a->n_pieces && x >= a->ends[k + 1]) ++k;
+  c = a->cubics + (size_t)k * 4 * ((size_t)thermal.n + 1) + (size_t)state;
+  t = x - a->ends[k];
+  {
+    const size_t row = (size_t)thermal.n + 1;
+    return is_slope ? c[row] + t * (2.0 * c[2 * row] + t * 3.0 * c[3 * row])
+                    : c[0] + t * (c[row] + t * (c[2 * row] + t * c[3 * row]));
+  }
+}
+
+static double along_sum(const output_along* a, const double* saved, double ambient, int is_slope) {
+  const double *const z = saved + kInputs + model_n_inputs(), x = saved[kInputs + a->variable];
+  double sum = ambient * along_weight(a, x, thermal.n, is_slope);
+  int i;
+  for (i = 0; i < thermal.n; ++i) sum += z[i] * along_weight(a, x, i, is_slope);
+  return sum;
+}
+
 void model_outputs(const double* saved, void* scratch, double* outputs) {
   const double ambient = ambient_K(saved, saved[kTime]);
   int o;
   (void)scratch;
   multiply(thermal.n_outputs, thermal.n, thermal.outputs, saved + kInputs + model_n_inputs(), outputs);
+  for (o = 0; o < thermal.n_along; ++o) outputs[thermal.along[o].output] += along_sum(&thermal.along[o], saved, ambient, 0);
   for (o = 0; o < thermal.n_outputs; ++o)
     outputs[o] = thermal.output_factor[o] * (outputs[o] + thermal.outputs_ambient[o] * ambient) + thermal.output_offset[o];
 }
@@ -298,6 +335,15 @@ static void add_live(machine* m, const double* saved, int state, double seed, do
                  m->along, d_ambient_K, which, seed, derivatives);
 }
 
+/* outputs += what places of axes give where one state (or the ambient: n) changes by seed. */
+static void add_along(const double* saved, int state, double seed, double* outputs) {
+  int k;
+  for (k = 0; k < thermal.n_along; ++k) {
+    const output_along* const a = &thermal.along[k];
+    outputs[a->output] += seed * thermal.output_factor[a->output] * along_weight(a, saved[kInputs + a->variable], state, 0);
+  }
+}
+
 static void add_ambient(double seed_K, const machine* m, double* outputs, double* derivatives) {
   int i;
   for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed_K * thermal.output_factor[i] * thermal.outputs_ambient[i];
@@ -312,21 +358,38 @@ void model_add_sensitivity(const double* saved, void* scratch, int known_is_stat
   int i, j, e, s;
   if (known_is_state) {
     for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed * thermal.output_factor[i] * thermal.outputs[i * n + known];
+    add_along(saved, known, seed, outputs);
     for (i = 0; i < n; ++i) derivatives[i] -= seed * k[i * n + known];
     add_live(m, saved, known, seed, 0.0, -1, derivatives);
   } else if (known >= thermal.n_drive) {
     const double seed_K = known == thermal.n_drive ? seed : seed * (saved[kTime] - saved[kAmbientSetAt]);
     if (!is_ambient_input) return;
+    add_along(saved, n, seed_K, outputs);
     add_ambient(seed_K, m, outputs, derivatives);
     add_live(m, saved, -1, 0.0, seed_K, -1, derivatives);
   } else {
     const double* const drive = saved + kInputs;
     const double ambient = ambient_K(saved, saved[kTime]);
+    memset(m->d_drive, 0, (size_t)thermal.n_drive * sizeof *m->d_drive);
+    m->d_drive[known] = seed;
+    for (i = 0; i < thermal.n_along; ++i) {
+      const output_along* const a = &thermal.along[i];
+      if (a->variable == known)
+        outputs[a->output] += seed * thermal.output_factor[a->output] * along_sum(a, saved, ambient, 1);
+    }
     for (s = 0; s < thermal.n_sources; ++s) m->slope[s] = seed * law_slope(&thermal.powers[s], drive, known);
+    for (s = 0; s < thermal.n_formulas; ++s) {
+      const drive_formula* const f = &thermal.formulas[s];
+      if (f->source >= 0) (void)formula_value(f->n_steps, f->steps, drive, m->d_drive, &m->slope[f->source]);
+    }
     add_transposed(thermal.n_sources, n, thermal.loads, m->slope, derivatives);
     for (e = 0; e < thermal.n_exchanges; ++e) {
-      const double slope = seed * law_slope(&thermal.coefficients[e], drive, known);
+      double slope = seed * law_slope(&thermal.coefficients[e], drive, known);
       const double* const g = thermal.exchanges + (size_t)e * (size_t)n * (size_t)n;
+      for (s = 0; s < thermal.n_formulas; ++s) {
+        const drive_formula* const f = &thermal.formulas[s];
+        if (f->exchange == e) (void)formula_value(f->n_steps, f->steps, drive, m->d_drive, &slope);
+      }
       if (slope == 0.0) continue;
       for (i = 0; i < n; ++i) {
         double sum = ambient * thermal.to_ambient[e * n + i] + thermal.offsets[e * n + i];

@@ -37,6 +37,23 @@ typedef struct {
   const double* offset_K;
 } live_law;
 
+/* The power of a source or the coefficient of an exchange by a formula (formula.h) of several variables of the drive. Its
+ * drive_law is 0. */
+typedef struct {
+  int source, exchange; /* index of the one that it belongs to; the other is -1 */
+  int n_steps;
+  const double* steps; /* n_steps pairs; names are indices of the drive */
+} drive_formula;
+
+/* What an output has of the place of an axis, which is a variable x of the drive: cubics' (z, ambient), cubics = c0 + c1 t + c2 t^2 + c3 t^3
+ * with t from the beginning of the piece that x is in. */
+typedef struct {
+  int output, variable;
+  int n_pieces;
+  const double* ends;   /* n_pieces + 1 */
+  const double* cubics; /* of each piece four rows of n + 1 */
+} output_along;
+
 /* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices by rows. */
 typedef struct {
   int n, n_drive, n_sources, n_exchanges, n_outputs;
@@ -67,6 +84,11 @@ typedef struct {
   const double* known_drive;
   int n_live; /* laws that follow temperatures; 0: the machine is linear */
   const live_law* live;
+  const double* least_drive; /* of each variable of the drive: 0 but for places */
+  int n_formulas;
+  const drive_formula* formulas;
+  int n_along;
+  const output_along* along;
 } thermal_data;
 
 /* Of an observer alone (observer.c); otherwise all zero. */
