@@ -131,7 +131,7 @@ void export_formula(const ExportOptions& options) {
                                  options.as == "c" ? ", or a scenario, whose machine or observer becomes C" : ""));
   const bool is_of_axis = options.as == "siemens" || options.as == "heidenhain" || options.as == "fanuc";
   if (!is_of_axis && !options.axis.empty())
-    throw InputError(fmt::format("--as {} corrects no axis by itself; leave --axis out", options.as));
+    throw InputError(fmt::format("--as {} corrects no axis; leave --axis out", options.as));
   if (options.as != "siemens" && options.axis_moves == "against_dk")
     throw InputError(
         fmt::format("--axis-moves is for --as siemens, whose sign differs from machine to machine; leave it "
