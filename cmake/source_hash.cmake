@@ -1,12 +1,16 @@
 # Writes a header with a hash of the sources that decide what a reduced machine is: cmake -DFOLDERS=... -DTOP=... -DBUILD=... -DOUT=... -P source_hash.cmake
-# BUILD: compiler, flags and versions of libraries, which decide it too.
+# BUILD: compiler, flags and versions of libraries, which decide it too. OUT.d lists these files and their folders, so that it is made again where one is
+# changed, added or removed.
 set(all "${BUILD}")
+set(depends "")
 foreach(folder ${FOLDERS})
+  string(APPEND depends " ${TOP}/${folder}")
   file(GLOB files ${TOP}/${folder}/*.cpp ${TOP}/${folder}/*.hpp)
   list(SORT files)
   foreach(file ${files})
     file(SHA256 ${file} hash)
     string(APPEND all "${hash}")
+    string(APPEND depends " ${file}")
   endforeach()
 endforeach()
 string(SHA256 hash "${all}")
@@ -18,3 +22,4 @@ namespace driftwright {
 inline constexpr const char* kSourcesOfMachines = \"${hash}\";
 }  // namespace driftwright
 ")
+file(WRITE ${OUT}.d "${OUT}:${depends}\n")
