@@ -95,6 +95,20 @@ TEST(KnownBand, ContainsWhatLearnedEffectsStillMiss) {
   EXPECT_THAT(p.band->words, HasSubstr("The bands of 1 channel contain what the effects `learned` still miss"));
 }
 
+// Learned up to 400 rpm, asked at 1000: with the excess e = (1000 / 400 - 1) (1 - exp(-t / 10 min)), 5 um e are missing if
+// the law goes on, and its amount is known to 2 um (one sigma).
+TEST(KnownBand, GrowsBeyondTheSpeedsThatWereLearnedFrom) {
+  const std::string text = read_text(body("", "", "").path);
+  const Prediction p = predicted(scenarios::read_scenario(
+      write_file("beyond.yaml", fixtures::replaced(text, "sensors:",
+                                                   "  - {type: learned, displacement: z, misses: 3, error: 2, at_speed: 400 "
+                                                   "rpm, follows: running, grows: [[10 min, 5 um]]}\nsensors:"))));
+  ASSERT_TRUE(p.band);
+  EXPECT_NEAR(high(p, "z", 0), 1.96 * 3.0, 1e-9);
+  const double excess = 1.5 * (1.0 - std::exp(-p.record.time_s[60] / 600.0));
+  EXPECT_NEAR(high(p, "z", 60), 1.96 * std::sqrt(9.0 + std::pow(5.0 * excess, 2) + std::pow(2.0 * excess, 2)), 1e-3);
+}
+
 TEST(KnownBand, AddsWhatIsStillMissedToTheNumbers) {
   const Prediction p = predicted(learned_body(", known_to: 1 %"));
   ASSERT_TRUE(p.band);
