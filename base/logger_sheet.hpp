@@ -32,7 +32,8 @@ struct LoggerSheet {
 [[nodiscard]] double share_of_numbers(const std::vector<std::string>& cells, char decimal);
 /// True if all non-empty cells, at least one, are words of switches (switch_of()).
 [[nodiscard]] bool are_switches(const std::vector<std::string>& cells);
-/// A cell that is no word of a switch where more than half of those that are not empty are; none elsewhere.
+/// Of a column of a switch, that is one in which more than half of the cells with text are its words: the first cell with
+/// another text. None if there is no such cell, or the column is not a switch.
 [[nodiscard]] std::optional<std::string> odd_among_switches(const std::vector<std::string>& cells);
 /// True if the digits look like a date or a time of day.
 [[nodiscard]] bool is_stamp_like(const std::string& cell);

@@ -1,6 +1,6 @@
 #pragma once
-// The experiment that would distinguish the remaining explanations: a cyclogram of a family, or one with a thermometer
-// more, chosen by what its record is expected to tell of the statement.
+// The experiment that would distinguish the remaining explanations: a cyclogram of a family, or one with one more
+// thermometer. The choice is the one with the most expected information about the statement.
 
 #include "diagnosis/search.hpp"
 

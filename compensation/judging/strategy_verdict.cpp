@@ -13,7 +13,7 @@ bool is_worse_than_nothing(const Case& c) {
   return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
 }
 
-/// Of the cases that count and leave more than no correction, the one with the largest excess; null if there is none.
+/// The case in which correction is worst compared with no correction, among those that count; null if it is never worse.
 const Case* worst_beside_nothing(const JudgedStrategy& s, const std::function<bool(const Case&)>& counts) {
   const auto excess_um = [](const Case& c) {
     return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);

@@ -17,15 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_wanted(const std::string& name, const FmuOrder& order) {
-  const bool is_2 = order.version == FmiVersion::k2, is_observer = order.model.observer.has_value();
+  const bool is_2 = order.version == FmiVersion::k2;
   if (name.starts_with("fmi2")) return is_2;
   if (name.starts_with("fmi3")) return !is_2;
   if (name == "plain_model.c" || name == "example.c") return false;  // of plain_c.hpp
-  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
-  if (name == "observer.c" || name == "observer_filter.c" || name == "probe_feedback.c" ||
-      name.starts_with("state_observer"))
-    return is_observer;
-  return true;
+  return is_of_model(name, order.model.observer.has_value());
 }
 
 /// Compiled with Driftwright, with the numbers of this model at its end.
@@ -56,6 +52,14 @@ std::string page(const FmuOrder& order, const Provenance& made_by, const std::st
 }
 
 }  // namespace
+
+bool is_of_model(const std::string& name, bool is_observer) {
+  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
+  if (name == "observer.c" || name == "observer_filter.c" || name == "probe_feedback.c" ||
+      name.starts_with("state_observer"))
+    return is_observer;
+  return true;
+}
 
 std::string model_identifier(const std::string& name) {
   std::string id = name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ? "m_" : "";

@@ -31,6 +31,9 @@ struct FmuOrder {
 /// Writes entries as a zip whose bytes do not depend on the time. @throws std::runtime_error  naming the file
 void write_zip(const std::filesystem::path& file, const std::vector<FmuEntry>& entries);
 
+/// Whether an observer, or else a machine, needs this file of sources/, apart from the files of an interface (FMI, plain C).
+[[nodiscard]] bool is_of_model(const std::string& name, bool is_observer);
+
 /// A model's name in a form that C and the standard allow.
 [[nodiscard]] std::string model_identifier(const std::string& name);
 

@@ -68,11 +68,7 @@ std::string names_text(const std::vector<std::string>& names) {
 
 bool is_plain(const std::string& name, bool is_observer) {
   if (name.starts_with("fmi") || name.starts_with("instance")) return false;
-  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
-  if (name == "observer.c" || name.starts_with("state_observer") || name == "observer_filter.c" ||
-      name == "probe_feedback.c")
-    return is_observer;
-  return true;
+  return is_of_model(name, is_observer);
 }
 
 }  // namespace

@@ -141,7 +141,8 @@ TEST(FollowVerb, FollowsTheRecordedPositionOfAFeedAxis) {
   EXPECT_EQ(first.text + second.text, f.text);
 }
 
-// Rows 3 to 5 have no position: it is held. A nut 20 mm past its travel is none: the correction is held, and says why.
+// Rows 3 to 5 have no position: the last one is held. A position 20 mm past the travel is refused: the correction is held,
+// and the line says why.
 TEST(FollowVerb, HoldsAPositionThatIsMissingOrPastTheTravel) {
   write_file("axis.yaml", kAxis);
   const auto rows = [](const std::string& held, const std::string& end) {
