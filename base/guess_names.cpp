@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <map>
-#include <regex>
 #include <utility>
 #include <vector>
 
@@ -51,15 +50,16 @@ std::string unit_of_words(const std::string& text) {
 HeaderWords words_of_header(const std::string& header, const std::string& unit_line) {
   const std::string text = trimmed(plain_name(header));
   if (const std::string unit = unit_of_words(unit_line); !unit.empty()) return {text, unit};
-  static const std::regex in_brackets("^(.*?)[ _]*[\\[(]([^\\])]*)[\\])](.*)$");
-  std::smatch parts;
   std::string rest = text;
-  constexpr std::size_t kLongest = 1000;  // std::regex recurses once per character
-  if (text.size() <= kLongest && std::regex_match(text, parts, in_brackets)) {
-    const std::string unit = unit_of_words(parts[2].str()), name = trimmed(parts[1].str() + parts[3].str());
+  const std::size_t open = text.find_first_of("[("), close = text.find_first_of("])", open);
+  if (open != std::string::npos && close != std::string::npos) {
+    std::string before = text.substr(0, open);
+    before.resize(before.find_last_not_of(" _") + 1);
+    const std::string after = text.substr(close + 1);
+    const std::string unit = unit_of_words(text.substr(open + 1, close - open - 1)), name = trimmed(before + after);
     if (!unit.empty()) return {name, unit};
-    if (!name.empty() && trimmed(parts[3].str()).empty())
-      rest = trimmed(parts[1].str());  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
+    if (!name.empty() && trimmed(after).empty())
+      rest = trimmed(before);  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
   }
   for (const std::string end : {"/", ",", " in ", " ", "_"}) {  // "T3/°C", "T3, °C", "T3 in °C", "T3 °C", "T3_degC"
     const std::size_t at = rest.rfind(end);

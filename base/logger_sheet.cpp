@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <regex>
 
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/guess_names.hpp"
+#include "base/pattern.hpp"
 #include "base/row_clock.hpp"
 
 namespace driftwright {
@@ -62,13 +62,13 @@ char find_separator(const std::string& path, const std::vector<std::string>& lin
 
 char find_decimal(const std::vector<std::string>& lines, char separator) {
   if (separator == ',') return '.';
-  static const std::regex comma("[-+]?[0-9]+,[0-9]+([eE][-+]?[0-9]+)?"), point("[-+]?[0-9]+\\.[0-9]+([eE][-+]?[0-9]+)?");
+  static const Pattern comma("^[-+]?[0-9]+,[0-9]+([eE][-+]?[0-9]+)?$"), point("^[-+]?[0-9]+\\.[0-9]+([eE][-+]?[0-9]+)?$");
   std::size_t n_comma = 0, n_point = 0;
   for (std::size_t i = 0; i < std::min(kMostLooked, lines.size()); ++i) {
     for (const std::string& cell : cells_of(lines[i], separator)) {
       if (cell.size() > kLongestNumber) continue;
-      n_comma += std::regex_match(cell, comma) ? 1U : 0U;
-      n_point += std::regex_match(cell, point) ? 1U : 0U;
+      n_comma += comma.is_in(cell) ? 1U : 0U;
+      n_point += point.is_in(cell) ? 1U : 0U;
     }
   }
   return n_comma > n_point ? ',' : '.';
@@ -134,8 +134,8 @@ std::optional<std::string> odd_among_switches(const std::vector<std::string>& ce
 }
 
 bool is_stamp_like(const std::string& cell) {
-  static const std::regex stamp(".*[0-9]{1,2}:[0-9]{2}.*|[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}.*");
-  return cell.size() <= kLongestNumber && std::regex_match(cell, stamp);  // std::regex recurses once per character
+  static const Pattern stamp("[0-9]:[0-9]{2}|^[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]");
+  return cell.size() <= kLongestNumber && stamp.is_in(cell);
 }
 
 std::vector<std::string> LoggerSheet::column(std::size_t index) const {

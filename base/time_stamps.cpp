@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 
 #include "base/characters.hpp"
 #include "base/errors.hpp"
+#include "base/pattern.hpp"
 
 namespace driftwright {
 namespace {
@@ -72,29 +72,29 @@ std::optional<nanoseconds> iso_8601(std::string text) {
 }  // namespace
 
 std::optional<StampOffset> offset_at_end(const std::string& stamp) {
-  static const std::regex number("(.*[0-9])[ \t]*([-+])([0-9]{2}):?([0-9]{2})?"), word("(.*[0-9])[ \t]*([A-Z]{1,4})");
+  static const Pattern number("^(.*[0-9])[ \t]*([-+])([0-9]{2}):?([0-9]{2})?$"), word("^(.*[0-9])[ \t]*([A-Z]{1,4})$");
   static const std::map<std::string, int> hours = {{"Z", 0},    {"UTC", 0}, {"GMT", 0},  {"WET", 0}, {"WEST", 1}, {"CET", 1},
                                                    {"CEST", 2}, {"MEZ", 1}, {"MESZ", 2}, {"EET", 2}, {"EEST", 3}};
-  constexpr std::size_t kLongest = 64;  // std::regex recurses once per character
+  constexpr std::size_t kLongest = 64;  // stamps are shorter
   if (stamp.size() > kLongest) return std::nullopt;
-  std::smatch parts;
-  if (std::regex_match(stamp, parts, number)) {
-    const int minutes = 60 * std::stoi(parts[3]) + (parts[4].matched ? std::stoi(parts[4]) : 0);
-    return StampOffset{parts[1], std::chrono::minutes(parts[2] == "-" ? -minutes : minutes)};
+  if (const auto parts = number.find(stamp)) {
+    const int minutes = 60 * std::stoi(parts->at(3)) + (parts->at(4).empty() ? 0 : std::stoi(parts->at(4)));
+    return StampOffset{parts->at(1), std::chrono::minutes(parts->at(2) == "-" ? -minutes : minutes)};
   }
-  if (!std::regex_match(stamp, parts, word)) return std::nullopt;
-  const auto known = hours.find(parts[2]);
+  const auto parts = word.find(stamp);
+  const auto known = parts ? hours.find(parts->at(2)) : hours.end();
   if (known == hours.end()) return std::nullopt;
-  return StampOffset{parts[1], std::chrono::hours(known->second)};
+  return StampOffset{parts->at(1), std::chrono::hours(known->second)};
 }
 
 TimeStamps::TimeStamps(std::string format, const std::string& zone) : format_(std::move(format)) {
   is_iso_ = format_.empty();
   has_date_ = is_iso_ || has_any(format_, "dejDFcxmsUW");
-  static const std::regex offset("[ \t]*%E?z$");
-  const std::string without = std::regex_replace(format_, offset, "");
-  has_offset_ = without != format_;
-  format_ = without;
+  static const Pattern offset("[ \t]*%E?z$");
+  if (const auto end = offset.find(format_)) {
+    has_offset_ = true;
+    format_.resize(format_.size() - end->front().size());
+  }
   if (has_any(format_, "z") || format_.find("%Ez") != std::string::npos)
     throw RangeError("%z, the offset to UTC, is allowed only at the end of a format");
   if (zone.empty()) return;

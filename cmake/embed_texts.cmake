@@ -6,23 +6,33 @@ set(function ${CMAKE_MATCH_2})
 set(table "")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)
+  file(SIZE ${file} size)
   if(BYTES)
-    file(SIZE ${file} size)
     file(READ ${file} text HEX)
     string(REGEX REPLACE "(..)" "\\\\x\\1" text "${text}")
-    string(APPEND table "      {\"${name}\", std::string(\"${text}\", ${size})},\n")
+    string(APPEND table "    {\"${name}\", ${size}, \"${text}\"},\n")
   else()
     file(READ ${file} text)
-    string(APPEND table "      {\"${name}\", R\"~~~(${text})~~~\"},\n")
+    string(APPEND table "    {\"${name}\", ${size}, R\"~~~(${text})~~~\"},\n")
   endif()
 endforeach()
+# Plain data and a loop: a compiler takes seconds for a list of some twenty strings.
 file(WRITE ${OUTPUT} "#include \"${HEADER}\"
 
 namespace driftwright::${room} {
 
 const std::vector<${TYPE}>& ${function}() {
-  static const std::vector<${TYPE}> files = {
+  static const struct {
+    const char* name;
+    std::size_t size;
+    const char* text;
+  } embedded[] = {
 ${table}  };
+  static const std::vector<${TYPE}> files = [] {
+    std::vector<${TYPE}> list;
+    for (const auto& file : embedded) list.push_back({file.name, std::string(file.text, file.size)});
+    return list;
+  }();
   return files;
 }
 

@@ -4,11 +4,11 @@
 
 #include <cctype>
 #include <map>
-#include <regex>
 #include <set>
 
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
+#include "base/pattern.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -33,14 +33,14 @@ double metres_of(const std::string& instance) {
   static const std::map<std::string, double> prefixes = {{"$", 1.0},        {".KILO.", 1e3},   {".DECI.", 1e-1},
                                                          {".CENTI.", 1e-2}, {".MILLI.", 1e-3}, {".MICRO.", 1e-6}};
   static const std::map<std::string, double> named = {{"INCH", 0.0254}, {"FOOT", 0.3048}};
-  static const std::regex conversion("CONVERSION_BASED_UNIT\\('([^']*)'"), si("SI_UNIT\\(([^,]*),\\.METRE\\.\\)");
-  std::smatch parts;
-  if (std::regex_search(instance, parts, conversion)) {
-    const auto known = named.find(parts[1]);
+  static const Pattern conversion("CONVERSION_BASED_UNIT\\('([^']*)'"), si("SI_UNIT\\(([^,]*),\\.METRE\\.\\)");
+  if (const auto parts = conversion.find(instance)) {
+    const auto known = named.find(parts->at(1));
     return known == named.end() ? 0.0 : known->second;
   }
-  if (!std::regex_search(instance, parts, si)) return 0.0;
-  const auto known = prefixes.find(parts[1]);
+  const auto parts = si.find(instance);
+  if (!parts) return 0.0;
+  const auto known = prefixes.find(parts->at(1));
   return known == prefixes.end() ? 0.0 : known->second;
 }
 
@@ -48,14 +48,15 @@ double metres_of(const std::string& instance) {
 
 double unit_of_step_m(const std::string& path) {
   const std::map<std::string, std::string> instances = unit_instances(read_bytes(path));
-  static const std::regex assigned("GLOBAL_UNIT_ASSIGNED_CONTEXT\\(\\(([^)]*)\\)\\)"), reference("#[0-9]+");
+  static const Pattern assigned("GLOBAL_UNIT_ASSIGNED_CONTEXT\\(\\(([^)]*)\\)\\)"), reference("#[0-9]+");
   std::set<double> units_m;
   for (const auto& [name, context] : instances) {
-    std::smatch list;
-    if (!std::regex_search(context, list, assigned)) continue;
-    const std::string references = list[1];
-    for (std::sregex_iterator r(references.begin(), references.end(), reference), end; r != end; ++r) {
-      const auto unit = instances.find(r->str());
+    const auto list = assigned.find(context);
+    if (!list) continue;
+    std::string references = list->at(1);
+    while (const auto one = reference.find(references)) {
+      references.erase(0, references.find(one->front()) + one->front().size());
+      const auto unit = instances.find(one->front());
       if (unit != instances.end() && unit->second.find("LENGTH_UNIT") != std::string::npos)
         units_m.insert(metres_of(unit->second));
     }
