@@ -24,23 +24,29 @@ constexpr const char* kProbingSystem =
     "G10 L2 P8 X0 Y0 Z0 R0\n"
     "G59.2\n";
 
-// Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6.
+// Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6. Never down before it is above the ring, and
+// down and aside by touches: what is in the way stops them.
 std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::size_t base) {
   const auto& at = ring.at_m;
   const std::string up = fmt::format("G0 Z{}\n", mm(at[2] + p.clearance_m));
   const auto missing = [&](std::size_t i) {
     return refusal(base + i, "#5070 EQ 0", up, fmt::format("ring {} missing", ring.name));
   };
-  std::string text =
-      fmt::format("(ring {})\n{}G0 X{} Y{}\nG1 Z{} F2000\n", ring.name, up, mm(at[0]), mm(at[1]), mm(at[2] - p.depth_m));
+  const auto guarded = [&](std::size_t label, const std::string& end) {
+    return fmt::format("G38.3 {} F{:.0f}\n", end, kWayDown_mm_min) +
+           refusal(base + label, "#5070 EQ 1", up, fmt::format("something is in the way above ring {}", ring.name));
+  };
+  std::string text = fmt::format("(ring {})\no{} if [#<_z> LT {}]\n{}o{} endif\nG0 X{} Y{}\n{}", ring.name, base + 12,
+                                 mm(at[2] + p.clearance_m), up, base + 12, mm(at[0]), mm(at[1]), up);
+  text += guarded(13, "Z" + mm(at[2] - p.depth_m));
   for (std::size_t i = 0; i < 4; ++i) {
     const int axis = i < 2 ? 0 : 1;
     const double to_m = at[axis] + (i % 2 ? -1.0 : 1.0) * search_m(p);
     text += fmt::format("G38.3 {}{} F{:.0f}\n{}#{} = #{}\nG1 X{} Y{} F2000\n", "XY"[axis], mm(to_m), p.feed_mm_min,
                         missing(i), base + i, 5061 + axis, mm(at[0]), mm(at[1]));
   }
-  text += fmt::format("G0 Z{}\nG0 X{}\nG38.3 Z{} F{:.0f}\n{}", mm(at[2] + 5e-3), mm(at[0] + 0.5 * p.free_diameter_m + 8e-3),
-                      mm(at[2] - 3e-3), p.feed_mm_min, missing(4));
+  text += fmt::format("G0 Z{}\n", mm(at[2] + 5e-3)) + guarded(14, "X" + mm(at[0] + 0.5 * p.free_diameter_m + 8e-3)) +
+          fmt::format("G38.3 Z{} F{:.0f}\n{}", mm(at[2] - 3e-3), p.feed_mm_min, missing(4));
   text += fmt::format("(once more, slowly)\nG91 G1 Z{} F2000\nG90\nG38.3 Z{} F{:.0f}\n{}#{} = #5063\n{}", mm(kBackOff_m),
                       mm(at[2] - 3e-3), kSlowTouch * p.feed_mm_min, missing(11), base + 4, up);
   text += refusal(base + 7, fmt::format("ABS[#{} - {}] GT {:g}", base + 4, mm(at[2]), 1e3 * kMostRise_m), "",
@@ -63,7 +69,9 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "this anew)\n"
       "(G59.2 is used for probing. T and M6 of the probe first: its length comes from the tool table)\n"
       "G21 G90 G94 G17 G40\n";
-  text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is required");
+  text += refusal(90, fmt::format("#5400 NE {}", p.probe_tool), "",
+                  fmt::format("no probe in the spindle, tool {} is required, the key tool of probe", p.probe_tool));
+  text += refusal(92, "#<_spindle_on> EQ 1", "", "the spindle turns, M5 first");
   text += refusal(91, "#5210 EQ 1", "", "G92 is in force, G92.1 first");
   text += kProbingSystem;
   for (std::size_t r = 0; r < 2; ++r) text += ring_touches(p, p.rings[r], 100 + 20 * r);

@@ -93,9 +93,9 @@ TEST(AxisProgram, WritesTheOffsetAfterAllChecks) {
   EXPECT_THAT(update.substr(0, update.find('\n')), Not(HasSubstr("SAVE"))) << "SAVE takes the offset away at the return";
   const std::string touch = file("siemens/TOUCHZ.SPF");
   EXPECT_THAT(touch, AllOf(HasSubstr(") SAVE DISPLOF\n"), Not(HasSubstr("$P_UBFR"))));
-  expect_in_order(touch,
-                  {"IF $P_TOOL==0 GOTOF NOLENGTH\n", "GOTOF OTHERFRAME\n", "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n",
-                   "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n", "TA_READ=$AA_MW[Z]\nGOTOF AWAY\n", "NOGAUGE:\nTA_STATUS=65018"});
+  expect_in_order(touch, {"IF $P_TOOL==0 GOTOF NOLENGTH\n", "($P_ACTFRAME[X,RT]<>0)", "GOTOF OTHERFRAME\n",
+                          "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n", "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n",
+                          "TA_READ=$AA_MW[Z]\nGOTOF AWAY\n", "NOGAUGE:\nTA_STATUS=65018"});
   const std::string klartext = file("heidenhain/PROBEZ.H");
   expect_in_order(klartext, {"FN 0: Q59 = +1\n", "TCH PROBE 427", "FN 11: IF +Q58 GT +Q60 GOTO LBL 99\n",
                              "FN 11: IF +Q61 GT +0.10000 GOTO LBL 99\n", "FN 1: Q48 = +Q48 + +Q57\n",
