@@ -11,9 +11,13 @@ namespace {
 // would drop.
 std::string refusal(std::size_t label, const std::string& condition, const std::string& way_out, const std::string& words) {
   return fmt::format(
-      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
+      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}M72\nG54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
       condition, way_out, words, label);
 }
+
+// Lengths and feeds, and no rounded corners: with G64 a way beside begins before the way up has ended. M73 and M72 give the
+// user's modes back.
+constexpr const char* kProbingModes = "G21 G90 G94 G17 G40 G61\n";
 
 // Tool length and a system without offsets. G59.2 in inches tells the unit of the machine.
 constexpr const char* kProbingSystem =
@@ -68,7 +72,8 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "(G59.3 becomes G54 with the correction; G54 stays. Programs to be corrected run in G59.3; after a change of G54 run "
       "this anew)\n"
       "(G59.2 is used for probing. T and M6 of the probe first: its length comes from the tool table)\n"
-      "G21 G90 G94 G17 G40\n";
+      "M70\n";
+  text += kProbingModes;
   text += refusal(90, fmt::format("#5400 NE {}", p.probe_tool), "",
                   fmt::format("no probe in the spindle, tool {} is required, the key tool of probe", p.probe_tool));
   text += refusal(92, "#<_spindle_on> EQ 1", "", "the spindle turns, M5 first");
@@ -93,6 +98,7 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "#157 = [#154 + #160 * #5223]\n"
       "#158 = [#152 + #5230]\n"
       "G10 L2 P9 X#155 Y#156 Z#157 R#158\n"
+      "M72\n"
       "G54\n"
       "(the scale belongs into joint_0.comp, which is read as LinuxCNC starts)\n"
       "M2\n";
@@ -168,8 +174,9 @@ std::vector<ProgramFile> linuxcnc_axis(const AxisProgram& p) {
   text += fmt::format(
       "(G59.2 is used for probing. By o<probe_{0}> call, after T and M6 of the probe. #<_value>: 0 taken, 1 no probe, 2 "
       "G92, 3 no gauge, 4 refused, 5 something in the way, 6 the spindle turns)\n"
-      "o<probe_{0}> sub\nM73\nG21 G90 G94 G17 G40\n",
+      "o<probe_{0}> sub\nM73\n",
       small);
+  text += kProbingModes;
   if (p.to_component) text += fmt::format("M65 P{}\n", p.axis);
   text += touch_refusal(p, 100, fmt::format("#5400 NE {}", p.probe_tool), "", 1,
                         fmt::format("no probe in the spindle, tool {} is required", p.probe_tool));

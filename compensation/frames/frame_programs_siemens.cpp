@@ -7,7 +7,8 @@ namespace driftwright::compensation {
 namespace {
 
 // Where the tip of the probe is measured: no frame is in force, a probe is in the spindle and does not turn. A program with
-// SAVE has its caller's frames back at its end. Types of tools: 580 3D probe of lathes, 710 to 714 probes of mills.
+// SAVE has its caller's frames back at its end. G60: with G64 a way beside begins before the way up has ended. Types of
+// tools: 580 3D probe of lathes, 710 to 714 probes of mills.
 std::string probe_without_frames() {
   std::string text =
       "IF $P_TOOL==0 GOTOF NOLENGTH\n"
@@ -23,7 +24,7 @@ std::string probe_without_frames() {
          "IF ($TC_DP1[$P_TOOLNO,$P_TOOL]<>580) AND (($TC_DP1[$P_TOOLNO,$P_TOOL]<710) OR ($TC_DP1[$P_TOOLNO,$P_TOOL]>714)) "
          "GOTOF NOPROBE\n"
          "M5\n"
-         "G17 G40\n";
+         "G17 G40 G60\n";
 }
 
 // Rapid motion to a place above what is touched.

@@ -197,15 +197,16 @@ TEST(FrameProgram, RefusesBeforeItComesNearARing) {
   FrameProgram p = program();
   p.probe_tool = 9;
   const std::string ngc = file("linuxcnc/thermframe.ngc", p);
-  expect_in_order(ngc, {"[#5400 NE 9]", "M2\n", "[#<_spindle_on> EQ 1]", "M2\n",  //
-                        "o112 if [#<_z> LT 50.0000]\nG0 Z50.0000\no112 endif\nG0 X-4800.0000 Y100.0000\nG0 Z50.0000\n",
-                        "G38.3 Z-5.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low", "G38.3 X-47",
-                        "G0 Z5.0000\nG38.3 X-4770.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low",
-                        "G38.3 Z-3.0000", "o132 if [#<_z> LT 50.0000]", "in the way above ring high"});
+  expect_in_order(
+      ngc, {"M70\nG21 G90 G94 G17 G40 G61\n", "[#5400 NE 9]", "M72\nG54\n", "M2\n", "[#<_spindle_on> EQ 1]", "M2\n",  //
+            "o112 if [#<_z> LT 50.0000]\nG0 Z50.0000\no112 endif\nG0 X-4800.0000 Y100.0000\nG0 Z50.0000\n",
+            "G38.3 Z-5.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low", "G38.3 X-47",
+            "G0 Z5.0000\nG38.3 X-4770.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low", "G38.3 Z-3.0000",
+            "o132 if [#<_z> LT 50.0000]", "in the way above ring high"});
   EXPECT_THAT(ngc, Not(HasSubstr("G1 Z-5.0000"))) << "down without a touch";
   const std::string ring = file("siemens/RINGMEAS.SPF");
   expect_in_order(ring, {"GOTOF NOLENGTH\n", "($P_ACTFRAME[X,RT]<>0)", "($P_ACTFRAME[Y,SC]<>1)", "($P_ACTFRAME[Z,MI]==TRUE)",
-                         "GOTOF NOPROBE\nM5\nG17 G40\n", "IF $AA_IW[Z]>=TF_CZ+50.000 GOTOF ABOVE",
+                         "GOTOF NOPROBE\nM5\nG17 G40 G60\n", "IF $AA_IW[Z]>=TF_CZ+50.000 GOTOF ABOVE",
                          "ABOVE:\nG0 X=TF_CX Y=TF_CY\nG0 Z=TF_CZ+50.000\n",
                          "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=TF_CZ-5.000 F1500\nSTOPRE\n",
                          "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n", "TF_WALL[3]=$AA_MW[Y]",
