@@ -260,11 +260,9 @@ void export_model(const ExportOptions& options) {
              : options.type == "me" ? "model exchange"
                                     : "co-simulation",
              order.model.name, order.model.description);
-  for (const output::DriveRange& r : order.model.drive) {
-    for (const output::FmuVariable& v : output::variables_of(order.model)) {
-      if (v.max && *v.max == r.most && v.causality == "input")
-        fmt::print("  {} from 0 to {:g} {}\n", v.name, r.most, v.unit);
-    }
+  for (const output::FmuVariable& v : output::variables_of(order.model)) {
+    if (v.causality == "input" && v.max)
+      fmt::print("  {} from {:g} to {:g} {}\n", v.name, v.min.value_or(0.0), *v.max, v.unit);
   }
 }
 

@@ -50,6 +50,18 @@ cyclograms:
     columns: [duration, speed, cutting_power]
     rows: [[60 min, 3000 rpm, 20 W], [60 min, 100 rpm, 100 W]]
 """
+ALONG = CORNER[: CORNER.index("  - {type: formula")] + """  - {type: heat_source, node: body, power: 100 W, at_speed: 3000 rpm, exponent: 1}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
+  - {type: linear_scale, displacement: x, body: body, expansion: 8e-6 1/K, position: position_x}
+  - {type: linear_scale, displacement: y, body: body, expansion: 8e-6 1/K, position: position_y}
+displacements:
+  - {name: x, sensitivities: [{node: body, sensitivity: 2 um/K}]}
+  - {name: y, sensitivities: [{node: body, sensitivity: 1 um/K}]}
+cyclograms:
+  warm:
+    columns: [duration, speed, position_x_mm, position_y_mm]
+    rows: [[60 min, 3000 rpm, -200 mm, 0 mm], [60 min, 100 rpm, 300 mm, 300 mm]]
+"""
 CORNER_ROWS = """#include <stdio.h>
 #include "plain_model.h"
 static plain_model m;
@@ -235,6 +247,10 @@ def main():
         (folder / "live.yaml").write_text(first[: first.index("sensors:")] + LIVE + MACHINE + "solver: {relative_tolerance: 1e-8, absolute_tolerance: 1e-8 K}\n")
         plain_c(call, folder, "live_c", "live.yaml", stated=STATED_LIVE)
         law_without_a_value(call, folder)
+        (folder / "along.yaml").write_text(ALONG)
+        said = call("export", "along.yaml", "--fmu", "-o", "along.fmu").stdout
+        ranges = re.findall(r"^  (\w+) from (\S+) to (\S+) (\S+)$", said, re.M)
+        expect(ranges == [("spindle_speed", "0", "3000", "rpm"), ("position_x", "-200", "300", "mm"), ("position_y", "0", "300", "mm")], f"each input once, with its range: {said}")
         for model in ("observer", "thermal_modes_of_the_model", "model_fitted_to_the_training_runs"):
             plain_c(call, folder, model + "_c", "small.yaml", "--of", "observer", "--model", f"judged/models/{model}.json")
         for model in ("one_thermometer", "ridge_all_sensors", "regression_with_lags", "thermometers_and_drive", "transfer_functions_from_speed"):
