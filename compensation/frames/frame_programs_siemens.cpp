@@ -187,12 +187,16 @@ std::string setting_data(const FrameProgram& p) {
   text += fmt::format(
       "; MD32760: {:g} of MD32000 {:.0f} mm/min, so that the axis follows at {:.0f} mm/min at most\n"
       "; MD32750 acts after power-on only, MD32760 after NEWCONF; the setting data act at once. P0 is a machine coordinate\n"
+      "IF $MN_SCALING_SYSTEM_IS_METRIC==FALSE GOTOF INCHES\n"
       "$MA_TEMP_COMP_TYPE[AX1]=3               ; MD32750: K0 and tan_beta\n"
       "$MA_COMP_ADD_VELO_FACTOR[AX1]={:g}     ; MD32760\n"
       "NEWCONF\n"
       "$SA_TEMP_COMP_ABS_VALUE[AX1]={}     ; SD43900, K0 [mm]\n"
       "$SA_TEMP_COMP_SLOPE[AX1]={:.6f}       ; SD43910, tan_beta\n"
       "$SA_TEMP_COMP_REF_POSITION[AX1]={}  ; SD43920, P0 [mm]\n"
+      "M17\n"
+      "INCHES:\n"
+      "SETAL(65024)                            ; mm are required: a metric control\n"
       "M17\n",
       p.slew, 6e4 * p.velocity_m_s, 6e4 * p.velocity_m_s * p.slew, p.slew, mm(sign * data.absolute_m, 3),
       sign * data.slope + 0.0, mm(data.reference_m, 3));

@@ -214,6 +214,8 @@ TEST(FrameProgram, RefusesBeforeItComesNearARing) {
                          "INTHEWAY:\nTF_STATUS=65021", "GOTOF AWAY\n", "NOPROBE:\nTF_STATUS=65023", "GOTOF BACK\n"});
   expect_in_order(file("siemens/THERMFRAME.SPF"), {"OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n",
                                                    "$P_BFRAME=CTRANS()\n", "INCHES:\nTF_STATUS=65024"});
+  expect_in_order(file("siemens/THERMDATA.SPF"),
+                  {"METRIC==FALSE GOTOF INCHES\n", "$SA_TEMP_COMP_ABS_VALUE[AX1]=", "M17\nINCHES:\nSETAL(65024)"});
 }
 
 TEST(FrameProgram, ReadsTheTipOfTheProbeAndNoMachineAxis) {
