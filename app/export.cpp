@@ -124,11 +124,31 @@ void show_files(const output::ResultsFolder& folder) {
   }
 }
 
+/// @throws InputError  for options of a functional mock-up unit that a control or a PLC does not have
+void refuse_options_of_units(const ExportOptions& options) {
+  const ExportOptions usual;
+  if (options.fmi == usual.fmi && options.type == usual.type) return;
+  throw InputError(
+      fmt::format("--fmi and --type are for a functional mock-up unit (--fmu); leave them out of --as {}", options.as));
+}
+
+/// @throws InputError  for options of an axis: a machine or an observer says displacements, and moves none
+void refuse_options_of_axes(const ExportOptions& options) {
+  if (options.axis.empty() && options.axis_moves == ExportOptions{}.axis_moves) return;
+  throw InputError(
+      "--axis and --axis-moves are for a formula (--model, without a scenario) and --as siemens, heidenhain or fanuc. A "
+      "machine or an observer corrects no axis itself: its outputs are displacements under their names in the scenario; "
+      "leave these options out");
+}
+
 /// A formula of models/ as files for a control.
 void export_formula(const ExportOptions& options) {
   if (options.model.empty())
     throw InputError(fmt::format("--as {} requires --model FILE, a formula of models/ as `validate` writes it{}", options.as,
                                  options.as == "c" ? ", or a scenario, whose machine or observer becomes C" : ""));
+  refuse_options_of_units(options);
+  if (options.of == "observer")
+    throw InputError("--of observer requires the scenario that the observer was fitted with, and --as c or --fmu");
   const bool is_of_axis = options.as == "siemens" || options.as == "heidenhain" || options.as == "fanuc";
   if (!is_of_axis && !options.axis.empty())
     throw InputError(fmt::format("--as {} corrects no axis; leave --axis out", options.as));
@@ -190,6 +210,8 @@ void export_model(const ExportOptions& options) {
         fmt::format("--as {} takes a formula of models/ (--model, without a scenario); a scenario's machine or observer is "
                     "exported --as c",
                     options.as));
+  refuse_options_of_axes(options);
+  if (!options.fmu) refuse_options_of_units(options);
   const bool of_observer = options.of == "observer";
   if (of_observer == options.model.empty())
     throw InputError(of_observer
@@ -238,11 +260,9 @@ void export_model(const ExportOptions& options) {
              : options.type == "me" ? "model exchange"
                                     : "co-simulation",
              order.model.name, order.model.description);
-  for (const output::DriveRange& r : order.model.drive) {
-    for (const output::FmuVariable& v : output::variables_of(order.model)) {
-      if (v.max && *v.max == r.most && v.causality == "input")
-        fmt::print("  {} from 0 to {:g} {}\n", v.name, r.most, v.unit);
-    }
+  for (const output::FmuVariable& v : output::variables_of(order.model)) {
+    if (v.causality == "input" && v.max)
+      fmt::print("  {} from {:g} to {:g} {}\n", v.name, v.min.value_or(0.0), *v.max, v.unit);
   }
 }
 

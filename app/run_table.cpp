@@ -20,6 +20,7 @@ compensation::FrameProgram frame_program(const scenarios::Scenario& scenario, co
   program.temperature_K = study.course.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
   program.free_diameter_m = s.probe.free_diameter_m;
   program.ball_diameter_m = s.ball_diameter_m;
+  program.probe_tool = s.probe_tool;
   program.feed_mm_min = 6e4 * s.probe.feeds_m_s.front();
   program.velocity_m_s = s.velocity_m_s;
   program.slew = s.slew;

@@ -143,7 +143,7 @@ void view(const ViewOptions& options) {
     page.subtitle = fmt::format("Twin of a machine tool: {}.", model.words());
   }
   const studies::Prediction prediction =
-      studies::predict_drift(scenario, first, {.with_band = true}, progress.listener(), "view");
+      studies::predict_drift(output::as_the_page_has_it(scenario), first, {.with_band = true}, progress.listener(), "view");
   page.check = prediction.record;
   page.band = prediction.band;
   page.check_by = fmt::format("`driftwright predict` ({})", prediction.predicted_by);

@@ -13,9 +13,22 @@ namespace {
 struct UnitOfRecords {
   const char* name;  ///< as headers of records have it
   const char* unit;  ///< as UDUNITS reads it
+  /// The largest unit in which an instrument of a machine reads, and its size in `unit`. UDUNITS also knows furlongs and
+  /// years; a column of these is a mistake, and would be read as a displacement of kilometres.
+  const char* largest;
+  double largest_in_unit;
 };
-constexpr UnitOfRecords kUnits[] = {{"K", "K"}, {"um", "um"},      {"mm_min", "mm/min"}, {"rpm", "rpm"}, {"urad", "urad"},
-                                    {"W", "W"}, {"W_m2", "W/m^2"}, {"V", "V"},           {"s", "s"},     {"1", "1"}};
+constexpr UnitOfRecords kUnits[] = {{"K", "K", "K", 1.0},
+                                    {"um", "um", "m", 1e6},
+                                    {"mm_min", "mm/min", "m/s", 6e4},
+                                    {"rpm", "rpm", "1000 rpm", 1e3},
+                                    {"urad", "urad", "a revolution", 6.2832e6},
+                                    {"W", "W", "kW", 1e3},
+                                    {"W_m2", "W/m^2", "W/cm^2", 1e4},
+                                    {"V", "V", "kV", 1e3},
+                                    {"s", "s", "day", 86400.0},
+                                    {"1", "1", "1", 1.0}};
+constexpr double kSameUnit = 1e-6;  // relative: rounding of factors
 
 /// UDUNITS also turns a quantity into its reciprocal, Hz into s; here that is another quantity.
 bool are_convertible(const std::string& from, const std::string& to) {
@@ -59,7 +72,11 @@ std::string record_unit(const std::string& written_unit) {
   if (written_unit == "%" || written_unit == "percent") return "percent";
   if (written_unit == "count" || written_unit == "counts") return "count";
   for (const UnitOfRecords& u : kUnits) {
-    if (are_convertible(written_unit, u.unit)) return u.name;
+    if (!are_convertible(written_unit, u.unit)) continue;
+    if (std::abs(unit_factor(written_unit, u.unit)) > u.largest_in_unit * (1.0 + kSameUnit))
+      throw RangeError(fmt::format("no instrument of a machine reads in '{}'; the largest unit of that kind is {}",
+                                   written_unit, u.largest));
+    return u.name;
   }
   throw RangeError(
       fmt::format("records have no channel for '{}'; units of temperature, length, velocity, rotational speed (rpm), angle, "

@@ -69,7 +69,8 @@ struct ColumnMap {
 
 /// The unit in which a record stores a column written in `written_unit` (UDUNITS syntax): degC for absolute temperatures, K
 /// for differences, um for lengths, mm_min for velocities, rpm, urad, W, W_m2, V, percent, count, s, 1.
-/// @throws RangeError  for an unknown unit, and for a unit that records cannot store
+/// @throws RangeError  for an unknown unit, for a unit that records cannot store, and for one that is too large for any
+///                     instrument of a machine, such as furlong
 [[nodiscard]] std::string record_unit(const std::string& written_unit);
 
 /// The unit of a record's header as UDUNITS reads it: "mm/min" of "mm_min", "%" of "percent".

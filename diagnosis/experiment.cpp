@@ -53,7 +53,7 @@ struct Open {
   std::vector<Explanation> explanations;
   std::vector<OpenQuestion> questions;
   std::vector<const Claim*> claims;  ///< in dispute, one per explanation; for the first, the first finding's
-  std::vector<std::string> names;    ///< of these claims, in words
+  std::vector<std::string> names;    ///< of each question: its finding and what may be in its place, in words
 };
 
 std::string words(const Claim& c) {
@@ -109,11 +109,8 @@ Open open_questions(const Fitter& fitter, const SearchResult& result, const std:
     const Finding& finding = result.findings[f];
     const bool may_be_none = f < in_doubt.size() && in_doubt[f];
     if (finding.alternatives.empty() && !may_be_none) continue;
-    const auto name = [&](const Claim& claim, std::string words) {
-      open.claims.push_back(&claim);
-      open.names.push_back(std::move(words));
-    };
-    if (open.claims.empty()) name(finding.claim, words(finding.claim));
+    if (open.claims.empty()) open.claims.push_back(&finding.claim);
+    std::vector<std::string> names = {words(finding.claim)};
     std::vector<Weighed> list = {{0, result.names.at(finding.claim.candidate), finding.probability, finding.share}};
     for (const Finding::Alternative& a : finding.alternatives) {
       Hypothesis other = result.hypothesis;
@@ -121,7 +118,8 @@ Open open_questions(const Fitter& fitter, const SearchResult& result, const std:
       other.push_back(a.claim);
       list.push_back({open.explanations.size(), result.names.at(a.claim.candidate), a.probability, a.share});
       open.explanations.push_back(explanation_of(fitter, std::move(other), a.fit));
-      name(a.claim, words(a.claim));
+      open.claims.push_back(&a.claim);
+      names.push_back(words(a.claim));
     }
     if (may_be_none) {
       if (auto without = without_finding(fitter, result, f)) {
@@ -131,10 +129,13 @@ Open open_questions(const Fitter& fitter, const SearchResult& result, const std:
         list.push_back(
             {open.explanations.size(), {StatedQuantity::kHeat, {kNothingInItsPlace}}, 1.0 - std::min(1.0, stated), 1.0});
         open.explanations.push_back(std::move(*without));
-        name(finding.claim, kNothingInItsPlace);
+        open.claims.push_back(&finding.claim);
+        names.emplace_back(kNothingInItsPlace);
       }
     }
-    if (list.size() > 1) open.questions.push_back(weighed(list));
+    if (list.size() < 2) continue;
+    open.questions.push_back(weighed(list));
+    open.names.push_back(fmt::format("{}", fmt::join(names, " and ")));
   }
   return open;
 }
@@ -271,7 +272,7 @@ double largest_difference_K(const Ahead& ahead, const Open& open, int output) {
 }
 
 std::string why_of(const Experiment& e, const Open& open, const std::string& of_place, bool once_only) {
-  const std::string of = fmt::format("{}", fmt::join(open.names, " and "));
+  const std::string of = fmt::format("{}", fmt::join(open.names, ", and "));
   if (once_only) {
     return fmt::format("{} each happened in one record only, which a new one does not show again; {}", of,
                        e.extra_sensor && e.extra_sensor->decides > kWorthIt

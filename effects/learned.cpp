@@ -106,6 +106,8 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("at_speed", "`at_speed` is allowed only with `follows: speed` or `follows: running`");
   if (e.has("error") && (follows == "nothing" || follows == "ambient"))
     in.fail("error", "`error` is allowed only for what follows a drive: the turning spindle, its speed or a column");
+  if (e.has("error") && follows == "running" && !e.has("at_speed"))
+    in.fail("error", "`error` requires `at_speed`, the fastest that was learned from: beyond it the error grows");
   if ((follows == "column") != e.has("at")) in.fail("at", "`follows: column` and `at` must be given together");
   if (follows == "nothing" && e["keeps"] == 1.0 && !e.has("offset"))
     in.fail("follows", "the entry learns nothing; write what it `follows`, or `keeps`, or an `offset`");

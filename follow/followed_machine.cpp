@@ -180,10 +180,10 @@ class FollowedMachine final : public Followed {
     for (std::size_t a = 0; a < axes.size(); ++a) {
       axes[a].correction_um = stages_[a].state().correction_um;
       axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
-      if (has_begun()) axes[a].doubted = run_->older_than(stages_[a].most_age_s());
+      if (run_) axes[a].doubted = has_begun() ? run_->older_than(stages_[a].most_age_s()) : run_->not_given();
       for (const std::string& name : beyond_) {
         std::vector<std::string>& doubted = axes[a].doubted;
-        if (has_begun() && std::find(doubted.begin(), doubted.end(), name) == doubted.end()) doubted.push_back(name);
+        if (std::find(doubted.begin(), doubted.end(), name) == doubted.end()) doubted.push_back(name);
       }
     }
     return axes;

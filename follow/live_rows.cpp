@@ -84,10 +84,7 @@ bool LiveRows::add(double run_s, const std::vector<double>& values) {
   hear(run_s, values);
   Record& readings = run_.readings;
   if (readings.time_s.empty()) {
-    if (std::isnan(ambient_K_) || (wants_drive_ && !has_drive_)) return false;
-    for (const Signal& s : drive_.signals) {
-      if (std::isnan(s.value)) return false;
-    }
+    if (!not_given().empty()) return false;
     before_ = drive_;
     start_s_ = run_s;
   }
@@ -118,6 +115,18 @@ std::vector<std::string> LiveRows::older_than(double age_s) const {
   for (const ColumnAge& f : followed_) {
     const std::string& name = run_.readings.channels[f.channel].name;
     if (now_s_ - f.at_s > age_s && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> LiveRows::not_given() const {
+  std::vector<std::string> names;
+  if (wants_drive_ && !has_drive_) names.emplace_back("speed");
+  if (std::isnan(ambient_K_)) names.push_back(ambient_ == kNone ? "ambient" : run_.readings.channels[ambient_].name);
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    const std::string& name = run_.readings.channels[followed_[k].channel].name;
+    if (std::isnan(drive_.signals[k].value) && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
   }
   return names;
 }

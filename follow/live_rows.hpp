@@ -40,6 +40,8 @@ class LiveRows {
   [[nodiscard]] double drive_age_s() const;
   /// The names of those that are older than `age_s`.
   [[nodiscard]] std::vector<std::string> older_than(double age_s) const;
+  /// The names of those that no row has given yet.
+  [[nodiscard]] std::vector<std::string> not_given() const;
   /// The drive between the last row but one and the last row.
   [[nodiscard]] const Drive& drive_before() const { return before_; }
   [[nodiscard]] const Drive& drive() const { return drive_; }    ///< from the last row on

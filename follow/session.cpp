@@ -142,7 +142,8 @@ FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::st
   l.state = !has_begun || trust <= kOff ? "off" : trust < kOn ? "reduced" : is_taken ? "on" : "held";
   if (l.state == "on") return l;
   if (!has_begun) {
-    l.why = "no row has given drive and ambient yet";
+    l.why = fmt::format("no row has given {} yet",
+                        doubted.empty() ? "drive and ambient" : fmt::format("{}", fmt::join(doubted, ", ")));
   } else if (!is_taken) {
     l.why = !passed_over.empty() ? passed_over : fmt::format("the row is passed over: {}", fmt::join(l.faults, ", "));
     if (lost_probing) l.why += "; its probing was not used, probe again";

@@ -173,6 +173,11 @@ class Siemens final : public Dialect {
         "{} by 0.1 mm agrees with this file, otherwise export with --axis-moves {}.\n",
         index_.size() - 1, n_actions_, index_.size(), axis_.against_dk ? "to minus" : "to plus",
         axis_.against_dk ? "by_dk" : "against_dk");
+    head +=
+        "IF $MN_SCALING_SYSTEM_IS_METRIC==TRUE GOTOF METRIC\n"
+        "SETAL(65024)                            ; mm are required: SD43900 of a control in inches is in inches\n"
+        "RET\n"
+        "METRIC:\n";
     for (std::size_t k = 0; k < index_.size(); ++k) head += fmt::format("$AC_PARAM[{}]=0\n", k);
     head += fmt::format("$AC_MARKER[0]=0\n$AC_TIMER[0]={}\n", number(period_s_));
     return {name_ + ".SPF", head + text_ + "RET\n"};
@@ -294,6 +299,9 @@ class Fanuc final : public Dialect {
         "(THE THERMOMETERS MUST BE IN THESE VARIABLES IN DEGC: FROM THE PMC OR FROM A PC)\n"
         "(USES #{} TO #{}. IT SETS THE EXTERNAL WORK ZERO OFFSET OF {} ALONE: CALL IT BEFORE EACH PART, IN G21 AND G90)\n",
         kFanucFirst, next_ - 1, axis_.letter);
+    head +=  // modal codes of groups 6 and 3
+        "IF [#4006 LT 21] THEN #3000=1 (MM ARE REQUIRED, G21 FIRST)\n"
+        "IF [#4003 GT 90] THEN #3000=2 (G90 IS REQUIRED)\n";
     if (index_.contains("started"))
       head += fmt::format("(RISES COUNT FROM THE FIRST CALL: SET #{} TO 0 BEFORE THE FIRST CALL OF A RUN)\n",
                           index_.at("started"));

@@ -29,12 +29,13 @@ struct FrameProgram {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< of the mesh, in machine coordinates
   double free_diameter_m = 0.044;                      ///< diameter of the ring less that of the stylus ball
   double ball_diameter_m = 6e-3;
-  double feed_mm_min = 300.0;                                           ///< feed of touches
-  double depth_m = 5e-3;                                                ///< depth of the stylus in the ring
-  double clearance_m = 50e-3;                                           ///< height above the ring while moving to it
-  double velocity_m_s = 0.5;                                            ///< MD32000
-  double slew = 0.01;                                                   ///< MD32760
-  double low_m = -5.0, high_m = 5.0;                                    ///< of the compensation table along X
+  int probe_tool = 99;                ///< number of the probe in the tool table of LinuxCNC; above 0
+  double feed_mm_min = 300.0;         ///< feed of touches
+  double depth_m = 5e-3;              ///< depth of the stylus in the ring
+  double clearance_m = 50e-3;         ///< height above the ring while moving to it
+  double velocity_m_s = 0.5;          ///< MD32000
+  double slew = 0.01;                 ///< MD32760
+  double low_m = -5.0, high_m = 5.0;  ///< of the compensation table along X
   double most_correction_um = std::numeric_limits<double>::infinity();  ///< limit of the scenario, for a comment
   std::string made_by = {};
 };
@@ -56,7 +57,8 @@ inline constexpr double kMostOffLine = 1e-3;
 [[nodiscard]] FrameProgram in_machine(FrameProgram program, const Eigen::Vector3d& origin_m);
 
 /// THERMFRAME.SPF: measures both rings by four touches each (RINGMEAS.SPF), computes TEMP_SCALE and TEMP_SHIFT and writes
-/// $P_UBFR and $P_BFRAME; it refuses what temp_frame() refuses and then keeps the old frame. THERMDATA.SPF: SD43900,
+/// $P_UBFR and $P_BFRAME; it refuses what temp_frame() refuses and then keeps the old frame; the alarm comes after the way
+/// back. The way down to a ring is a touch, too. THERMDATA.SPF: SD43900,
 /// SD43910, SD43920 with MD32750 and MD32760.
 [[nodiscard]] std::vector<ProgramFile> siemens_frame(const FrameProgram& program);
 

@@ -11,9 +11,13 @@ namespace {
 // would drop.
 std::string refusal(std::size_t label, const std::string& condition, const std::string& way_out, const std::string& words) {
   return fmt::format(
-      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
+      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}M72\nG54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
       condition, way_out, words, label);
 }
+
+// Lengths and feeds, and no rounded corners: with G64 a way beside begins before the way up has ended. M73 and M72 give the
+// user's modes back.
+constexpr const char* kProbingModes = "G21 G90 G94 G17 G40 G61\n";
 
 // Tool length and a system without offsets. G59.2 in inches tells the unit of the machine.
 constexpr const char* kProbingSystem =
@@ -24,23 +28,29 @@ constexpr const char* kProbingSystem =
     "G10 L2 P8 X0 Y0 Z0 R0\n"
     "G59.2\n";
 
-// Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6.
+// Stores touches in #base .. #base + 4, the centre in #base + 5 and #base + 6. Never down before it is above the ring, and
+// down and aside by touches: what is in the way stops them.
 std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::size_t base) {
   const auto& at = ring.at_m;
   const std::string up = fmt::format("G0 Z{}\n", mm(at[2] + p.clearance_m));
   const auto missing = [&](std::size_t i) {
     return refusal(base + i, "#5070 EQ 0", up, fmt::format("ring {} missing", ring.name));
   };
-  std::string text =
-      fmt::format("(ring {})\n{}G0 X{} Y{}\nG1 Z{} F2000\n", ring.name, up, mm(at[0]), mm(at[1]), mm(at[2] - p.depth_m));
+  const auto guarded = [&](std::size_t label, const std::string& end) {
+    return fmt::format("G38.3 {} F{:.0f}\n", end, kWayDown_mm_min) +
+           refusal(base + label, "#5070 EQ 1", up, fmt::format("something is in the way above ring {}", ring.name));
+  };
+  std::string text = fmt::format("(ring {})\no{} if [#<_z> LT {}]\n{}o{} endif\nG0 X{} Y{}\n{}", ring.name, base + 12,
+                                 mm(at[2] + p.clearance_m), up, base + 12, mm(at[0]), mm(at[1]), up);
+  text += guarded(13, "Z" + mm(at[2] - p.depth_m));
   for (std::size_t i = 0; i < 4; ++i) {
     const int axis = i < 2 ? 0 : 1;
     const double to_m = at[axis] + (i % 2 ? -1.0 : 1.0) * search_m(p);
     text += fmt::format("G38.3 {}{} F{:.0f}\n{}#{} = #{}\nG1 X{} Y{} F2000\n", "XY"[axis], mm(to_m), p.feed_mm_min,
                         missing(i), base + i, 5061 + axis, mm(at[0]), mm(at[1]));
   }
-  text += fmt::format("G0 Z{}\nG0 X{}\nG38.3 Z{} F{:.0f}\n{}", mm(at[2] + 5e-3), mm(at[0] + 0.5 * p.free_diameter_m + 8e-3),
-                      mm(at[2] - 3e-3), p.feed_mm_min, missing(4));
+  text += fmt::format("G0 Z{}\n", mm(at[2] + 5e-3)) + guarded(14, "X" + mm(at[0] + 0.5 * p.free_diameter_m + 8e-3)) +
+          fmt::format("G38.3 Z{} F{:.0f}\n{}", mm(at[2] - 3e-3), p.feed_mm_min, missing(4));
   text += fmt::format("(once more, slowly)\nG91 G1 Z{} F2000\nG90\nG38.3 Z{} F{:.0f}\n{}#{} = #5063\n{}", mm(kBackOff_m),
                       mm(at[2] - 3e-3), kSlowTouch * p.feed_mm_min, missing(11), base + 4, up);
   text += refusal(base + 7, fmt::format("ABS[#{} - {}] GT {:g}", base + 4, mm(at[2]), 1e3 * kMostRise_m), "",
@@ -62,8 +72,11 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "(G59.3 becomes G54 with the correction; G54 stays. Programs to be corrected run in G59.3; after a change of G54 run "
       "this anew)\n"
       "(G59.2 is used for probing. T and M6 of the probe first: its length comes from the tool table)\n"
-      "G21 G90 G94 G17 G40\n";
-  text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is required");
+      "M70\n";
+  text += kProbingModes;
+  text += refusal(90, fmt::format("#5400 NE {}", p.probe_tool), "",
+                  fmt::format("no probe in the spindle, tool {} is required, the key tool of probe", p.probe_tool));
+  text += refusal(92, "#<_spindle_on> EQ 1", "", "the spindle turns, M5 first");
   text += refusal(91, "#5210 EQ 1", "", "G92 is in force, G92.1 first");
   text += kProbingSystem;
   for (std::size_t r = 0; r < 2; ++r) text += ring_touches(p, p.rings[r], 100 + 20 * r);
@@ -85,6 +98,7 @@ std::string linuxcnc_therm_frame(const FrameProgram& p) {
       "#157 = [#154 + #160 * #5223]\n"
       "#158 = [#152 + #5230]\n"
       "G10 L2 P9 X#155 Y#156 Z#157 R#158\n"
+      "M72\n"
       "G54\n"
       "(the scale belongs into joint_0.comp, which is read as LinuxCNC starts)\n"
       "M2\n";
@@ -160,8 +174,9 @@ std::vector<ProgramFile> linuxcnc_axis(const AxisProgram& p) {
   text += fmt::format(
       "(G59.2 is used for probing. By o<probe_{0}> call, after T and M6 of the probe. #<_value>: 0 taken, 1 no probe, 2 "
       "G92, 3 no gauge, 4 refused, 5 something in the way, 6 the spindle turns)\n"
-      "o<probe_{0}> sub\nM73\nG21 G90 G94 G17 G40\n",
+      "o<probe_{0}> sub\nM73\n",
       small);
+  text += kProbingModes;
   if (p.to_component) text += fmt::format("M65 P{}\n", p.axis);
   text += touch_refusal(p, 100, fmt::format("#5400 NE {}", p.probe_tool), "", 1,
                         fmt::format("no probe in the spindle, tool {} is required", p.probe_tool));

@@ -6,19 +6,69 @@
 namespace driftwright::compensation {
 namespace {
 
-// Where the tip of the probe is measured: no frame is in force. A program with SAVE has its caller's frames back at its end.
-constexpr const char* kWithoutFrames =
-    "IF $P_TOOL==0 GOTOF NOLENGTH\n"
-    "G500 G90 G71 G94\n"
-    "TRANS\n"
-    "$P_BFRAME=CTRANS()\n"
-    "IF ($P_ACTFRAME[X,TR]<>0) OR ($P_ACTFRAME[Y,TR]<>0) OR ($P_ACTFRAME[Z,TR]<>0) GOTOF OTHERFRAME\n"
-    "IF ($P_ACTFRAME[Z,RT]<>0) OR ($P_ACTFRAME[Y,RT]<>0) OR ($P_ACTFRAME[X,SC]<>1) GOTOF OTHERFRAME\n";
+// Where the tip of the probe is measured: no frame is in force, a probe is in the spindle and does not turn. A program with
+// SAVE has its caller's frames back at its end. G60: with G64 a way beside begins before the way up has ended. Types of
+// tools: 580 3D probe of lathes, 710 to 714 probes of mills.
+std::string probe_without_frames() {
+  std::string text =
+      "IF $P_TOOL==0 GOTOF NOLENGTH\n"
+      "G500 G90 G71 G94\n"
+      "TRANS\n"
+      "$P_BFRAME=CTRANS()\n";
+  for (const char axis : {'X', 'Y', 'Z'})
+    text += fmt::format(
+        "IF ($P_ACTFRAME[{0},TR]<>0) OR ($P_ACTFRAME[{0},FI]<>0) OR ($P_ACTFRAME[{0},RT]<>0) OR ($P_ACTFRAME[{0},SC]<>1) OR "
+        "($P_ACTFRAME[{0},MI]==TRUE) GOTOF OTHERFRAME\n",
+        axis);
+  return text +
+         "IF ($TC_DP1[$P_TOOLNO,$P_TOOL]<>580) AND (($TC_DP1[$P_TOOLNO,$P_TOOL]<710) OR ($TC_DP1[$P_TOOLNO,$P_TOOL]>714)) "
+         "GOTOF NOPROBE\n"
+         "M5\n"
+         "G17 G40 G60\n";
+}
 
-// A label that a program jumps to where it refuses.
-std::string refusal_at(const std::string& status, const char* label, int alarm, const char* words, const char* next) {
-  return fmt::format("{}:\n{}={}\nSETAL({})                            ; {}\n{}\n", label, status, alarm, alarm, words,
-                     next);
+// Rapid motion to a place above what is touched.
+std::string to_above(const std::string& x, const std::string& y, const std::string& high) {
+  return fmt::format(
+      "STOPRE\n"
+      "IF $AA_IW[Z]>={2} GOTOF ABOVE           ; never down before it is above what is touched\n"
+      "G0 Z={2}\n"
+      "ABOVE:\n"
+      "G0 X={0} Y={1}\n"
+      "G0 Z={2}\n",
+      x, y, high);
+}
+
+// A motion that contact ends. With a probe that is deflected already no edge comes, and the axis would move through.
+std::string touch_to(const std::string& end, double feed_mm_min) {
+  return fmt::format("STOPRE\nIF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 {} F{:g}\nSTOPRE\n", end, feed_mm_min);
+}
+
+// A motion on which nothing may be touched.
+std::string guarded_to(const std::string& end) {
+  return touch_to(end, kWayDown_mm_min) + "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n";
+}
+
+// A label at which a status is set. The alarm comes when the probe is away and all frames are back, because it may end the
+// program.
+std::string status_at(const char* status, const char* label, int alarm, const char* words, const char* next) {
+  return fmt::format("{}:\n{}={}                         ; {}\nGOTOF {}\n", label, status, alarm, words, next);
+}
+
+// What ends a probing, whatever is touched.
+std::string probe_refusals(const char* status, const char* above) {
+  return status_at(status, "INTHEWAY", 65021, fmt::format("something is in the way above the {}", above).c_str(), "AWAY") +
+         status_at(status, "DEFLECTED", 65022, "the probe is deflected, or not connected", "AWAY") +
+         status_at(status, "NOLENGTH", 65015, "no D number: the length of the probe is required", "BACK") +
+         status_at(status, "NOPROBE", 65023, "no probe in the spindle: tool type 580 or 710 to 714 is required", "BACK") +
+         status_at(status, "OTHERFRAME", 65016, "a global, system or external frame is in force", "BACK");
+}
+
+// Jumps where lengths are read in inches: the program's positions are in mm.
+constexpr const char* kNoInches =
+    "IF ($MN_SCALING_SYSTEM_IS_METRIC==FALSE) OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n";
+std::string inches(const char* status) {
+  return status_at(status, "INCHES", 65024, "mm are required: a metric control, and G71 or G710", "REFUSED");
 }
 
 // Names start with TF_, because X1, Y1, Z1, I and TURN are names of axes, interpolation and helices. No SAVE here, because
@@ -44,6 +94,7 @@ std::string siemens_therm_frame(const FrameProgram& p) {
       "STOPRE\n"
       "TF_OLD=$P_BFRAME\n"
       "TF_OLDDATA=$P_UBFR\n"
+      "{}"
       "$P_UBFR=CTRANS()                        ; the old correction must not be measured again, nor come back with G500\n"
       "$P_BFRAME=CTRANS()\n"
       "RINGMEAS(TF_X1, TF_Y1, TF_Z1, TF_X1N, TF_Y1N, TF_Z1N, TF_STATUS)\n"
@@ -65,17 +116,18 @@ std::string siemens_therm_frame(const FrameProgram& p) {
       "$P_BFRAME=TF_NEW\n"
       "STOPRE\n"
       "RET\n",
-      kMostScale);
+      kNoInches, kMostScale);
   const auto refusal = [](const char* label, int alarm, const char* words) {
-    return refusal_at("TF_STATUS", label, alarm, words, "GOTOF REFUSED");
+    return status_at("TF_STATUS", label, alarm, words, "REFUSED");
   };
   text += refusal("IDENTICAL", 65010, "rings identical") + refusal("SWAPPED", 65011, "rings swapped") +
-          refusal("NOHEAT", 65012, "no temperature does that");
+          refusal("NOHEAT", 65012, "no temperature does that") + inches("TF_STATUS");
   text +=
       "REFUSED:\n"
       "$P_UBFR=TF_OLDDATA\n"
       "$P_BFRAME=TF_OLD\n"
       "STOPRE\n"
+      "SETAL(TF_STATUS)\n"
       "M0\n"
       "RET\n";
   return text;
@@ -91,34 +143,29 @@ std::string ring_measurement(const FrameProgram& p) {
   text +=
       "DEF REAL TF_WALL[4]\n"
       "TF_STATUS=0\n";
-  text += kWithoutFrames;
-  text += fmt::format("G0 Z=TF_CZ+{}\nG0 X=TF_CX Y=TF_CY\nG1 Z=TF_CZ-{} F2000\n", mm(p.clearance_m, 3), mm(p.depth_m, 3));
+  const std::string high = "TF_CZ+" + mm(p.clearance_m, 3);
+  text += probe_without_frames() + to_above("TF_CX", "TF_CY", high) + guarded_to("Z=TF_CZ-" + mm(p.depth_m, 3));
+  const std::string missed = "IF $AC_MEA[1]==0 GOTOF NORING\n";
   const char* sides[4] = {"X=TF_CX+", "X=TF_CX-", "Y=TF_CY+", "Y=TF_CY-"};
   for (int i = 0; i < 4; ++i) {
-    text += fmt::format(
-        "MEAS=1 G1 {}{} F{:.0f}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NORING\nTF_WALL[{}]=$AA_MW[{}]\nG1 X=TF_CX Y=TF_CY F2000\n",
-        sides[i], mm(search_m(p), 3), p.feed_mm_min, i, i < 2 ? 'X' : 'Y');
+    text += touch_to(sides[i] + mm(search_m(p), 3), p.feed_mm_min) + missed +
+            fmt::format("TF_WALL[{}]=$AA_MW[{}]\nG1 X=TF_CX Y=TF_CY F2000\n", i, i < 2 ? 'X' : 'Y');
   }
   for (int i : {0, 2})
     text += fmt::format("IF ABS(TF_WALL[{}]-TF_WALL[{}]-{})>1 GOTOF WRONGSIDE\n", i, i + 1, mm(p.free_diameter_m, 3));
-  text += fmt::format(
-      "G0 Z=TF_CZ+5\nG0 X=TF_CX+{}\nMEAS=1 G1 Z=TF_CZ-3 F{:.0f}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NORING\n"
-      "G91 G1 Z{} F2000\nG90\nMEAS=1 G1 Z=TF_CZ-3 F{:.0f}                ; once more, slowly\nSTOPRE\nIF $AC_MEA[1]==0 "
-      "GOTOF NORING\n"
-      "IF ABS($AA_MW[Z]-TF_CZ)>{:g} GOTOF WRONGHEIGHT\n",
-      mm(0.5 * p.free_diameter_m + 8e-3, 3), p.feed_mm_min, mm(kBackOff_m, 3), kSlowTouch * p.feed_mm_min,
-      1e3 * kMostRise_m);
+  text += "G0 Z=TF_CZ+5\n" + guarded_to("X=TF_CX+" + mm(0.5 * p.free_diameter_m + 8e-3, 3)) +
+          touch_to("Z=TF_CZ-3", p.feed_mm_min) + missed +
+          fmt::format("G91 G1 Z{} F2000\nG90\n; once more, slowly\n", mm(kBackOff_m, 3)) +
+          touch_to("Z=TF_CZ-3", kSlowTouch * p.feed_mm_min) + missed +
+          fmt::format("IF ABS($AA_MW[Z]-TF_CZ)>{:g} GOTOF WRONGHEIGHT\n", 1e3 * kMostRise_m);
   text += "TF_FX=(TF_WALL[0]+TF_WALL[1])/2\nTF_FY=(TF_WALL[2]+TF_WALL[3])/2\nTF_FZ=$AA_MW[Z]\nGOTOF AWAY\n";
-  const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
-    return refusal_at("TF_STATUS", label, alarm, words, next);
+  const auto refusal = [](const char* label, int alarm, const char* words) {
+    return status_at("TF_STATUS", label, alarm, words, "AWAY");
   };
-  text += refusal("NORING", 65013, "ring missing", "GOTOF AWAY") +
-          refusal("WRONGSIDE", 65014, "touched at the wrong side", "GOTOF AWAY") +
-          refusal("NOLENGTH", 65015, "no D number: the length of the probe is required", "RET") +
-          refusal("OTHERFRAME", 65016, "a global, system or external frame is in force", "RET") +
-          refusal("WRONGHEIGHT", 65017, "height: look at the length of the probe and the origin", "GOTOF AWAY");
-  text += fmt::format("AWAY:\nG0 Z=TF_CZ+{}\nRET\n", mm(p.clearance_m, 3));
-  return text;
+  text += refusal("NORING", 65013, "ring missing") + refusal("WRONGSIDE", 65014, "touched at the wrong side") +
+          refusal("WRONGHEIGHT", 65017, "height: look at the length of the probe and the origin") +
+          probe_refusals("TF_STATUS", "ring");
+  return text + fmt::format("AWAY:\nG0 Z={}\nBACK:\nSTOPRE\nRET\n", high);
 }
 
 std::string setting_data(const FrameProgram& p) {
@@ -140,21 +187,20 @@ std::string setting_data(const FrameProgram& p) {
   text += fmt::format(
       "; MD32760: {:g} of MD32000 {:.0f} mm/min, so that the axis follows at {:.0f} mm/min at most\n"
       "; MD32750 acts after power-on only, MD32760 after NEWCONF; the setting data act at once. P0 is a machine coordinate\n"
+      "IF $MN_SCALING_SYSTEM_IS_METRIC==FALSE GOTOF INCHES\n"
       "$MA_TEMP_COMP_TYPE[AX1]=3               ; MD32750: K0 and tan_beta\n"
       "$MA_COMP_ADD_VELO_FACTOR[AX1]={:g}     ; MD32760\n"
       "NEWCONF\n"
       "$SA_TEMP_COMP_ABS_VALUE[AX1]={}     ; SD43900, K0 [mm]\n"
       "$SA_TEMP_COMP_SLOPE[AX1]={:.6f}       ; SD43910, tan_beta\n"
       "$SA_TEMP_COMP_REF_POSITION[AX1]={}  ; SD43920, P0 [mm]\n"
+      "M17\n"
+      "INCHES:\n"
+      "SETAL(65024)                            ; mm are required: a metric control\n"
       "M17\n",
       p.slew, 6e4 * p.velocity_m_s, 6e4 * p.velocity_m_s * p.slew, p.slew, mm(sign * data.absolute_m, 3),
       sign * data.slope + 0.0, mm(data.reference_m, 3));
   return text;
-}
-
-// A label at which a status is set; the alarm comes at the end of PROBEZ.
-std::string status_at(const char* status, const char* label, int alarm, const char* words, const char* next) {
-  return fmt::format("{}:\n{}={}                         ; {}\nGOTOF {}\n", label, status, alarm, words, next);
 }
 
 // The touch, with SAVE: frames and G functions of the caller come back. The position of the tip is in TA_READ.
@@ -164,39 +210,12 @@ std::string siemens_touch(const AxisProgram& p) {
   const std::string high = mm(p.at_m[2] + p.clearance_m), to = fmt::format("{}={}", letter, mm(beyond_touch_m(p)));
   std::string text = fmt::format("PROC TOUCH{}(VAR REAL TA_READ, VAR INT TA_STATUS) SAVE DISPLOF\n; {}\n; {}\nTA_STATUS=0\n",
                                  letter, p.made_by, gauge_words(p));
-  text += kWithoutFrames;
-  // Types of tools: 580 3D probe of lathes, 710 to 714 probes of mills.
-  text +=
-      "IF ($TC_DP1[$P_TOOLNO,$P_TOOL]<>580) AND (($TC_DP1[$P_TOOLNO,$P_TOOL]<710) OR ($TC_DP1[$P_TOOLNO,$P_TOOL]>714)) "
-      "GOTOF NOPROBE\n"
-      "M5\n"
-      "G17 G40\n";
-  text += fmt::format(
-      "STOPRE\n"
-      "IF $AA_IW[Z]>={0} GOTOF ABOVE           ; never down before it is above the gauge\n"
-      "G0 Z={0}\n"
-      "ABOVE:\n"
-      "G0 X={1} Y={2}\n"
-      "G0 Z={0}\n",
-      high, mm(from_m[0]), mm(from_m[1]));
-  // With a probe that is deflected already no edge comes, and the axis would move through.
-  const auto touch = [&](const std::string& end, double feed_mm_min) {
-    return fmt::format("STOPRE\nIF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 {} F{:g}\nSTOPRE\n", end, feed_mm_min);
-  };
+  text += probe_without_frames() + to_above(mm(from_m[0]), mm(from_m[1]), high);
   const std::string missed = "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n";
-  text += touch("Z=" + mm(from_m[2]), kWayDown_mm_min) + "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n";
-  text += touch(to, p.feed_mm_min) + missed +
+  text += guarded_to("Z=" + mm(from_m[2])) + touch_to(to, p.feed_mm_min) + missed +
           fmt::format("G91 G1 {}={} F2000\nG90\n; once more, slowly\n", letter, mm(-p.toward * kBackOff_m)) +
-          touch(to, kSlowTouch * p.feed_mm_min) + missed + fmt::format("TA_READ=$AA_MW[{}]\nGOTOF AWAY\n", letter);
-  const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
-    return status_at("TA_STATUS", label, alarm, words, next);
-  };
-  text += refusal("NOGAUGE", 65018, "no gauge", "AWAY") +
-          refusal("INTHEWAY", 65021, "something is in the way above the gauge", "AWAY") +
-          refusal("DEFLECTED", 65022, "the probe is deflected, or not connected", "AWAY") +
-          refusal("NOLENGTH", 65015, "no D number: the length of the probe is required", "BACK") +
-          refusal("NOPROBE", 65023, "no probe in the spindle: tool type 580 or 710 to 714 is required", "BACK") +
-          refusal("OTHERFRAME", 65016, "a global, system or external frame is in force", "BACK");
+          touch_to(to, kSlowTouch * p.feed_mm_min) + missed + fmt::format("TA_READ=$AA_MW[{}]\nGOTOF AWAY\n", letter);
+  text += status_at("TA_STATUS", "NOGAUGE", 65018, "no gauge", "AWAY") + probe_refusals("TA_STATUS", "gauge");
   text += "AWAY:\n";
   if (p.axis != 2) text += fmt::format("G1 {}={} F2000\n", letter, mm(from_m[p.axis]));
   return text + fmt::format("G0 Z={}\nBACK:\nSTOPRE\nRET\n", high);
@@ -217,7 +236,7 @@ std::string siemens_update(const AxisProgram& p) {
       "DEF FRAME PA_FRAME\n"
       "STOPRE\n"
       "PA_FRAME=$P_BFRAME\n"
-      "IF ($MN_SCALING_SYSTEM_IS_METRIC==FALSE) OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n"
+      "{5}"
       "PA_NOW=$P_UBFR[{0},FI]\n"
       "TOUCH{0}(PA_READ, PA_STATUS)\n"
       "IF PA_STATUS<>0 GOTOF REFUSED\n"
@@ -236,12 +255,11 @@ std::string siemens_update(const AxisProgram& p) {
       "$P_BFRAME=PA_FRAME\n"
       "STOPRE\n"
       "RET\n",
-      letter, mm(p.at_m[p.axis]), mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(1e-6 * p.most_um, 5));
+      letter, mm(p.at_m[p.axis]), mm(1e-6 * p.step_um, 5), mm(1e-6 * p.first_um, 5), mm(1e-6 * p.most_um, 5), kNoInches);
   text += status_at("PA_STATUS", "TOOFAR", 65019,
                     "too far from what is expected: chips, another tool, or the axis was knocked. Clean and probe again",
                     "REFUSED") +
-          status_at("PA_STATUS", "TOOMUCH", 65020, "the offset would pass its limit", "REFUSED") +
-          status_at("PA_STATUS", "INCHES", 65024, "mm are required: a metric control, and G71 or G710", "REFUSED");
+          status_at("PA_STATUS", "TOOMUCH", 65020, "the offset would pass its limit", "REFUSED") + inches("PA_STATUS");
   return text + "REFUSED:\n$P_BFRAME=PA_FRAME\nSTOPRE\nSETAL(PA_STATUS)\nRET\n";
 }
 

@@ -79,7 +79,10 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
   std::vector<std::string> notes;
   for (const effects::Effect& e : machine.effects) {
     if (effects::changes_readings(e))
-      notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
+      notes.push_back(fmt::format(
+          "{} {}", e.name(),
+          e.kind->key == "learned" ? "adds what was learned from records; here the physics are alone, and so is their band."
+                                   : "acts on what instruments say; here they say what is."));
     if (effects::changes_drive(e))
       notes.push_back(fmt::format(
           "{} {}", e.name(),
@@ -93,6 +96,13 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
 }
 
 }  // namespace
+
+Scenario as_the_page_has_it(Scenario scenario) {
+  std::erase_if(scenario.machine->effects, [](const effects::Effect& e) {
+    return !e.kind->contribute && (effects::changes_readings(e) || effects::changes_drive(e));
+  });
+  return scenario;
+}
 
 TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& system, const Eigen::VectorXd& start) {
   const MachineModel& machine = *scenario.machine;

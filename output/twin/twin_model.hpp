@@ -32,6 +32,10 @@ struct TwinModel {
 [[nodiscard]] TwinModel twin_model(const scenarios::Scenario& scenario, const solver::ReducedSystem& system,
                                    const Eigen::VectorXd& start);
 
+/// The scenario without effects that the page leaves out and that are no part of the machine: on readings, and on what was
+/// recorded of drive and ambient. A prediction of it is what the page computes.
+[[nodiscard]] scenarios::Scenario as_the_page_has_it(scenarios::Scenario scenario);
+
 /// A machine of lumped nodes, unreduced, in unknowns of unit mass, and its node temperatures over the reference [K].
 struct LumpedSystem {
   solver::ReducedSystem system;

@@ -132,6 +132,7 @@ schema::Map table_schema() {
       .name = "table, probe",
       .keys = {
           schema::optional("ball_diameter", quantity("m", 1e-4, 0.1), t.ball_diameter_m, "of the stylus"),
+          schema::optional("tool", integer(1, 99'999), t.probe_tool, "number of the probe in the tool table of LinuxCNC"),
           schema::optional("cycle", quantity("s", 1e-5, 1.0), p.cycle_s, "of the control"),
           schema::optional("latch", quantity("s", 1e-9, 1e-3), p.latch_s, "step of the latched time"),
           schema::optional(
@@ -252,6 +253,7 @@ TableSettings read_table(const ConfigMap& in, const std::vector<std::string>& se
   control.reject_unknown_keys();
   const ConfigMap probe = in.map("probe");
   t.ball_diameter_m = probe.quantity("ball_diameter");
+  t.probe_tool = probe.integer("tool");
   t.probe = read_probe(probe);
   t.probe.ring_distance_m = t.rings.back().at_m[0] - t.rings.front().at_m[0];
   t.probe.seed = static_cast<std::uint64_t>(t.seed);

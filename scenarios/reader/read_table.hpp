@@ -53,6 +53,7 @@ struct TableSettings {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< origin of the mesh, in the machine's coordinates
   bool against_dk = false;                             ///< the control moves the axis by -dK
   double ball_diameter_m = 6e-3;                       ///< of the stylus
+  int probe_tool = 99;                                 ///< its number in the tool table of LinuxCNC
   int seed = 1;
   compensation::ProbeStudySettings probe;
   std::optional<TableReadings> readings;

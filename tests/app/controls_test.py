@@ -6,6 +6,7 @@ judged rows, and compared with what the program itself says.
 """
 import array
 import csv
+import math
 import pathlib
 import re
 import subprocess
@@ -34,6 +35,47 @@ LIVE = """  - {type: friction_law, node: spindle, power: 90 W, at_speed: 6000 rp
     d: 1 K
     T_h: housing
     T_a: ambient
+"""
+CORNER = """name: corner
+reference_temperature: 20 degC
+ambient: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: body, capacity: 10 kJ/K}
+  - {type: formula, node: body, power: "P*sqrt(1 - a*n*P_cut)*n/n0", P: 100 W, n0: 3000 rpm, a: 3.36e-6 1/(rpm W)}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
+displacements: [{name: nose_z, sensitivities: [{node: body, sensitivity: 2 um/K}]}]
+cyclograms:
+  warm:
+    columns: [duration, speed, cutting_power]
+    rows: [[60 min, 3000 rpm, 20 W], [60 min, 100 rpm, 100 W]]
+"""
+ALONG = CORNER[: CORNER.index("  - {type: formula")] + """  - {type: heat_source, node: body, power: 100 W, at_speed: 3000 rpm, exponent: 1}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
+  - {type: linear_scale, displacement: x, body: body, expansion: 8e-6 1/K, position: position_x}
+  - {type: linear_scale, displacement: y, body: body, expansion: 8e-6 1/K, position: position_y}
+displacements:
+  - {name: x, sensitivities: [{node: body, sensitivity: 2 um/K}]}
+  - {name: y, sensitivities: [{node: body, sensitivity: 1 um/K}]}
+cyclograms:
+  warm:
+    columns: [duration, speed, position_x_mm, position_y_mm]
+    rows: [[60 min, 3000 rpm, -200 mm, 0 mm], [60 min, 100 rpm, 300 mm, 300 mm]]
+"""
+CORNER_ROWS = """#include <stdio.h>
+#include "plain_model.h"
+static plain_model m;
+static void tell(const char* wrong) { printf("%s|%.17g\\n", wrong ? wrong : "", m.outputs[0]); }
+int main(void) {
+  const double inside[PLAIN_INPUTS] = {3000.0, 20.0, 20.0}, corner[PLAIN_INPUTS] = {3000.0, 100.0, 20.0};
+  tell(plain_start(&m, corner));
+  tell(plain_start(&m, inside));
+  tell(plain_row(&m, inside, 60.0));
+  tell(plain_row(&m, corner, 60.0));
+  tell(plain_row(&m, inside, 60.0));
+  tell(plain_row(&m, inside, 60.0));
+  return 0;
+}
 """
 ROWS = """#include <math.h>
 #include <stdio.h>
@@ -103,6 +145,22 @@ def rows_of_a_plc(own, what, sources):
     expect(len(set(um[3:7])) == 1 and um[7] == um[8] != um[3], f"{what}: a row that is refused changes nothing: {um[3:9]}")
     same, measured = float(um[10]), float(um[12])
     expect(abs(measured - same) < 0.01 + 0.01 * abs(same), f"{what}: with a speed that changes in each row {measured:.4f} um, with its mean {same:.4f} um")
+
+
+def law_without_a_value(call, folder):
+    """Both inputs are within their range, and together they leave a law of the drive without a value."""
+    (folder / "corner.yaml").write_text(CORNER)
+    done = call("export", "corner.yaml", "--as", "c", "-o", "corner_c")
+    expect(done.returncode == 0, f"corner_c is exported: {done.stderr.strip()[-300:]}")
+    own = folder / "corner_c"
+    (own / "rows.c").write_text(CORNER_ROWS)
+    sources = sorted(file.name for file in own.glob("*.c") if file.name != "example.c")
+    subprocess.run(["gcc", "-std=c99", "-O2", "-ffp-contract=off", *sources, "-lm", "-o", "rows"], cwd=own, check=True)
+    told = subprocess.run([own / "rows"], capture_output=True, text=True, check=True).stdout.splitlines()
+    words, um = zip(*(line.split("|") for line in told))
+    expect([bool(w) for w in words] == [True, False, False, True, False, False] and "no value at this drive" in words[3], f"a drive without heat is refused: {words}")
+    # 100 W sqrt(1 - 0.2016) into 10 kJ/K with 5 W/K: 1 - exp(-t / 2000 s) of 17.87 K, 2 um each; a row refused changes nothing
+    expect(um[3] == um[2] and all(abs(float(um[k]) - 35.7413 * (1.0 - math.exp(-60.0 * n / 2000.0))) < 1e-3 for k, n in ((2, 1), (4, 2), (5, 3))), f"and changes nothing: {um}")
 
 
 def structured_text(text):
@@ -188,6 +246,11 @@ def main():
         plain_c(call, folder, "machine_c", "small.yaml")
         (folder / "live.yaml").write_text(first[: first.index("sensors:")] + LIVE + MACHINE + "solver: {relative_tolerance: 1e-8, absolute_tolerance: 1e-8 K}\n")
         plain_c(call, folder, "live_c", "live.yaml", stated=STATED_LIVE)
+        law_without_a_value(call, folder)
+        (folder / "along.yaml").write_text(ALONG)
+        said = call("export", "along.yaml", "--fmu", "-o", "along.fmu").stdout
+        ranges = re.findall(r"^  (\w+) from (\S+) to (\S+) (\S+)$", said, re.M)
+        expect(ranges == [("spindle_speed", "0", "3000", "rpm"), ("position_x", "-200", "300", "mm"), ("position_y", "0", "300", "mm")], f"each input once, with its range: {said}")
         for model in ("observer", "thermal_modes_of_the_model", "model_fitted_to_the_training_runs"):
             plain_c(call, folder, model + "_c", "small.yaml", "--of", "observer", "--model", f"judged/models/{model}.json")
         for model in ("one_thermometer", "ridge_all_sensors", "regression_with_lags", "thermometers_and_drive", "transfer_functions_from_speed"):

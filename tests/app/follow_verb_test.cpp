@@ -164,6 +164,13 @@ TEST(FollowVerb, HoldsAPositionThatIsMissingOrPastTheTravel) {
   EXPECT_GT(corrected_um(18), 10.0);
   EXPECT_EQ(corrected_um(20), corrected_um(18));
   EXPECT_THAT(past.lines[20].dump(), HasSubstr("\"doubted\":[\"position_x\"]"));
+  write_file(
+      "rows.csv",
+      "time_s,speed_rpm,feed_x_mm_min,position_x_mm,stroke_x_mm,ambient_degC\n0,0,6000,,40,21\n60,0,6000,600,40,21\n");
+  const Followed late = follow("axis.yaml", "cat rows.csv |");
+  ASSERT_EQ(late.lines.size(), 2U);
+  EXPECT_THAT(late.lines[0].dump(), HasSubstr("\"why\":\"no row has given position_x yet\""));
+  EXPECT_THAT(late.lines[1].dump(), HasSubstr("\"state\":\"on\""));
   const Followed none = follow("axis.yaml", "echo 'time_s,speed_rpm,feed_x_mm_min,stroke_x_mm,ambient_degC' |");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.words, HasSubstr("'position_x_mm', which the stream does not have"));

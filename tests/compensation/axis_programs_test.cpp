@@ -60,12 +60,13 @@ TEST(AxisProgram, TouchesFromFiveMillimetresBeforeToThreeBeyond) {
 TEST(AxisProgram, RefusesBeforeItComesNearTheGauge) {
   AxisProgram p = program();
   p.probe_tool = 9;
-  expect_in_order(file("linuxcnc/probe_z.ngc", p),
-                  {"[#5400 NE 9]", "o<probe_z> return [1]", "[#<_spindle_on> EQ 1]", "o<probe_z> return [6]", "G38.3 Z-15",
-                   "[#5070 EQ 1]", "G0 Z30.0000\nM66", "o<probe_z> return [5]", "G38.3 Z-23"});
+  expect_in_order(
+      file("linuxcnc/probe_z.ngc", p),
+      {"M73\nG21 G90 G94 G17 G40 G61\n", "[#5400 NE 9]", "o<probe_z> return [1]", "[#<_spindle_on> EQ 1]",
+       "o<probe_z> return [6]", "G38.3 Z-15", "[#5070 EQ 1]", "G0 Z30.0000\nM66", "o<probe_z> return [5]", "G38.3 Z-23"});
   const std::string touch = file("siemens/TOUCHZ.SPF");
   expect_in_order(
-      touch, {"GOTOF NOPROBE\nM5\nG17 G40\n", "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-15",
+      touch, {"GOTOF NOPROBE\nM5\nG17 G40 G60\n", "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-15",
               "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n", "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-23.0000 F300",
               "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=-23.0000 F30\n", "INTHEWAY:\nTA_STATUS=65021", "GOTOF AWAY\n",
               "AWAY:\nG0 Z=30.0000\nBACK:\nSTOPRE\nRET\n"});
@@ -93,9 +94,9 @@ TEST(AxisProgram, WritesTheOffsetAfterAllChecks) {
   EXPECT_THAT(update.substr(0, update.find('\n')), Not(HasSubstr("SAVE"))) << "SAVE takes the offset away at the return";
   const std::string touch = file("siemens/TOUCHZ.SPF");
   EXPECT_THAT(touch, AllOf(HasSubstr(") SAVE DISPLOF\n"), Not(HasSubstr("$P_UBFR"))));
-  expect_in_order(touch,
-                  {"IF $P_TOOL==0 GOTOF NOLENGTH\n", "GOTOF OTHERFRAME\n", "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n",
-                   "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n", "TA_READ=$AA_MW[Z]\nGOTOF AWAY\n", "NOGAUGE:\nTA_STATUS=65018"});
+  expect_in_order(touch, {"IF $P_TOOL==0 GOTOF NOLENGTH\n", "($P_ACTFRAME[X,RT]<>0)", "GOTOF OTHERFRAME\n",
+                          "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n", "IF $AC_MEA[1]==0 GOTOF NOGAUGE\n",
+                          "TA_READ=$AA_MW[Z]\nGOTOF AWAY\n", "NOGAUGE:\nTA_STATUS=65018"});
   const std::string klartext = file("heidenhain/PROBEZ.H");
   expect_in_order(klartext, {"FN 0: Q59 = +1\n", "TCH PROBE 427", "FN 11: IF +Q58 GT +Q60 GOTO LBL 99\n",
                              "FN 11: IF +Q61 GT +0.10000 GOTO LBL 99\n", "FN 1: Q48 = +Q48 + +Q57\n",

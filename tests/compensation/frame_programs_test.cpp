@@ -174,7 +174,48 @@ TEST(FrameProgram, LeavesTheOldSiemensFrameWhereItRefuses) {
   const std::regex touch("MEAS=1[^\n]*\nSTOPRE\nIF \\$AC_MEA\\[1\\]==0 GOTOF NORING\n");
   EXPECT_EQ(std::distance(std::sregex_iterator(ring.begin(), ring.end(), touch), std::sregex_iterator()),
             6);  // four walls, the height twice
-  EXPECT_THAT(ring, HasSubstr("\nNORING:\nTF_STATUS=65013\n"));
+  EXPECT_THAT(ring, HasSubstr("\nNORING:\nTF_STATUS=65013 "));
+  EXPECT_EQ(text.find("SETAL"), text.find("SETAL(TF_STATUS)\nM0\nRET\n")) << "one alarm, after the old frames";
+  EXPECT_LT(text.find("$P_BFRAME=TF_OLD\n"), text.find("SETAL"));
+  EXPECT_THAT(ring, Not(HasSubstr("SETAL"))) << "an alarm may end the program where it is: the probe must be away before";
+  EXPECT_THAT(ring, HasSubstr("AWAY:\nG0 Z=TF_CZ+50.000\nBACK:\nSTOPRE\nRET\n"));
+}
+
+/// Whether these are in the text in this order.
+void expect_in_order(const std::string& text, const std::vector<std::string>& parts) {
+  std::size_t at = 0;
+  for (const std::string& part : parts) {
+    const std::size_t found = text.find(part, at);
+    EXPECT_NE(found, std::string::npos) << part << " in\n" << text;
+    at = found == std::string::npos ? at : found + part.size();
+  }
+}
+
+// As the touch cycle of one axis: a cutter is no probe, a spindle that turns breaks one, what is in the way stops the axis,
+// and a caller in inches would have all positions in inches.
+TEST(FrameProgram, RefusesBeforeItComesNearARing) {
+  FrameProgram p = program();
+  p.probe_tool = 9;
+  const std::string ngc = file("linuxcnc/thermframe.ngc", p);
+  expect_in_order(
+      ngc, {"M70\nG21 G90 G94 G17 G40 G61\n", "[#5400 NE 9]", "M72\nG54\n", "M2\n", "[#<_spindle_on> EQ 1]", "M2\n",  //
+            "o112 if [#<_z> LT 50.0000]\nG0 Z50.0000\no112 endif\nG0 X-4800.0000 Y100.0000\nG0 Z50.0000\n",
+            "G38.3 Z-5.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low", "G38.3 X-47",
+            "G0 Z5.0000\nG38.3 X-4770.0000 F1500\n", "[#5070 EQ 1]", "in the way above ring low", "G38.3 Z-3.0000",
+            "o132 if [#<_z> LT 50.0000]", "in the way above ring high"});
+  EXPECT_THAT(ngc, Not(HasSubstr("G1 Z-5.0000"))) << "down without a touch";
+  const std::string ring = file("siemens/RINGMEAS.SPF");
+  expect_in_order(ring, {"GOTOF NOLENGTH\n", "($P_ACTFRAME[X,RT]<>0)", "($P_ACTFRAME[Y,SC]<>1)", "($P_ACTFRAME[Z,MI]==TRUE)",
+                         "GOTOF NOPROBE\nM5\nG17 G40 G60\n", "IF $AA_IW[Z]>=TF_CZ+50.000 GOTOF ABOVE",
+                         "ABOVE:\nG0 X=TF_CX Y=TF_CY\nG0 Z=TF_CZ+50.000\n",
+                         "IF $A_PROBE[1]==1 GOTOF DEFLECTED\nMEAS=1 G1 Z=TF_CZ-5.000 F1500\nSTOPRE\n",
+                         "IF $AC_MEA[1]==1 GOTOF INTHEWAY\n", "TF_WALL[3]=$AA_MW[Y]",
+                         "MEAS=1 G1 X=TF_CX+30.000 F1500\nSTOPRE\nIF $AC_MEA[1]==1 GOTOF INTHEWAY\n", "MEAS=1 G1 Z=TF_CZ-3",
+                         "INTHEWAY:\nTF_STATUS=65021", "GOTOF AWAY\n", "NOPROBE:\nTF_STATUS=65023", "GOTOF BACK\n"});
+  expect_in_order(file("siemens/THERMFRAME.SPF"), {"OR ($P_GG[13]==1) OR ($P_GG[13]==3) GOTOF INCHES\n",
+                                                   "$P_BFRAME=CTRANS()\n", "INCHES:\nTF_STATUS=65024"});
+  expect_in_order(file("siemens/THERMDATA.SPF"),
+                  {"METRIC==FALSE GOTOF INCHES\n", "$SA_TEMP_COMP_ABS_VALUE[AX1]=", "M17\nINCHES:\nSETAL(65024)"});
 }
 
 TEST(FrameProgram, ReadsTheTipOfTheProbeAndNoMachineAxis) {
@@ -183,7 +224,7 @@ TEST(FrameProgram, ReadsTheTipOfTheProbeAndNoMachineAxis) {
               AllOf(HasSubstr("$AA_MW[X]"), HasSubstr("$AA_MW[Z]"), Not(HasSubstr("$AA_MM")), Not(HasSubstr("SUPA")),
                     HasSubstr("IF $P_TOOL==0 GOTOF NOLENGTH"), HasSubstr("IF ABS($AA_MW[Z]-TF_CZ)>1 GOTOF WRONGHEIGHT")));
   EXPECT_THAT(ngc,
-              AllOf(HasSubstr("\nG43\n"), Not(HasSubstr("G49")), HasSubstr("#5400 LE 0"), HasSubstr("[#5070 EQ 0]"),
+              AllOf(HasSubstr("\nG43\n"), Not(HasSubstr("G49")), HasSubstr("#5400 NE 99"), HasSubstr("[#5070 EQ 0]"),
                     Not(HasSubstr("G38.2")), HasSubstr("ABS[#104 - 0.0000] GT 1]"), HasSubstr("ABS[#124 - 0.0000] GT 1]")));
 }
 
@@ -249,7 +290,8 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   std::size_t n_probes = 0;
   for (std::size_t at = said.find("STRAIGHT_PROBE"); at != std::string::npos; at = said.find("STRAIGHT_PROBE", at + 1))
     ++n_probes;
-  EXPECT_EQ(n_probes, 12u);  // of each ring four for the middle, one for the height and a second, slow one
+  // of each ring the way down, four for the middle, the way beside, one for the height and a second, slow one
+  EXPECT_EQ(n_probes, 16u);
   // Each touch ends where it was sent: both middles as they were, both edges 3 mm lower; rs274 keeps inches. G59.3 is G54
   // with that; G54 stays.
   const std::map<int, double> wanted = {
@@ -295,7 +337,9 @@ TEST(FrameProgram, TakesOriginSignAndBallFromTheScenario) {
   const auto plain = table_of("", "");
   EXPECT_EQ(plain.origin_m.norm(), 0.0);
   EXPECT_FALSE(plain.against_dk);
-  const auto full = table_of(", origin: [6 m, 1 m, -800 mm], axis_moves: against_dk", ", ball_diameter: 5 mm");
+  EXPECT_EQ(plain.probe_tool, 99);
+  const auto full = table_of(", origin: [6 m, 1 m, -800 mm], axis_moves: against_dk", ", ball_diameter: 5 mm, tool: 7");
+  EXPECT_EQ(full.probe_tool, 7);
   EXPECT_LT((full.origin_m - Eigen::Vector3d(6.0, 1.0, -0.8)).norm(), 1e-12);
   EXPECT_TRUE(full.against_dk);
   EXPECT_DOUBLE_EQ(full.ball_diameter_m, 5e-3);
@@ -310,6 +354,7 @@ TEST(FrameProgram, TakesOriginSignAndBallFromTheScenario) {
   EXPECT_THAT(said(", origin: [6 m, 1 m]", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("origin")));
   EXPECT_THAT(said(", origin: [600 m, 1 m, 0 m]", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("-100 to 100 m")));
   EXPECT_THAT(said(", axis_moves: plus", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("against_dk")));
+  EXPECT_THAT(said("", ", tool: 0"), AllOf(HasSubstr("table.yaml:10"), HasSubstr("tool")));
   EXPECT_THAT(said("", ", ball_diameter: 1 m"), AllOf(HasSubstr("table.yaml:10"), HasSubstr("ball_diameter")));
 }
 

@@ -121,7 +121,15 @@ def expect_refusal(of, wanted):
 offsets("before")
 expect_refusal("bare", "no probe in the spindle")                # no M6 before
 c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
+mdi("M61 Q2"); expect_refusal("cutter", "no probe in the spindle")
+c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
 mdi("M61 Q1")
+mdi("M3 S100"); expect_refusal("turning", "the spindle turns")
+c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
+mdi("M5")
+subprocess.run(["halcmd", "setp", "comp.1.in0", "-1"])      # the bore is full of chips
+expect_refusal("full", "something is in the way above ring low")
+subprocess.run(["halcmd", "setp", "comp.1.in0", "3"])
 rings_rise(2)                         # a probe 2 mm shorter than its length says
 expect_refusal("high", "height of ring low")
 rings_rise(-22)                       # no ring at all
@@ -148,13 +156,14 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
   program.frame = fit_table_frame(rings);
   program.free_diameter_m = 2e-3 * kRadius_mm;
   program.feed_mm_min = kFeed_mm_min;
+  program.probe_tool = 1;
 
   const std::filesystem::path folder = fresh_folder("linuxcnc");
   std::map<std::string, std::string> files = {
       {"sim.ini", headless_ini("", "COMP_FILE = linuxcnc/joint_0.comp\nCOMP_FILE_TYPE = 1\n")},
       {"sim.hal", hal(1e3 * low_now_m, 1e3 * high_now_m)},
       {"script.py", kScript},
-      {"tool.tbl", "T1 P1 Z100 D6\n"},
+      {"tool.tbl", "T1 P1 Z100 D6\nT2 P2 Z100 D6\n"},
       {"sim.var", "150 0\n151 0\n5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 8\n5383 9\n5390 10\n"}};
   for (const ProgramFile& f : frame_programs(program)) files[f.name] = f.text;
   std::map<std::string, double> found = run_headless(folder, files, 150);
@@ -162,9 +171,10 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
   ASSERT_TRUE(found.contains("done") && !found.contains("error"))
       << read_text(folder / "result.txt") << read_text(folder / "log.txt");
   // G54 stays whatever happens, and G59.3 where nothing was measured.
-  for (const std::string of : {"bare", "high", "missing"}) EXPECT_EQ(found[of + "Words"], 1.0) << of;
+  for (const std::string of : {"bare", "cutter", "turning", "full", "high", "missing"})
+    EXPECT_EQ(found[of + "Words"], 1.0) << of;
   found["beforeLeft"] = 1.0;  // nothing has run
-  for (const std::string of : {"before", "bare", "high", "missing", "after"}) {
+  for (const std::string of : {"before", "bare", "cutter", "turning", "full", "high", "missing", "after"}) {
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(found[of + "G54" + "XYZ"[axis]], kUser_mm[axis], 1e-6) << of;
       const double stays_mm = found[of + "G59.3" + "XYZ"[axis]] - (7.0 + axis);
@@ -174,7 +184,8 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
     EXPECT_EQ(found[of + "Left"], 1.0) << of << ": G54 is left in force";
     EXPECT_EQ(std::abs(found[of + "G59.3R"] - 10.0) < 1e-9, of != "after") << of;
   }
-  EXPECT_NEAR(found["missingLeftZ"], kProbe_mm + 50.0, 1e-3) << "the stylus is taken out of the ring";
+  for (const std::string of : {"missing", "full"})
+    EXPECT_NEAR(found[of + "LeftZ"], kProbe_mm + 50.0, 1e-3) << of << ": the stylus is taken out of the ring";
   // Each touch stops on a servo cycle: 2 um, half of it in the middle of two touches along X and Y; the second one along
   // Z is ten times as slow. The turn is known to 2 um on 9.6 m; it carries the user's 4 m along by 8 um, to 1 um.
   const double turn_rad = program.frame.turn_rad;

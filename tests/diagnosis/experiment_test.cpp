@@ -266,6 +266,30 @@ TEST_F(OneSpeed, NoisierChannelsTellLess) {
   EXPECT_LT(blunt->decides, 0.5 * sharp->decides);  // 1000 times the noise
 }
 
+TEST_F(OneSpeed, NamesEachFindingThatIsInQuestion) {
+  SearchResult result = constant_or_of_speed();
+  const Claim at_head = result.findings[0].claim, by_law = result.findings[0].alternatives[0].claim,
+              at_column = claim("heat_source", "column", "constant heat"),
+              by_power = claim("heat_source", "column", "power law of speed");
+  Twin::Workspace workspace(*twin_);
+  result.hypothesis = {at_head, at_column};
+  result.fit = fitter_->fit(result.hypothesis, Eigen::Vector2d(60.0, 10.0), workspace);
+  result.findings[0].alternatives[0].fit =
+      fitter_->fit(Hypothesis{at_column, by_law}, Eigen::Vector2d(10.0, 60.0), workspace);
+  Finding second{.claim = at_column, .log_evidence_gain = 40.0, .probability = 0.95, .share = 0.5};
+  second.alternatives.push_back(
+      {.claim = by_power,
+       .fit = fitter_->fit(Hypothesis{at_head, by_power}, Eigen::Vector3d(60.0, 10.0, 0.0), workspace),
+       .log_evidence_gain = 39.5,
+       .share = 0.5,
+       .probability = 0.95});
+  result.findings.push_back(second);
+  const auto e = propose_experiment(*fitter_, result);
+  ASSERT_TRUE(e);
+  EXPECT_THAT(e->why, HasSubstr("to distinguish heat_source at head and heat_source at head, and heat_source at column and "
+                                "heat_source at column: "));
+}
+
 TEST_F(OneSpeed, WhatIsAlreadyLikelyLeavesLessToDecide) {
   // The same pair, and nothing in its place, which a record without the heat excludes: weights change the uncertainty,
   // not what the record distinguishes.
@@ -288,7 +312,9 @@ double information_of(double w, double d) {
   double sum = 0.0;
   const double step = 1e-3;
   for (double y = -12.0; y < 12.0 + d; y += step) {
-    const auto density = [&](double mean) { return std::exp(-0.5 * (y - mean) * (y - mean)) / std::sqrt(2.0 * std::numbers::pi); };
+    const auto density = [&](double mean) {
+      return std::exp(-0.5 * (y - mean) * (y - mean)) / std::sqrt(2.0 * std::numbers::pi);
+    };
     const double a = density(0.0), b = density(d), both = w * a + (1.0 - w) * b;
     if (a > 0.0) sum += step * w * a * std::log(a / both);
     if (b > 0.0) sum += step * (1.0 - w) * b * std::log(b / both);

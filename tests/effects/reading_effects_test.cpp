@@ -182,6 +182,7 @@ TEST(Learned, RefusesWhatDoesNotGoTogether) {
            {"{type: learned, displacement: z, follows: speed, grows: [[1 min, 1 um]]}", "`at_speed` must be given together"},
            {"{type: learned, displacement: z, follows: column, at: 1, grows: [[1 min, 1 um]]}",
             "the `column` must be given together"},
+           {"{type: learned, sensor: a, follows: running, error: 1, rises: [[1 min, 1 K]]}", "`error` requires `at_speed`"},
            {"{type: learned, sensor: a, follows: ambient, error: 1, rises: [[1 min, 1 K]]}",
             "only for what follows a drive"},
            {"{type: learned, sensor: a, follows: ambient, at_speed: 9 rpm, rises: [[1 min, 1 K]]}", "allowed only with"},

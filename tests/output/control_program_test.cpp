@@ -178,7 +178,9 @@ class SiemensControl final : public Control {
         EXPECT_TRUE(actions_.empty());
         memory_[m[1].str()] = value_of(m[2], memory_);
       } else {
-        EXPECT_TRUE(line.starts_with("PROC ") || line.starts_with(";") || line == "RET") << line;
+        EXPECT_TRUE(line.starts_with("PROC ") || line.starts_with(";") || line == "RET" || line == "METRIC:" ||
+                    line.starts_with("SETAL(65024)") || line == "IF $MN_SCALING_SYSTEM_IS_METRIC==TRUE GOTOF METRIC")
+            << line;
       }
     }
   }
@@ -237,6 +239,8 @@ class FanucControl final : public Control {
  public:
   explicit FanucControl(const std::string& text) : lines_(lines_of(text)) {
     memory_["#0"] = 0.0;
+    memory_["#4006"] = 21.0;
+    memory_["#4003"] = 90.0;
     for (int k = 501; k < 1000; ++k) memory_[fmt::format("#{}", k)] = 0.0;
   }
   double row(const std::vector<double>& readings) override {
@@ -387,6 +391,20 @@ TEST_P(InCycle, ProgramsThatAreCalledGiveWhatNeedsNoTime) {
   FanucControl control(fanuc.text);
   EXPECT_LT(fanuc.error_um, 1e-3);
   expect_judged(d, fanuc, control, false);
+}
+
+// Millimetres in a control that is in inches are 25 times as much.
+TEST(ControlProgram, RefusesInchesBeforeItSetsAnOffset) {
+  const DeployedModel d = without_time(undoubted(false, 60.0));
+  const auto comes_before = [](const std::string& text, const std::string& check, const std::string& what) {
+    EXPECT_LT(text.find(check), text.find(what)) << text;
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  const std::string fanuc = control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test").text,
+                    siemens = control_program(d, ControlLanguage::kSiemens, "ridge", {'Z', false}, "a test").text;
+  comes_before(fanuc, "IF [#4006 LT 21] THEN #3000=1 (", "G10 L2 P0 Z");
+  comes_before(fanuc, "IF [#4003 GT 90] THEN #3000=2 (", "G10 L2 P0 Z");
+  comes_before(siemens, "IF $MN_SCALING_SYSTEM_IS_METRIC==TRUE GOTOF METRIC\nSETAL(65024)", "IDS=1 ");
 }
 
 std::string refusal(const std::function<void()>& what) {

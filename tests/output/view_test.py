@@ -126,6 +126,18 @@ def check(program, top, browser, folder):
             K, um = farthest(report["cyclograms"][cyclogram], record_of(folder / f"{name}-{cyclogram}/record.csv"))
             expect(K <= MOST_K and um <= MOST_UM, f"{name}, {cyclogram}: {K:.2g} K and {um:.2g} um from predict")
 
+    # What is learned of readings is no part of the page: its curves, what it says of itself and its band are those of the physics.
+    plain = HOSTILE.replace(NODE, "body").replace("exponent: 1.5}", "exponent: 1.5, known_to: 10 %}") + "displacements: [{name: z, sensitivities: [{node: body, sensitivity: 2 um/K}]}]\n"
+    (folder / "plain.yaml").write_text(plain)
+    (folder / "learned.yaml").write_text(plain.replace("sensors:", "  - {type: learned, displacement: z, misses: 3, follows: running, grows: [[10 min, 5 um]]}\nsensors:"))
+    for name in ("plain", "learned"):
+        done = call("view", f"{name}.yaml", "-o", f"{name}.html")
+        expect(done.returncode == 0 and ("what was learned" in done.stdout) == (name == "learned"), f"view {name}: {done.stdout} {done.stderr.strip()[-300:]}")
+    report, _ = report_of(browser, folder / "learned.html")
+    expect(report["differences"]["um"] <= MOST_UM, f"what the page of a learned machine says of itself: {report['differences']}")
+    bands = [re.search(r'"band":\{.*?"high":"([^"]*)"', (folder / f"{name}.html").read_text()) for name in ("plain", "learned")]
+    expect(all(bands) and bands[0][1] == bands[1][1], "its band is about its own curve")
+
     for line in ('name: "</script><script>"', 'cyclograms: {"<img src=x>": [[60 min, 6000 rpm]]}'):
         (folder / "refused.yaml").write_text(re.sub(f"^{line.split(':')[0]}:.*$", lambda found: line, HOSTILE, flags=re.M))
         done = call("view", "refused.yaml", "-o", "refused.html")

@@ -206,6 +206,10 @@ TEST(LoggerImport, TakesUnitsThatTheUserSays) {
   EXPECT_TRUE(import.without_unit.empty());
   EXPECT_THAT([&] { (void)with({"t2=degC"}); }, ThrowsMessage<InputError>(HasSubstr("no column of numbers 't2'")));
   EXPECT_THAT([&] { (void)with({"t1=de"}); }, ThrowsMessage<InputError>(HasSubstr("--unit t1=de")));
+  EXPECT_THAT([&] { (void)with({"t1=furlong"}); },
+              ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("--unit t1=furlong"), HasSubstr("largest unit of that kind is m"))));
+  expect_values(with({"t1=m"}).read.record, "t1_um", {293.15e6, 293.25e6, 294.15e6});
   EXPECT_THAT([&] { (void)with({"t1"}); }, ThrowsMessage<InputError>(HasSubstr("a column and its unit are required")));
   EXPECT_THAT([&] { (void)with({"t1=degC", "t1=K"}); }, ThrowsMessage<InputError>(HasSubstr("has the unit degC already")));
 }

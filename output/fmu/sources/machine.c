@@ -28,6 +28,7 @@ typedef struct {
   slot* slots;
   /* Of the drive met last. */
   int has_drive, has_matrix, in_modes; /* in_modes: index of the slot whose modes the loads are in, plus 1 */
+  const char* wrong;                   /* with it; 0: nothing */
   double *drive, *coefficient, *power, *constant, *per_ambient, *matrix;
   double *mode_constant, *mode_per_ambient;
   /* Room for a while. */
@@ -113,6 +114,7 @@ static void take_drive(machine* m, const double* saved) {
   int s;
   if (m->has_drive && memcmp(m->drive, drive, bytes) == 0) return;
   memcpy(m->drive, drive, bytes);
+  m->wrong = model_check_drive(drive, 0);
   coefficients_of(drive, m->coefficient);
   for (s = 0; s < thermal.n_sources; ++s) m->power[s] = law_value(&thermal.powers[s], drive);
   for (s = 0; s < thermal.n_formulas; ++s) {
@@ -192,6 +194,18 @@ const char* model_check_input(int input, double value) {
   return 0;
 }
 
+const char* model_check_drive(const double* inputs, const double* before) {
+  int k;
+  if (before && memcmp(inputs, before, (size_t)thermal.n_drive * sizeof *inputs) == 0) return 0;
+  for (k = 0; k < thermal.n_formulas; ++k) {
+    const drive_formula* const f = &thermal.formulas[k];
+    const double value = formula_value(f->n_steps, f->steps, inputs, 0, 0);
+    if (!(fabs(value) < HUGE_VAL)) return "a law has no value at this drive";
+    if (f->exchange >= 0 && value < 0.0) return "a film or a conductance is below 0 at this drive";
+  }
+  return 0;
+}
+
 const char* model_before_input(double* saved, int input, double value) {
   const char* const wrong = model_check_input(input, value);
   if (!wrong && input == thermal.n_drive) saved[kAmbientSetAt] = saved[kTime];
@@ -219,6 +233,7 @@ const char* model_step(double* saved, void* scratch, double h_s) {
   slot* s;
   int i;
   take_drive(m, saved);
+  if (m->wrong) return m->wrong;
   s = slot_of(m, m->coefficient);
   if (!s) return "the decomposition of the conduction matrix did not converge";
   if (m->in_modes != (int)(s - m->slots) + 1) {
@@ -318,8 +333,8 @@ void model_derivatives(const double* saved, void* scratch, double* derivatives) 
   int i;
   multiply(thermal.n, thermal.n, matrix_of(m, saved), saved + kInputs + model_n_inputs(), derivatives);
   for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + ambient * m->per_ambient[i] - derivatives[i];
-  if (m->live &&
-      live_add_rate(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient, derivatives)) {
+  if (m->wrong || (m->live && live_add_rate(m->live, m->drive, m->coefficient, saved + kInputs + model_n_inputs(), ambient,
+                                            derivatives))) {
     for (i = 0; i < thermal.n; ++i) derivatives[i] = NAN;
   }
 }

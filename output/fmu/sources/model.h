@@ -30,6 +30,9 @@ void model_reset(double* saved, void* scratch);
 void model_touched(void* scratch);
 /* Whether an input may have this value: 0, or what is wrong in words. */
 const char* model_check_input(int input, double value);
+/* Whether the laws of the drive have values where the inputs, each of them checked, are these: 0, or what is wrong in words.
+ * `before`: inputs that were found to be right; 0: there are none. */
+const char* model_check_drive(const double* inputs, const double* before);
 /* Before an input gets another value. Returns as model_check_input(). */
 const char* model_before_input(double* saved, int input, double value);
 /* The start, from parameters and inputs at the start time. */

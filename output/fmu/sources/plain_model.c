@@ -3,11 +3,11 @@
 
 #include "model.h"
 
-static const char* check_inputs(const double* inputs) {
+static const char* check_inputs(const double* inputs, const double* before) {
   const char* wrong = 0;
   int k;
   for (k = 0; k < PLAIN_INPUTS && !wrong; ++k) wrong = model_check_input(k, inputs[k]);
-  return wrong;
+  return wrong ? wrong : model_check_drive(inputs, before);
 }
 
 /* Inputs that were checked. */
@@ -26,7 +26,7 @@ static const char* finish_row(plain_model* m) {
 }
 
 const char* plain_start(plain_model* m, const double* inputs) {
-  const char* const wrong = check_inputs(inputs);
+  const char* const wrong = check_inputs(inputs, 0);
   if (wrong != 0) return wrong;
   if (model_n_saved() > (size_t)PLAIN_SAVED || model_scratch_size() > sizeof m->scratch ||
       model_n_outputs() != PLAIN_OUTPUTS)
@@ -43,7 +43,7 @@ const char* plain_row(plain_model* m, const double* inputs, double dt_s) {
   const double end_s = m->saved[kTime] + dt_s;
   const char* wrong;
   if (!(dt_s > 0.0 && dt_s < 1e9)) return "the time since the row before must be above 0";
-  wrong = check_inputs(inputs);
+  wrong = check_inputs(inputs, m->saved + kInputs);
   if (wrong != 0) return wrong;
   if (!model_kind_is_observer) /* the ambient was linear since the row before */
     m->saved[kInputs + PLAIN_INPUTS] = (inputs[PLAIN_INPUTS - 1] - m->saved[kInputs + PLAIN_INPUTS - 1]) / dt_s;
