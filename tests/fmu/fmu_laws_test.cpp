@@ -1,4 +1,4 @@
-// Functional mock-up units of small machines: laws that follow temperatures, places of an axis.
+// Functional mock-up units of small machines: laws that follow temperatures, thermostats, effects `learned`, places of an axis.
 
 #include <cmath>
 
@@ -213,6 +213,141 @@ TEST_P(FmuOfLaws, TakesThePositionOfAFeedAxis) {
   const std::string stretched = replaced(kScrewAxis, "mounting: stretched", "mounting: stretched, stretch: 30 um");
   EXPECT_THAT([&] { require_exportable(scenarios::read_scenario(driftwright::write_file("stretched.yaml", stretched))); },
               ThrowsMessage<InputError>(HasSubstr("grows freely once it is used up")));
+}
+
+// --- thermostats
+
+/// A tank on a thermostat, linear: the chiller is on for about a minute of two.
+constexpr const char* kChilled = R"(name: chilled
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: shaft, capacity: 6 kJ/K}
+  - {type: node, node: housing, capacity: 20 kJ/K}
+  - {type: motor_loss, node: shaft, power: 400 W, at_speed: 6000 rpm, exponent: 1}
+  - {type: link, node: shaft, to: housing, conductance: 25 W/K}
+  - {type: link, node: housing, to: ambient, conductance: 3 W/K}
+  - {type: coolant, node: housing, tank: cooler, flow: 6 L/min, passage_conductance: 120 W/K, volume: 8 L, tank_exchange: 2 W/K,
+     pump_power: 60 W, cooling_power: 900 W, set_point: 21 degC, hysteresis: 1 K, runs: while_spindle_turns}
+start: ambient
+ambient: [[0 h, 20 degC], [1 h, 23 degC], [9 h, 22 degC]]
+sensors: [{name: t_tank, node: cooler}, {name: t_housing, node: housing}]
+displacements:
+  - {name: nose_z, sensitivities: [{node: shaft, sensitivity: 2.9 um/K}, {node: housing, sensitivity: -1.2 um/K}]}
+cyclograms: {shift: [[50 min, 6000 rpm], [20 min, 0 rpm], [30 min, 3000 rpm]], fast: [[9 min, 6999 rpm]]}
+solver: {model: reduced, relative_tolerance: 1e-9, absolute_tolerance: 1e-8 K, output_interval: 20 s}
+)";
+const Live& chilled() {
+  static const Live live("chilled.yaml", kChilled, "shift");
+  return live;
+}
+/// The spindle that ships: its oil thins, and its chiller is on a thermostat.
+const Live& lumped_spindle() {
+  const std::string yaml =
+      replaced(replaced(read_text("scenarios/lumped_spindle.yaml"), "60 min, 12000 rpm", "60 min, 12999 rpm"),
+               "[120 min, 12000 rpm], [30 min, 0 rpm], [90 min, 8000 rpm]",
+               "[40 min, 12000 rpm], [10 min, 0 rpm], [20 min, 8000 rpm]");
+  static const Live live("lumped.yaml",
+                         replaced(yaml, "  relative_tolerance: 1e-4\n  absolute_tolerance: 1e-3 K\n",
+                                  "  model: reduced\n  relative_tolerance: 1e-9\n  absolute_tolerance: 1e-8 K\n"),
+                         "shift");
+  return live;
+}
+
+TEST_P(FmuOfLaws, SwitchesWhereThePredictionDoesWhateverTheStep) {
+  for (const Live* live : {&chilled(), &lumped_spindle()}) {
+    const Unit unit({.model = live->fmu, .version = GetParam()}, name("chilled"));
+    expect_valid(unit);
+    EXPECT_EQ(unit.n_indicators, 1u);
+    const Told minutes = import_unit(unit, live->speed(), live->outputs, {}),
+               seconds = import_unit(unit, live->speed(), live->outputs, {.step_s = 1.0});
+    live->expect_predicted(minutes);
+    live->expect_predicted(seconds);
+    live->expect_same(minutes, seconds, 0.1);
+    EXPECT_EQ(minutes.run.allocated, 0) << "no memory is taken after the start";
+    EXPECT_EQ(import_unit(of_sources(unit), live->speed(), live->outputs, {}).of, minutes.of);
+    const std::vector<double> is_on = import_unit(unit, live->speed(), {"on.cooler"}, {}).of[0];
+    for (double on : {0.0, 1.0}) {  // the state that is written and read contains the switch
+      const auto row = static_cast<std::size_t>(std::find(is_on.begin() + 100, is_on.end(), on) - is_on.begin());
+      ASSERT_LT(row, is_on.size());
+      live->expect_same(import_unit(unit, live->speed(), live->outputs, {.rewind_at_row = row}), minutes, 1e-9);
+    }
+    const Told exchanged = import_unit(unit, live->speed(), live->outputs, {.co_simulation = false});
+    live->expect_predicted(exchanged);
+    EXPECT_GT(exchanged.run.n_switches, 20);
+  }
+}
+
+// A tank without a wall, in an ambient of 20 degC: its pump alone would take it to 50 degC, with the chiller it goes to -250.
+TEST_P(FmuOfLaws, SwitchesWithinALongStepByTheClosedForm) {
+  std::string yaml = replaced(kChilled, "passage_conductance: 120 W/K", "passage_conductance: 0 W/K");
+  yaml = replaced(replaced(yaml, "cooling_power: 900 W", "cooling_power: 600 W"), ", runs: while_spindle_turns", "");
+  const Live live("tank.yaml", replaced(yaml, "[1 h, 23 degC], [9 h, 22 degC]", "[9 h, 20 degC]"), "shift");
+  const Unit unit({.model = live.fmu, .version = GetParam()}, name("tank"));
+  const double constant_s = 8.0 * 3800.0 / 2.0, end_s = 36000.0;
+  double t_s = 0.0, degC = 20.0;
+  int n_switches = 0;
+  for (bool is_on = false;; is_on = !is_on, ++n_switches) {
+    const double to_degC = is_on ? -250.0 : 50.0, switch_degC = is_on ? 20.5 : 21.5;
+    const double span_s = constant_s * std::log((degC - to_degC) / (switch_degC - to_degC));
+    if (t_s + span_s > end_s) {
+      degC = to_degC + (degC - to_degC) * std::exp((t_s - end_s) / constant_s);
+      break;
+    }
+    t_s += span_s;
+    degC = switch_degC;
+  }
+  EXPECT_GT(n_switches, 100);
+  const Record inputs{.source = "inputs", .time_s = {0.0, end_s}, .channels = {{"spindle_speed", "rpm", {0.0, 0.0}}}};
+  for (double step_s : {end_s, 3600.0, 60.0})
+    EXPECT_NEAR(import_unit(unit, inputs, {"t_tank"}, {.step_s = step_s}).of[0][1], degC, 1e-6) << step_s;
+}
+
+// --- effects `learned`
+
+/// To the machine on a thermostat: shares that are kept, an offset, lags of the drive and of the ambient, and terms at once.
+constexpr const char* kLearned = R"(effects:
+  - {type: learned, sensor: t_housing, keeps: 0.9, offset: 0.3 K, follows: speed, at_speed: 5000 rpm, exponent: 1.6,
+     rises: [[12 min, 2 K], [40 min, -0.5 K]]}
+  - {type: learned, sensor: t_housing, keeps: 0.8, offset: -0.1 K, follows: ambient, rises: [[0 min, 0.2 K], [25 min, 0.4 K]]}
+  - {type: learned, displacement: nose_z, keeps: 0.6, follows: speed, at_speed: 5000 rpm, exponent: 1.6,
+     grows: [[0 min, 2 um], [12 min, 7 um]]}
+  - {type: learned, displacement: nose_z, follows: running, above: 4000 rpm, grows: [[0 min, 3 um], [8 min, -5 um]]}
+  - {type: learned, displacement: nose_z, follows: ambient, grows: [[25 min, 2 um]]}
+)";
+
+TEST_P(FmuOfLaws, HoldsWhatWasLearned) {
+  const Live live("learned.yaml", replaced(kChilled, "effects:\n", kLearned), "shift"),
+      axis("learned_axis.yaml",
+           replaced(replaced(kScrewAxis, "effects:\n",
+                             "effects:\n  - {type: learned, displacement: at_nut, keeps: 0.7, follows: ambient, grows: [[9 "
+                             "min, 4 um]]}\n"),
+                    "ambient: [[0 h, 21 degC]]", "ambient: [[0 h, 22 degC], [1 h, 25 degC]]"),
+           "strokes");
+  EXPECT_EQ(live.fmu.start.size(), chilled().fmu.start.size() + 3 + 1 + 1 + 1)
+      << "three lags of drives, of which two outputs share one; the ambient and the displacement of the start; one lag of "
+         "the ambient";
+  Record inputs = live.speed();
+  const Unit unit({.model = live.fmu, .version = GetParam()}, name("learned"));
+  const Told exchanged = import_unit(unit, inputs, live.outputs, {.co_simulation = false});
+  live.expect_predicted(exchanged);
+  EXPECT_LT(exchanged.run.jacobian_gap, 1e-6) << "directional derivatives along states and speed, against differences";
+  const std::vector<double> speed_rpm = inputs.channels[0].values;
+  live.expect_predicted(import_unit(unit, inputs, live.outputs, {.rewind_at_row = 37}), speed_rpm);
+  live.expect_predicted(import_unit(unit, inputs, live.outputs, {.step_s = 1.0}), speed_rpm);
+  inputs.channels.push_back(ambient_of(live.scenario, inputs));
+  live.expect_predicted(import_unit(unit, inputs, live.outputs, {.step_s = 7.0, .ambient_from_input = 1}), speed_rpm);
+
+  Record places{.source = "inputs", .time_s = axis.predicted.time_s, .channels = {}};
+  for (const char* of : {"feed_x", "position_x", "stroke_x"}) places.channels.push_back(axis.predicted.at(of));
+  axis.expect_predicted(import_unit(Unit({.model = axis.fmu, .version = GetParam()}, name("learned_axis")), places,
+                                    axis.outputs, {.co_simulation = false}));
+  const std::string column =
+      replaced(kChilled, "effects:\n",
+               "effects:\n  - {type: learned, displacement: nose_z, follows: column, column: bed_W, at: 100, "
+               "grows: [[5 min, 4 um]]}\n");
+  EXPECT_THAT([&] { require_exportable(scenarios::read_scenario(driftwright::write_file("column.yaml", column))); },
+              ThrowsMessage<InputError>(HasSubstr("no input of an FMU")));
 }
 
 TEST_P(FmuOfLaws, SaysThatALawHasNoValueWhereItsRangeEnds) {
