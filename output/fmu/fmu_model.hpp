@@ -86,8 +86,8 @@ struct FmuModel {
   std::vector<FmuAlong> along = {};
   std::vector<FmuThermostat> thermostats = {};
   std::vector<FmuDirect> direct = {};
-  /// What the last states begin with, as many as these, when those before them and the ambient are at their start. Elements of
-  /// `along_first` name them as outputs.size() + k.
+  /// What the last states begin with, as many as these: what a row gives when the states before them and the ambient are at
+  /// their start. Elements of `along_first` name them as outputs.size() + k.
   std::vector<FmuOutput> first = {};
   std::vector<FmuAlong> along_first = {};
   Eigen::VectorXd start = {}, ones = {};

@@ -1,4 +1,4 @@
-// Functional mock-up units of small machines: laws that follow temperatures, thermostats, effects `learned`, places of an axis.
+// Functional mock-up units of small machines: laws that follow temperatures, thermostats, effects `learned`, places of axes.
 
 #include <cmath>
 
@@ -104,8 +104,8 @@ struct Live {
                                     std::count_if(fmu.exchanges.begin(), fmu.exchanges.end(), is_live));
   }
   [[nodiscard]] Record speed() const { return speed_of(predicted); }
-  /// @param stays  a channel of the inputs: rows at which it changes are left out. In co-simulation an output is told before the
-  /// inputs of its row are set, and some follow them at once.
+  /// @param stays  a channel of the inputs: rows at which it changes are left out. In co-simulation an output is told before
+  /// the inputs of its row are set, and some follow them at once.
   void expect_predicted(const Told& told, const std::vector<double>& stays = {}) const {
     for (std::size_t o = 0; o < outputs.size(); ++o) {
       std::vector<double> wanted = predicted.at(outputs[o]).values;
@@ -278,7 +278,7 @@ TEST_P(FmuOfLaws, SwitchesWhereThePredictionDoesWhateverTheStep) {
   }
 }
 
-// A tank without a wall, in an ambient of 20 degC: its pump alone would take it to 50 degC, with the chiller it goes to -250.
+// A tank without a wall, in an ambient of 20 degC: its pump alone would take it to 50 degC, with the chiller to -250 degC.
 TEST_P(FmuOfLaws, SwitchesWithinALongStepByTheClosedForm) {
   std::string yaml = replaced(kChilled, "passage_conductance: 120 W/K", "passage_conductance: 0 W/K");
   yaml = replaced(replaced(yaml, "cooling_power: 900 W", "cooling_power: 600 W"), ", runs: while_spindle_turns", "");
