@@ -3,12 +3,21 @@
 // wrong beyond the drives that they were learned from.
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "effects/effect.hpp"
 
 namespace driftwright::effects {
+namespace learned {
+
+/// The name of the table of an effect `learned`; "" if it learned nothing.
+[[nodiscard]] const std::string& table_of(const Effect& e);
+/// What it follows, scaled to 1 at the stated drive; not of the ambient.
+[[nodiscard]] std::function<double(const Drive&)> law_of(const Effect& e);
+
+}  // namespace learned
 
 /// The effects `learned` of one displacement, step by step.
 class LearnedStream {

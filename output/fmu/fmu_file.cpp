@@ -54,7 +54,8 @@ std::string page(const FmuOrder& order, const Provenance& made_by, const std::st
 }  // namespace
 
 bool is_of_model(const std::string& name, bool is_observer) {
-  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.")) return !is_observer;
+  if (name == "machine.c" || name.starts_with("formula.") || name.starts_with("live.") || name.starts_with("switches."))
+    return !is_observer;
   if (name == "observer.c" || name == "observer_filter.c" || name == "probe_feedback.c" ||
       name.starts_with("state_observer"))
     return is_observer;

@@ -12,6 +12,7 @@
 #include "effects/law_steps.hpp"
 #include "effects/reading_chain.hpp"
 #include "effects/recorded_column.hpp"
+#include "output/fmu/learned_states.hpp"
 #include "output/fmu/sources/formula.h"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -145,7 +146,6 @@ std::vector<double> formula_of(const solver::BoundLaw& law, const std::string& n
 
 FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& system, const solver::BoundLaw& law,
                        const std::string& name, const std::vector<DriveRange>& ranges) {
-  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
   if (!law.law.steps)
     refuse_law(scenario, name, "follows temperatures of the machine, and has no formula that a unit can hold");
   FmuLiveLaw live{.steps = formula_of(law, name, ranges)};
@@ -162,7 +162,6 @@ FmuLiveLaw live_law_of(const Scenario& scenario, const solver::ReducedSystem& sy
 /// A law of the drive as a table, or as a formula where variables act together.
 void set_law_of_drive(const Scenario& scenario, const solver::BoundLaw& law, const std::string& name,
                       const std::vector<DriveRange>& ranges, bool takes_formulas, DriveLaw& table, FmuFormula& formula) {
-  if (law.thermostat >= 0) refuse_law(scenario, name, "obeys a thermostat");
   if (auto found = tabulated([&](const Drive& drive) { return law({.drive = drive}); }, ranges)) {
     table = *std::move(found);
   } else if (takes_formulas && law.law.steps) {
@@ -256,9 +255,9 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
 FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system, const Eigen::VectorXd* start) {
   const MachineModel& machine = *scenario.machine;
   if (!system.mass.isIdentity(1e-8)) throw std::logic_error("machine_fmu: the mass matrix must be the unit matrix");
-  if (!system.thermostats.empty())
+  if (!system.thermostats.empty() && !start)
     throw InputError(machine.where,
-                     fmt::format("thermostat '{}' switches; no FMU is made of such a machine yet (docs/how-to/fmu.md)",
+                     fmt::format("thermostat '{}' switches, and an observer as an FMU does not (docs/how-to/fmu.md)",
                                  system.thermostats.front().name));
   if (!system.change_times_s.empty())
     throw InputError(machine.where,
@@ -273,11 +272,17 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
                  "follows temperatures of the machine, and an observer as an FMU holds laws of the drive alone");
     return law.looks_at_state();
   };
+  for (const solver::Thermostat& t : system.thermostats) {
+    const solver::Probe& probe = system.probes[static_cast<std::size_t>(t.probe)];
+    model.thermostats.push_back(
+        {t.name, t.on_above_K, t.off_below_K, probe.weights, probe.ambient_share, system.reference_K + probe.offset_K});
+  }
   for (const solver::HeatSource& s : system.sources) {
     if (is_live(s.power_W, s.name)) {
+      if (s.power_W.thermostat >= 0) refuse_law(scenario, s.name, "obeys a thermostat, and follows temperatures besides");
       model.sources.push_back({s.load, {}, live_law_of(scenario, system, s.power_W, s.name, model.drive)});
     } else {
-      FmuSource source{.load = s.load, .power_W = {}};
+      FmuSource source{.load = s.load, .power_W = {}, .thermostat = s.power_W.thermostat};
       set_law_of_drive(scenario, s.power_W, s.name, model.drive, start != nullptr, source.power_W, source.formula);
       model.sources.push_back(std::move(source));
     }
@@ -287,6 +292,7 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
                          .to_ambient = e.reaches_ambient() ? e.to_ambient : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
                          .offset = e.offset.size() > 0 ? e.offset : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
                          .coefficient = {}};
+    if (e.coefficient.thermostat >= 0) refuse_law(scenario, e.name, "is an exchange that obeys a thermostat");
     if (is_live(e.coefficient, e.name)) {
       exchange.live = live_law_of(scenario, system, e.coefficient, e.name, model.drive);
       exchange.coefficient =
@@ -306,7 +312,7 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system,
 
 void sum_up_constants(FmuModel& model) {
   std::erase_if(model.sources, [&](const FmuSource& s) {
-    if (!s.power_W.terms.empty() || s.live || !s.formula.empty()) return false;
+    if (!s.power_W.terms.empty() || s.live || !s.formula.empty() || s.thermostat >= 0) return false;
     model.constant_load += s.power_W.at_rest * s.load;
     return true;
   });
@@ -329,7 +335,7 @@ void require_exportable(const Scenario& scenario) {
                      fmt::format("{} {}; leave it out of what is exported as an FMU (docs/how-to/fmu.md)", e.name(), why));
   };
   for (const effects::Effect& e : machine.effects) {
-    const bool is_of_positions = effects::follows_positions(e);
+    const bool is_of_positions = effects::follows_positions(e), is_learned = e.kind->key == "learned";
     if (is_of_positions) {
       try {
         (void)effects::error_along(e);
@@ -337,7 +343,7 @@ void require_exportable(const Scenario& scenario) {
         refuse(e, fmt::format("cannot be read out at the nut: {}", wrong.what()));
       }
     }
-    if (effects::changes_readings(e) && !is_of_positions)
+    if (effects::changes_readings(e) && !is_of_positions && !is_learned)
       refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
     if (effects::changes_drive(e) && !is_of_positions)
       refuse(e, e.kind->contribute ? "follows what the drive was before, and an FMU knows it as it is"
@@ -369,8 +375,9 @@ FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& 
   std::erase_if(model.outputs,
                 [](const FmuOutput& o) { return effects::is_mean_output(o.name); });  // no instrument reads them
   model.along = along_of(machine, reduced.system.outputs, model.outputs, model.drive);
-  sum_up_constants(model);
   model.start = reduced.start;
+  add_learned(model, machine);
+  sum_up_constants(model);
   model.start_ambient_K = scenarios::felt_ambient_at_start_K(machine);
   model.start_follows_ambient = machine.start == scenarios::Start::kAmbient || machine.start == scenarios::Start::kSteady;
   model.description = fmt::format(
@@ -388,6 +395,10 @@ FmuModel observer_fmu(const Scenario& scenario, const compensation::Observer& ob
     if (effects::follows_positions(e))
       throw InputError(e.where, fmt::format("{} follows positions, and an observer as an FMU has no such input "
                                             "(docs/how-to/fmu.md)",
+                                            e.name()));
+    if (e.kind->key == "learned")
+      throw InputError(e.where, fmt::format("{} adds to what the physics give, and an observer as an FMU holds the physics "
+                                            "alone (docs/how-to/fmu.md)",
                                             e.name()));
   }
   FmuModel model = model_of(scenario, state.system, nullptr);

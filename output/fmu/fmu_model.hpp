@@ -39,6 +39,19 @@ struct FmuSource {
   DriveLaw power_W;  ///< 0 beside a live law or a formula
   std::optional<FmuLiveLaw> live = {};
   FmuFormula formula = {};
+  int thermostat = -1;  ///< index; while it is off, so is the source
+};
+/// A switch with hysteresis; its probe is weights' z + ambient_share ambient + offset_K, absolute.
+struct FmuThermostat {
+  std::string name;
+  double on_above_K = 0.0, off_below_K = 0.0;
+  Eigen::VectorXd weights;
+  double ambient_share = 0.0, offset_K = 0.0;
+};
+/// What an output has of the drive at once, in K, m or rad.
+struct FmuDirect {
+  int output = 0;
+  DriveLaw law;
 };
 struct FmuExchange {
   Eigen::MatrixXd matrix;
@@ -71,6 +84,12 @@ struct FmuModel {
   std::vector<FmuExchange> exchanges = {};
   std::vector<FmuOutput> outputs = {};
   std::vector<FmuAlong> along = {};
+  std::vector<FmuThermostat> thermostats = {};
+  std::vector<FmuDirect> direct = {};
+  /// What the last states begin with, as many as these: what a row gives when the states before them and the ambient are at
+  /// their start. Elements of `along_first` name them as outputs.size() + k.
+  std::vector<FmuOutput> first = {};
+  std::vector<FmuAlong> along_first = {};
   Eigen::VectorXd start = {}, ones = {};
   double start_ambient_K = 0.0;
   bool start_follows_ambient = false;
@@ -86,13 +105,13 @@ struct FmuModel {
 /// that follows a column, unless it is the place of a feed axis
 void require_exportable(const scenarios::Scenario& scenario);
 
-/// @throws InputError  naming the law: a thermostat; without a formula (effects::Law::steps) one that depends on
-/// temperatures, or on two variables of the drive together
+/// @throws InputError  naming the law: without a formula (effects::Law::steps) one that depends on temperatures, or on two
+/// variables of the drive together
 [[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
 /// The cyclogram with the places of a unit's inputs in its drive.
 [[nodiscard]] Cyclogram with_places(Cyclogram cyclogram, const std::vector<DriveRange>& drive);
 /// @param probing  what the observer leaves and the probe, of a unit that takes probings
-/// @throws InputError  as machine_fmu(), and for each law that depends on temperatures
+/// @throws InputError  as machine_fmu(), and for thermostats, effects `learned` and each law that depends on temperatures
 [[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer,
                                     const std::optional<probe_process>& probing = {});
 

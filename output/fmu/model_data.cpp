@@ -74,8 +74,8 @@ std::vector<double> nominal_of(const FmuModel& model) {
 /// The lists of a model, in the order of thermal_data and observer_data (sources/model_data.h).
 struct ModelLists {
   std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
-      offset, start, ones, most, least, known, factor_mean, factor_covariance;
-  std::vector<const DriveLaw*> powers, coefficients;
+      offset, start, ones, most, least, known, factor_mean, factor_covariance, thermostats, switched_by, direct_output;
+  std::vector<const DriveLaw*> powers, coefficients, direct;
   struct Live {
     double source, exchange;  ///< index of one, -1 for the other
     const FmuLiveLaw* law;
@@ -98,6 +98,7 @@ ModelLists lists_of(const FmuModel& model) {
     if (s.live) lists.live.push_back({static_cast<double>(lists.powers.size()), -1.0, &*s.live});
     if (!s.formula.empty()) lists.formulas.push_back({static_cast<double>(lists.powers.size()), -1.0, &s.formula});
     lists.powers.push_back(&s.power_W);
+    lists.switched_by.push_back(s.thermostat + 1);
   }
   for (const FmuExchange& e : model.exchanges) {
     append(lists.exchanges, e.matrix);
@@ -112,6 +113,18 @@ ModelLists lists_of(const FmuModel& model) {
     lists.outputs_ambient.push_back(o.ambient);
     lists.factor.push_back(o.factor);
     lists.offset.push_back(o.offset);
+  }
+  for (const FmuOutput& o : model.first) {
+    append(lists.outputs, o.state);
+    lists.outputs_ambient.push_back(o.ambient);
+  }
+  for (const FmuThermostat& t : model.thermostats) {
+    lists.thermostats.insert(lists.thermostats.end(), {t.on_above_K, t.off_below_K, t.ambient_share, t.offset_K});
+    append(lists.thermostats, t.weights);
+  }
+  for (const FmuDirect& d : model.direct) {
+    lists.direct_output.push_back(d.output);
+    lists.direct.push_back(&d.law);
   }
   append(lists.start, model.start);
   append(lists.ones, model.ones);
@@ -154,6 +167,11 @@ std::string formulas_text(const std::vector<ModelLists::Formula>& formulas) {
                         formulas[k].steps->size() / 2, k);
   }
   return rows.empty() ? "" : text + fmt::format("static const drive_formula formulas[] = {{\n{}}};\n", rows);
+}
+std::vector<FmuAlong> all_along(const FmuModel& model) {
+  std::vector<FmuAlong> all = model.along;
+  all.insert(all.end(), model.along_first.begin(), model.along_first.end());
+  return all;
 }
 std::string along_text(const std::vector<FmuAlong>& along) {
   std::string text, rows;
@@ -233,26 +251,29 @@ std::string model_data_c(const FmuModel& model, const std::string& guid, const s
   const ModelLists lists = lists_of(model);
   std::string text = fmt::format("/* {} {} */\n#include \"model_data.h\"\n\n", comment(model.description), comment(made_by));
   text += fmt::format("const char *const model_guid = \"{}\";\n\n", guid);
-  text +=
-      array("conduction", lists.conduction) + array("constant_load", lists.constant) + array("ambient_load", lists.ambient) +
-      array("loads", lists.loads) + laws("powers", lists.powers) + array("exchanges", lists.exchanges) +
-      array("to_ambient", lists.to_ambient) + array("offsets", lists.offsets) + laws("coefficients", lists.coefficients) +
-      array("outputs", lists.outputs) + array("outputs_ambient", lists.outputs_ambient) +
-      array("output_factor", lists.factor) + array("output_offset", lists.offset) + array("start", lists.start) +
-      array("ones", lists.ones) + array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
-      array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
-      live_laws(lists.live) + array("least_drive", lists.least) + formulas_text(lists.formulas) + along_text(model.along);
+  text += array("conduction", lists.conduction) + array("constant_load", lists.constant) +
+          array("ambient_load", lists.ambient) + array("loads", lists.loads) + laws("powers", lists.powers) +
+          array("exchanges", lists.exchanges) + array("to_ambient", lists.to_ambient) + array("offsets", lists.offsets) +
+          laws("coefficients", lists.coefficients) + array("outputs", lists.outputs) +
+          array("outputs_ambient", lists.outputs_ambient) + array("output_factor", lists.factor) +
+          array("output_offset", lists.offset) + array("start", lists.start) + array("ones", lists.ones) +
+          array("ambient_time_s", model.ambient.time_s) + array("ambient_K", model.ambient.value) +
+          array("most_drive", lists.most) + array("nominal", nominal_of(model)) + array("known_drive", lists.known) +
+          live_laws(lists.live) + array("least_drive", lists.least) + formulas_text(lists.formulas) +
+          along_text(all_along(model)) + array("thermostats", lists.thermostats) + array("switched_by", lists.switched_by) +
+          array("direct_output", lists.direct_output) + laws("direct", lists.direct);
   text += fmt::format(
       "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "
       "to_ambient, offsets, coefficients,\n  outputs, outputs_ambient, output_factor, output_offset, start, ones, {:a}, {}, "
       "{:a},\n  {}, "
       "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive, {}, {},\n  least_drive, {}, {}, {}, "
-      "{}}};\n",
+      "{},\n  {}, thermostats, switched_by, {}, {}, {}, direct_output, direct}};\n",
       model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(), model.outputs.size(),
       model.start_ambient_K, model.start_follows_ambient ? 1 : 0, model.reference_K - 273.15, model.ambient.time_s.size(),
       model.known_drives.size(), lists.live.size(), lists.live.empty() ? "0" : "live", lists.formulas.size(),
-      lists.formulas.empty() ? "0" : "formulas", model.along.size(), model.along.empty() ? "0" : "along");
+      lists.formulas.empty() ? "0" : "formulas", model.along.size(), all_along(model).empty() ? "0" : "along",
+      model.thermostats.size(), model.first.size(), model.along_first.size(), model.direct.size());
   return text + observer_text(model, lists);
 }
 
@@ -261,7 +282,7 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
   NumberBlock block;
   block.add(guid);
   block.add_counts(model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(),
-                   model.outputs.size());
+                   model.outputs.size(), model.first.size());
   for (const auto* list : {&lists.conduction, &lists.constant, &lists.ambient, &lists.loads}) block.add(*list);
   block.add(lists.powers);
   for (const auto* list : {&lists.exchanges, &lists.to_ambient, &lists.offsets}) block.add(*list);
@@ -291,12 +312,18 @@ std::string model_numbers(const FmuModel& model, const std::string& guid) {
     block.add_counts(f.source, f.exchange, f.steps->size() / 2);
     block.add(*f.steps);
   }
-  block.add_counts(model.along.size());
-  for (const FmuAlong& a : model.along) {
+  block.add_counts(model.along.size(), model.along_first.size());
+  for (const FmuAlong& a : all_along(model)) {
     block.add_counts(a.output, a.variable, a.ends_mm.size() - 1);
     block.add(a.ends_mm);
     block.add(a.cubics);
   }
+  block.add_counts(model.thermostats.size());
+  block.add(lists.thermostats);
+  block.add(lists.switched_by);
+  block.add_counts(model.direct.size());
+  block.add(lists.direct_output);
+  block.add(lists.direct);
   block.add_counts(model.observer ? 1 : 0);
   if (model.observer) {
     const FmuObserver& o = *model.observer;

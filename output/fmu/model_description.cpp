@@ -15,7 +15,7 @@ namespace driftwright::output {
 namespace {
 
 constexpr unsigned kInputs = 1000, kStartWarmer = 2000, kAmbientFromInput = 3000, kOutputs = 4000, kStates = 10000,
-                   kDerivatives = 20000;
+                   kDerivatives = 20000, kIsOn = 30000, kIndicators = 40000;
 
 struct Unit {
   const char* name;
@@ -114,6 +114,22 @@ void add_machine(std::vector<FmuVariable>& list, const FmuModel& model) {
                     .variability = "continuous",
                     .initial = "calculated",
                     .derivative_of = kStates + i});
+  for (unsigned i = 0; i < static_cast<unsigned>(model.thermostats.size()); ++i) {
+    const std::string& name = model.thermostats[i].name;
+    list.push_back({.name = "on." + name,
+                    .reference = kIsOn + i,
+                    .description = "1 while this thermostat is on",
+                    .causality = "local",
+                    .variability = "discrete",
+                    .initial = "calculated"});
+    list.push_back({.name = "beyond." + name,
+                    .reference = kIndicators + i,
+                    .description = "its temperature over the one at which it switches next: an event where the sign changes",
+                    .causality = "local",
+                    .variability = "continuous",
+                    .initial = "calculated",
+                    .unit = "K"});
+  }
 }
 
 void add_observer(std::vector<FmuVariable>& list, const FmuModel& model) {
@@ -210,7 +226,13 @@ std::vector<std::size_t> dependencies(const FmuModel& model, const std::vector<F
       const bool is_own = a.output == static_cast<int>(output.reference - kOutputs);
       return is_own && (is_state(v) || is_ambient || v.reference == kInputs + static_cast<unsigned>(a.variable));
     });
-    if (has_along || (is_ambient && o.ambient != 0.0) || (is_state(v) && o.state[v.reference - kStates] != 0.0))
+    const bool has_direct = std::any_of(model.direct.begin(), model.direct.end(), [&](const FmuDirect& d) {
+      return d.output == static_cast<int>(output.reference - kOutputs) &&
+             std::any_of(d.law.terms.begin(), d.law.terms.end(),
+                         [&](const LawTerm& term) { return v.reference == kInputs + static_cast<unsigned>(term.variable); });
+    });
+    if (has_along || has_direct || (is_ambient && o.ambient != 0.0) ||
+        (is_state(v) && o.state[v.reference - kStates] != 0.0))
       list.push_back(i);
   }
   return list;
@@ -229,19 +251,20 @@ std::string structure_xml(const FmuModel& model, const std::vector<FmuVariable>&
     }
     return text + "/>\n";
   };
-  std::string outputs, derivatives, start;
+  std::string outputs, derivatives, start, indicators;
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const FmuVariable& v = variables[i];
     if (v.causality == "output")
       outputs += unknown("Output", i, model.observer ? std::vector<std::size_t>{} : dependencies(model, variables, v));
     if (v.derivative_of) derivatives += unknown("ContinuousStateDerivative", i, std::nullopt);
-    if (v.initial == "calculated") start += unknown("InitialUnknown", i, std::nullopt);
+    if (v.reference >= kIndicators) indicators += unknown("EventIndicator", i, std::nullopt);
+    if (v.initial == "calculated" && v.reference < kIsOn) start += unknown("InitialUnknown", i, std::nullopt);
   }
   const auto list = [](const char* tag, const std::string& lines) {
     return lines.empty() ? "" : fmt::format("    <{0}>\n{1}    </{0}>\n", tag, lines);
   };
   const std::string all = is_2 ? list("Outputs", outputs) + list("Derivatives", derivatives) + list("InitialUnknowns", start)
-                               : outputs + derivatives + start;
+                               : outputs + derivatives + start + indicators;
   return "  <ModelStructure>\n" + all + "  </ModelStructure>\n";
 }
 
@@ -338,7 +361,8 @@ std::string model_description(const FmuModel& model, const std::vector<FmuVariab
       "generationTool=\"{}\" "
       "license=\"as the model that it was made of; its C sources: GPL-3.0-or-later\" variableNamingConvention=\"flat\"{}>\n",
       is_2 ? "2.0" : "3.0", xml_text(model.name), is_2 ? "guid" : "instantiationToken", guid,
-      attribute("description", model.description), xml_text(tool), is_2 ? " numberOfEventIndicators=\"0\"" : "");
+      attribute("description", model.description), xml_text(tool),
+      is_2 ? fmt::format(" numberOfEventIndicators=\"{}\"", model.thermostats.size()) : "");
   std::string sources;
   for (const std::string& file : source_files) sources += fmt::format("      <File name=\"{}\"/>\n", file);
   const auto interface = [&](const char* tag, bool is_co_simulation) {

@@ -51,9 +51,10 @@ PlainSizes sizes_of_machine(const FmuModel& model, std::size_t n_inputs) {
   take_live(model.exchanges);
   const std::size_t live =
       has_live ? kLiveHead + 2 * (model.drive.size() + static_cast<std::size_t>(n_probes)) + kLiveVectors * n : 0;
-  return {kFirstInput + n_inputs + 1 + n + (has_live ? 1 : 0),  // the rate of the ambient is no input here
+  const std::size_t thermostats = model.thermostats.size();
+  return {kFirstInput + n_inputs + 1 + n + (has_live ? 1 : 0) + thermostats,  // the rate of the ambient is no input here
           kMachineHead + slots * (kSlotHead + exchanges + n + n * n + 3 * n) + 2 * model.drive.size() +
-              2 * (exchanges + sources) + 8 * n + 2 * n * n + live};
+              2 * (exchanges + sources) + 8 * n + 2 * n * n + thermostats * (n + 2) + live};
 }
 
 std::string names_text(const std::vector<std::string>& names) {

@@ -26,7 +26,7 @@ cyclograms:
 study: {target: nose_z, train: [shift, slow], judge: judged, sensors_to_choose: 1, tolerance: 5 um}
 """
 STATED_um = 1e-9  # besides half a unit of the last of the twelve digits of reference_out.csv
-STATED_LIVE = 1e-3  # um and K, of laws that follow temperatures, where `predict` keeps 1e-8
+STATED_LIVE = 1e-3  # um and K, of laws that follow temperatures and a chiller that switches, where `predict` keeps 1e-8
 LIVE = """  - {type: friction_law, node: spindle, power: 90 W, at_speed: 6000 rpm, decay: 0.02 1/K}
   - type: formula
     node: housing
@@ -35,6 +35,9 @@ LIVE = """  - {type: friction_law, node: spindle, power: 90 W, at_speed: 6000 rp
     d: 1 K
     T_h: housing
     T_a: ambient
+  - {type: coolant, node: housing, tank: cooler, flow: 6 L/min, passage_conductance: 60 W/K, volume: 8 L, pump_power: 60 W, cooling_power: 500 W, set_point: 22 degC}
+  - {type: learned, sensor: t_housing, keeps: 0.9, follows: ambient, rises: [[20 min, 0.1 K]]}
+  - {type: learned, displacement: nose_z, keeps: 0.8, follows: running, above: 1000 rpm, grows: [[0 min, 3 um], [15 min, 6 um]]}
 """
 CORNER = """name: corner
 reference_temperature: 20 degC

@@ -26,7 +26,7 @@ typedef struct {
   size_t rewind_at_row;  /* there the state is kept, written, read and set again after a step elsewhere; 0: nowhere */
   int tells_behind_step; /* outputs of a row are those behind the step from it on: of a unit that samples */
   /* Of model exchange. */
-  size_t n_states;
+  size_t n_states, n_indicators;
   const unsigned *states, *derivatives;
   /* What comes out, n_rows x n_outputs. */
   size_t n_outputs;
@@ -36,6 +36,7 @@ typedef struct {
   long long allocated; /* bytes that the heap grew by from the start to the end of the run */
   double seconds;      /* of the run without instantiation */
   int n_events;
+  int n_switches;  /* of these events, those that an event indicator announced */
   char wrong[512]; /* what went wrong, in words; "" when nothing did */
 } importer_run;
 
@@ -49,8 +50,8 @@ typedef struct {
   int (*slopes)(void* of, double t_s, const double* z, double* dz); /* not 0: failed */
   int (*column)(void* of, size_t state, double* derivatives);       /* of the Jacobian, by directional derivatives */
 } integrand;
-/* Steps begin short at t0 and grow. Returns 0, or 1. */
-int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, double* z);
+/* Steps begin short and grow, unless nothing has jumped at the beginning (is_smooth). Returns 0, or 1. */
+int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, int is_smooth, double* z);
 double monotonic_s(void);
 
 #ifdef __cplusplus

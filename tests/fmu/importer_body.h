@@ -110,11 +110,59 @@ static int check_jacobian(unit* u) {
   return 0;
 }
 
+enum { kMostIndicators = 4 };
+
+/* Where in a piece z is after span_s, and whether an event indicator has another sign there. */
+static int look(unit* u, const integrand* f, const double* from, double t_s, double span_s, int is_smooth,
+                const double* before, double* z, int* has_changed) {
+  const size_t n = u->run->n_states, n_indicators = u->run->n_indicators;
+  double now[kMostIndicators];
+  size_t i;
+  memcpy(z, from, n * sizeof *z);
+  if (n > 0 && integrate_radau(f, n, t_s, t_s + span_s, is_smooth, z)) return fail(u, "the integrator");
+  CALL(SetTime, t_s + span_s);
+  CALL(SetContinuousStates, z, n);
+  if (n_indicators > 0) CALL(GetEventIndicators, now, n_indicators);
+  *has_changed = 0;
+  for (i = 0; i < n_indicators; ++i) *has_changed |= (now[i] > 0.0) != (before[i] > 0.0);
+  return 0;
+}
+
+/* Integrates z from t_s to *until_s, or to just after where an event indicator changes its sign: then *is_switch. With
+ * indicators it looks at them every 10 s. */
+static int integrate(unit* u, const integrand* f, double t_s, double* until_s, double* z, double* from, int* is_switch) {
+  const size_t n = u->run->n_states, n_indicators = u->run->n_indicators;
+  double before[kMostIndicators];
+  int is_smooth = 0;
+  if (n_indicators > kMostIndicators) return fail(u, "more event indicators than this importer takes");
+  if (n_indicators > 0) CALL(GetEventIndicators, before, n_indicators);
+  for (*is_switch = 0; t_s < *until_s && !*is_switch;) {
+    const double end_s = n_indicators > 0 ? fmin(*until_s, t_s + 10.0) : *until_s;
+    double low = 0.0, high = end_s - t_s;
+    memcpy(from, z, n * sizeof *z);
+    if (look(u, f, from, t_s, high, is_smooth, before, z, is_switch)) return 1;
+    if (*is_switch) {
+      while (high - low > 1e-7) {
+        const double middle = 0.5 * (low + high);
+        int is_earlier;
+        if (look(u, f, from, t_s, middle, is_smooth, before, z, &is_earlier)) return 1;
+        *(is_earlier ? &high : &low) = middle;
+      }
+      if (look(u, f, from, t_s, high, is_smooth, before, z, is_switch)) return 1;
+      *until_s = t_s + high;
+    }
+    t_s = end_s;
+    is_smooth = 1;
+  }
+  return 0;
+}
+
 static int exchange(unit* u) {
   importer_run* const run = u->run;
   const integrand f = {u, slopes, column};
   event_info info;
-  double *const z = malloc((run->n_states + 1) * sizeof *z), *const nominal = malloc((run->n_states + 1) * sizeof *nominal);
+  double *const z = malloc((run->n_states + 1) * sizeof *z), *const nominal = malloc((run->n_states + 1) * sizeof *nominal),
+                *const from = malloc((run->n_states + 1) * sizeof *from);
   size_t row, i;
   memset(&info, 0, sizeof info);
   for (row = 0; row < run->n_rows; ++row) {
@@ -129,14 +177,14 @@ static int exchange(unit* u) {
     if (row == 2 && run->n_states > 0 && check_jacobian(u)) return 1;
     while (row + 1 < run->n_rows && t_s < run->time_s[row + 1]) {
       const int is_event = info.nextEventTimeDefined && info.nextEventTime < run->time_s[row + 1];
-      const double until_s = is_event ? info.nextEventTime : run->time_s[row + 1];
+      double until_s = is_event ? info.nextEventTime : run->time_s[row + 1];
+      int is_switch;
       CALL(GetContinuousStates, z, run->n_states);
-      if (run->n_states > 0 && integrate_radau(&f, run->n_states, t_s, until_s, z)) return fail(u, "the integrator");
+      if (integrate(u, &f, t_s, &until_s, z, from, &is_switch)) return 1;
       t_s = until_s;
-      CALL(SetTime, t_s);
-      CALL(SetContinuousStates, z, run->n_states);
       if (completed_step(u)) return 1;
-      if (is_event) {
+      run->n_switches += is_switch;
+      if (is_event || is_switch) {
         CALL(EnterEventMode);
         if (handle_events(u, &info)) return 1;
       }
@@ -144,6 +192,7 @@ static int exchange(unit* u) {
   }
   free(z);
   free(nominal);
+  free(from);
   return 0;
 }
 
@@ -169,7 +218,7 @@ static int import(importer_run* run, int (*go)(unit* u, void* library)) {
   memset(&u, 0, sizeof u);
   u.run = run;
   run->wrong[0] = '\0';
-  run->n_events = 0;
+  run->n_events = run->n_switches = 0;
   run->jacobian_gap = 0.0;
   if (!library) {
     snprintf(run->wrong, sizeof run->wrong, "%s", dlerror());

@@ -52,7 +52,7 @@ static void solve(size_t n, const double* a, const size_t* pivot, double* b) {
   }
 }
 
-int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, double* z) {
+int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, int is_smooth, double* z) {
   const double q = sqrt(6.0);
   const double c[3] = {(4.0 - q) / 10.0, (4.0 + q) / 10.0, 1.0};
   const double a[3][3] = {{(88.0 - 7.0 * q) / 360.0, (296.0 - 169.0 * q) / 1800.0, (-2.0 + 3.0 * q) / 225.0},
@@ -70,7 +70,7 @@ int integrate_radau(const integrand* f, size_t n, double from_s, double to_s, do
   int level, failed = 0;
   size_t i, j;
   for (j = 0; j < n && !failed; ++j) failed = f->column(f->of, j, k) || (memcpy(jacobian + j * n, k, n * sizeof *k), 0);
-  for (level = 0; level < 3 && t_s < to_s && !failed; ++level) {
+  for (level = is_smooth ? 2 : 0; level < 3 && t_s < to_s && !failed; ++level) {
     const double until_s = fmin(to_s, t_s + counts[level] * lengths_s[level]);
     const int n_steps = (int)ceil((until_s - t_s) / lengths_s[level] - 1e-9);
     const double h_s = (until_s - t_s) / n_steps, begin_s = t_s;

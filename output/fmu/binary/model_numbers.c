@@ -16,7 +16,7 @@ thermal_data thermal;
 observer_data observer;
 
 static double* numbers; /* all of them; the tables point into it */
-static drive_law *powers, *coefficients;
+static drive_law *powers, *coefficients, *direct;
 static live_law* live;
 static drive_formula* formulas;
 static output_along* along;
@@ -127,7 +127,9 @@ static int take(reader* r, const char** guid) {
   thermal.n_drive = count(r);
   thermal.n_sources = count(r);
   thermal.n_exchanges = count(r);
-  m = thermal.n_outputs = count(r);
+  thermal.n_outputs = count(r);
+  thermal.n_first = count(r);
+  m = thermal.n_outputs + thermal.n_first;
   thermal.conduction = list(r, n * n);
   thermal.constant_load = list(r, n);
   thermal.ambient_load = list(r, n);
@@ -139,8 +141,8 @@ static int take(reader* r, const char** guid) {
   if (r->left < 0 || !(thermal.coefficients = coefficients = laws(r, thermal.n_exchanges))) return 0;
   thermal.outputs = list(r, m * n);
   thermal.outputs_ambient = list(r, m);
-  thermal.output_factor = list(r, m);
-  thermal.output_offset = list(r, m);
+  thermal.output_factor = list(r, thermal.n_outputs);
+  thermal.output_offset = list(r, thermal.n_outputs);
   thermal.start = list(r, n);
   thermal.ones = list(r, n);
   thermal.start_ambient_K = number(r);
@@ -159,7 +161,14 @@ static int take(reader* r, const char** guid) {
   thermal.n_formulas = count(r);
   if (r->left < 0 || !(thermal.formulas = formulas = formulas_of(r, thermal.n_formulas))) return 0;
   thermal.n_along = count(r);
-  if (r->left < 0 || !(thermal.along = along = along_of(r, thermal.n_along, thermal.n))) return 0;
+  thermal.n_along_first = count(r);
+  if (r->left < 0 || !(thermal.along = along = along_of(r, thermal.n_along + thermal.n_along_first, thermal.n))) return 0;
+  thermal.n_thermostats = count(r);
+  thermal.thermostats = list(r, thermal.n_thermostats * (kProbeWeights + n));
+  thermal.switched_by = list(r, thermal.n_sources);
+  thermal.n_direct = count(r);
+  thermal.direct_output = list(r, thermal.n_direct);
+  if (r->left < 0 || !(thermal.direct = direct = laws(r, thermal.n_direct))) return 0;
   if (count(r)) {
     const long f = thermal.n_sources + thermal.n_exchanges + 1L;
     const double* of;
@@ -238,6 +247,7 @@ __attribute__((constructor)) static void read_numbers(void) {
 __attribute__((destructor)) static void free_numbers(void) {
   free_laws(powers, thermal.n_sources);
   free_laws(coefficients, thermal.n_exchanges);
+  free_laws(direct, thermal.n_direct);
   free(live);
   free(formulas);
   free(along);

@@ -47,7 +47,7 @@ instance* instance_new(const char* name, const char* guid, int is_co_simulation,
                        void (*tell)(const instance*, int, const char*), void (*callback)(void),
                        void* (*allocate)(size_t, size_t), void (*release)(void*)) {
   const size_t n_saved = model_n_saved(), n_out = (size_t)model_n_outputs(), n_states = (size_t)model_n_states(),
-               n_doubles = n_saved + 2 * n_out + 2 * n_states;
+               n_switches = (size_t)model_n_switches(), n_doubles = n_saved + 2 * n_out + 2 * n_states + 2 * n_switches;
   /* One block: the instance, the model's scratch, all numbers. */
   const size_t head = (sizeof(instance) + 15) / 16 * 16, scratch = (model_scratch_size() + 15) / 16 * 16;
   instance* in = allocate(1, head + scratch + n_doubles * sizeof(double));
@@ -69,6 +69,8 @@ instance* instance_new(const char* name, const char* guid, int is_co_simulation,
   in->output_seeds = in->outputs + n_out;
   in->derivatives = in->output_seeds + n_out;
   in->derivative_seeds = in->derivatives + n_states;
+  in->is_on = in->derivative_seeds + n_states;
+  in->indicators = in->is_on + n_switches;
   if (!*model_guid) {
     instance_tell(in, kError, "the numbers at the end of the unit's binary cannot be read; the file is not complete");
     release(in);
@@ -134,6 +136,11 @@ static const double* derivatives_of(instance* in) {
   return in->derivatives;
 }
 
+static const instance* switches_of(instance* in) {
+  model_switches(in->saved, in->is_on, in->indicators);
+  return in;
+}
+
 /* The index of a reference in a group of n, or -1. */
 static int index_in(unsigned reference, unsigned first, int n) {
   return reference >= first && reference - first < (unsigned)n ? (int)(reference - first) : -1;
@@ -156,6 +163,10 @@ int instance_get(instance* in, const unsigned* references, size_t n, double* val
       values[k] = model_states(in->saved)[i];
     else if ((i = index_in(r, kDerivativeReference, model_n_states())) >= 0)
       values[k] = derivatives_of(in)[i];
+    else if ((i = index_in(r, kIsOnReference, model_n_switches())) >= 0)
+      values[k] = switches_of(in)->is_on[i];
+    else if ((i = index_in(r, kIndicatorReference, model_n_switches())) >= 0)
+      values[k] = switches_of(in)->indicators[i];
     else
       return instance_tell(in, kError, "there is no such real variable");
   }
@@ -260,6 +271,12 @@ int instance_get_nominals(instance* in, double* nominals, size_t n) {
   return kOk;
 }
 
+int instance_get_indicators(instance* in, double* indicators, size_t n) {
+  if (n != (size_t)model_n_switches()) return instance_tell(in, kError, "the number of event indicators is wrong");
+  if (n > 0) memcpy(indicators, switches_of(in)->indicators, n * sizeof *indicators);
+  return kOk;
+}
+
 int instance_event(instance* in, int* has_next, double* next_s) {
   const char* const wrong = model_event(in->saved, in->scratch);
   touched(in);
@@ -337,10 +354,12 @@ int instance_restore_state(instance* in, const void* kept) {
   return kOk;
 }
 
-void instance_free_state(instance* in, void** kept) {
+int instance_free_state(instance* in, void** kept) {
   (void)in;
+  if (!kept) return kOk;
   free(*kept);
   *kept = 0;
+  return kOk;
 }
 
 int instance_write_state(instance* in, const void* kept, void* bytes, size_t n_bytes) {

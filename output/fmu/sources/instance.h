@@ -15,7 +15,9 @@ enum {
   kAmbientFromInputReference = 3000,
   kOutputReference = 4000,
   kStateReference = 10000,
-  kDerivativeReference = 20000
+  kDerivativeReference = 20000,
+  kIsOnReference = 30000, /* of switches */
+  kIndicatorReference = 40000
 };
 
 typedef enum {
@@ -49,6 +51,7 @@ struct instance {
   double *outputs, *derivatives; /* room, and what was computed last */
   int has_outputs, has_derivatives;
   double *output_seeds, *derivative_seeds;
+  double *is_on, *indicators; /* of switches */
 };
 
 /* allocate: as calloc. Returns null where there is no memory, or the guid is that of another unit. */
@@ -77,6 +80,7 @@ int instance_set_states(instance* in, const double* states, size_t n);
 int instance_get_states(instance* in, double* states, size_t n);
 int instance_get_derivatives(instance* in, double* derivatives, size_t n);
 int instance_get_nominals(instance* in, double* nominals, size_t n);
+int instance_get_indicators(instance* in, double* indicators, size_t n);
 int instance_event(instance* in, int* has_next, double* next_s);
 int instance_step(instance* in, double from_s, double h_s);
 int instance_sensitivity(instance* in, const unsigned* unknowns, size_t n_unknowns, const unsigned* knowns, size_t n_knowns,
@@ -86,7 +90,7 @@ int instance_sensitivity(instance* in, const unsigned* unknowns, size_t n_unknow
 size_t instance_state_bytes(void);
 int instance_keep_state(instance* in, void** kept);
 int instance_restore_state(instance* in, const void* kept);
-void instance_free_state(instance* in, void** kept);
+int instance_free_state(instance* in, void** kept);
 int instance_write_state(instance* in, const void* kept, void* bytes, size_t n_bytes);
 int instance_read_state(instance* in, const void* bytes, size_t n_bytes, void** kept);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "formula.h"
+#include "switches.h"
 #include "thermal.h"
 
 enum { kNodes = 3, kMostIterations = 12 };
@@ -167,28 +168,6 @@ void live_add_slope(live_room* r, const double* drive, const double* coefficient
   }
 }
 
-/* The integrals of e^{-(c - t) x} t^k over t from 0 to c, k = 0, 1, 2. */
-static void integrals(double c, double x, double* of_power) {
-  const double y = c * x;
-  int k, j;
-  if (y < 1.0) { /* c^{k+1} sum over j of (-y)^j k! / (k + 1 + j)! */
-    double head = c;
-    for (k = 0; k < 3; ++k) {
-      double term = head / (k + 1), sum = 0.0;
-      for (j = 0; j < 20; ++j) {
-        sum += term;
-        term *= -y / (k + 2 + j);
-      }
-      of_power[k] = sum;
-      head *= c;
-    }
-    return;
-  }
-  of_power[0] = -expm1(-y) / x;
-  of_power[1] = (c - of_power[0]) / x;
-  of_power[2] = (c * c - 2.0 * of_power[1]) / x;
-}
-
 static void take_step_length(live_room* r, const live_system* s, double h_s) {
   int i, c;
   if (r->lambda == s->lambda && r->step_s == h_s) return;
@@ -196,7 +175,7 @@ static void take_step_length(live_room* r, const live_system* s, double h_s) {
     const double x = s->lambda[i] * h_s;
     for (c = 0; c < kNodes; ++c) {
       double t[3];
-      integrals(kAt[c], x, t);
+      load_integrals(kAt[c], x, t);
       r->kept[c][i] = exp(-kAt[c] * x);
       r->of[c][0][i] =
           h_s * (t[0] - 3.0 * t[1] + 2.0 * t[2]); /* the parabolas that are 1 at the beginning, the middle, the end */
@@ -282,14 +261,32 @@ void live_forget(live_room* r) {
   r->lambda = 0;
 }
 
-const char* live_advance(live_room* r, const live_system* s, double piece_s, double ambient_K, double ambient_K_s, double* z,
-                         double* length_s) {
-  const int n = thermal.n;
-  double t_s = 0.0;
+/* Whether a thermostat switches within the step that was tried last, and then when: its modes are put into r->rate. N is the
+ * parabola through its values. */
+static int switched_within(live_room* r, const live_system* s, double h_s, double ambient_K, double ambient_K_s,
+                           double* at_s) {
+  double *const b = r->error, *const c = r->load[3];
+  const mode_course course = {s->lambda, r->modes, r->load[0], b, c, s->probes_in_modes, s->is_on, ambient_K, ambient_K_s};
+  int i, which;
+  if (thermal.n_thermostats == 0) return -1;
+  for (i = 0; i < thermal.n; ++i) {
+    b[i] = (4.0 * r->load[1][i] - 3.0 * r->load[0][i] - r->load[2][i]) / h_s;
+    c[i] = 2.0 * (r->load[0][i] - 2.0 * r->load[1][i] + r->load[2][i]) / (h_s * h_s);
+  }
+  which = first_switch(&course, h_s, at_s);
+  if (which >= 0) modes_at(&course, *at_s, r->rate);
+  return which;
+}
+
+const char* live_advance(live_room* r, const live_system* s, double* piece_s, double ambient_K, double ambient_K_s,
+                         double* z, double* length_s, int* which) {
+  const size_t n = (size_t)thermal.n;
+  double t_s = 0.0, at_s = 0.0;
+  *which = -1;
   to_modes(s->vectors, z, r->modes);
   if (load_at(r, s, z, ambient_K, r->load[0])) return "a law has no value at the temperatures of the machine";
-  while (t_s < piece_s * (1.0 - 1e-12)) {
-    const double left_s = piece_s - t_s, h_s = left_s / ceil(left_s / *length_s * (1.0 - 1e-9));
+  while (t_s < *piece_s * (1.0 - 1e-12)) {
+    const double left_s = *piece_s - t_s, h_s = left_s / ceil(left_s / *length_s * (1.0 - 1e-9));
     const double error = try_step(r, s, h_s, ambient_K + t_s * ambient_K_s, ambient_K_s);
     const double fits_s = h_s * (error < 0.0 ? 0.25 : fmin(4.0, fmax(0.2, 0.9 * pow(fmax(error, 1e-12), -0.25))));
     if (!(error >= 0.0 && error <= 1.0) && h_s > kShortest_s) {
@@ -299,8 +296,15 @@ const char* live_advance(live_room* r, const live_system* s, double piece_s, dou
     if (error < 0.0) return "a law has no value at the temperatures that the machine gets to";
     if (fits_s > *length_s || h_s > 0.999 * *length_s)
       *length_s = fmax(fits_s, kShortest_s); /* not if the end made it short */
+    *which = switched_within(r, s, h_s, ambient_K + t_s * ambient_K_s, ambient_K_s, &at_s);
+    if (*which >= 0) {
+      *piece_s = t_s + at_s;
+      memset(z, 0, n * sizeof *z);
+      add_transposed(thermal.n, thermal.n, s->vectors, r->rate, z);
+      return 0;
+    }
     t_s += h_s;
-    memcpy(z, r->z[1], (size_t)n * sizeof *z);
+    memcpy(z, r->z[1], n * sizeof *z);
     to_modes(s->vectors, z, r->modes);
     if (load_at(r, s, z, ambient_K + t_s * ambient_K_s, r->load[0]))
       return "a law has no value at the temperatures of the machine";

@@ -18,6 +18,7 @@ typedef struct {
   const double* coefficient;                  /* of each exchange, as K has it */
   const double *lambda, *vectors;             /* K in its eigenvectors, by rows */
   const double *constant_W, *per_ambient_W_K; /* what loads each mode beside the laws, and per kelvin of the ambient */
+  const double *probes_in_modes, *is_on;      /* of each thermostat (switches.h) */
 } live_system;
 
 typedef struct live_room live_room;
@@ -35,9 +36,10 @@ int live_add_rate(live_room* room, const double* drive, const double* coefficien
 void live_add_slope(live_room* room, const double* drive, const double* coefficient, const double* z, double ambient_K,
                     const double* dz, double d_ambient_K, int which, double seed, double* rate);
 
-/* Steps z over piece_s with an ambient that goes from ambient_K on at ambient_K_s. *length_s: the length of a step that
- * fits, before and after. Returns 0, or what is wrong in words. */
-const char* live_advance(live_room* room, const live_system* system, double piece_s, double ambient_K, double ambient_K_s,
-                         double* z, double* length_s);
+/* Steps z over *piece_s with an ambient that goes from ambient_K on at ambient_K_s, or up to where a thermostat switches:
+ * then *which is its index and *piece_s how long that took; else *which is -1. *length_s: the length of a step that fits,
+ * before and after. Returns 0, or what is wrong in words. */
+const char* live_advance(live_room* room, const live_system* system, double* piece_s, double ambient_K, double ambient_K_s,
+                         double* z, double* length_s, int* which);
 
 #endif

@@ -11,7 +11,7 @@ enum {
   kAmbientSetAt = 1,     /* when the ambient's input was set last */
   kAmbientFromInput = 2, /* 1: the ambient is the input; 0: the scenario's */
   kStartWarmer = 3,      /* K, everywhere, than the scenario's start */
-  kInputs = 4            /* the drive, the ambient [degC], its rate [K/s], then readings [degC], then a probing [um] and its strobe */
+  kInputs = 4 /* the drive, the ambient [degC], its rate [K/s], then readings [degC], then a probing [um] and its strobe */
 };
 
 extern const int model_kind_is_observer;
@@ -21,6 +21,7 @@ size_t model_scratch_size(void); /* bytes */
 int model_n_inputs(void);
 int model_n_outputs(void);
 int model_n_states(void);
+int model_n_switches(void);
 
 /* At instantiation, once. Returns 0, or 1 where a decomposition fails. */
 int model_prepare(void* scratch);
@@ -45,6 +46,8 @@ const char* model_event(double* saved, void* scratch);
 double model_next_event_s(const double* saved);
 
 void model_outputs(const double* saved, void* scratch, double* outputs);
+/* Of each switch whether it is on, and its temperature over the one at which it switches next: its event indicator [K]. */
+void model_switches(const double* saved, double* is_on, double* indicators);
 double* model_states(double* saved);
 void model_derivatives(const double* saved, void* scratch, double* derivatives);
 /* sensitivity += d(outputs) or d(derivatives) of one state or input changing by seed. */

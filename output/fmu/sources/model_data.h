@@ -54,6 +54,10 @@ typedef struct {
   const double* cubics; /* of each piece four rows of n + 1 */
 } output_along;
 
+/* A switch with hysteresis as a row of doubles: on above one temperature, off below another, both in K, of the probe
+ * weights' z + ambient_share ambient + offset_K; the weights follow. It switches sources. */
+enum { kOnAbove, kOffBelow, kAmbientShare, kProbeOffset, kProbeWeights };
+
 /* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices by rows. */
 typedef struct {
   int n, n_drive, n_sources, n_exchanges, n_outputs;
@@ -66,7 +70,7 @@ typedef struct {
   const double* to_ambient; /* g_e, n_exchanges rows */
   const double* offsets;    /* o_e, n_exchanges rows */
   const drive_law* coefficients;
-  const double* outputs; /* n_outputs rows: y = outputs z + outputs_ambient ambient */
+  const double* outputs; /* n_outputs + n_first rows: y = outputs z + outputs_ambient ambient */
   const double* outputs_ambient;
   const double* output_factor; /* what is told is factor y + offset */
   const double* output_offset;
@@ -88,7 +92,14 @@ typedef struct {
   int n_formulas;
   const drive_formula* formulas;
   int n_along;
-  const output_along* along;
+  const output_along* along; /* n_along, then n_along_first */
+  int n_thermostats;
+  const double* thermostats;   /* rows of kProbeWeights + n */
+  const double* switched_by;   /* of each source: its thermostat plus 1; 0: none */
+  int n_first, n_along_first;  /* so many of the last states begin with what the rows after those of the outputs give then */
+  int n_direct;                /* what outputs have of the drive at once */
+  const double* direct_output; /* their indices */
+  const drive_law* direct;
 } thermal_data;
 
 /* Of an observer alone (observer.c); otherwise all zero. */

@@ -103,8 +103,8 @@ static void describe(state_observer* o, const double* rest_W) {
 size_t model_n_saved(void) {
   state_observer o;
   describe(&o, 0);
-  return (size_t)kInputs + (size_t)model_n_inputs() + 5 + kProbeDoubles + (size_t)(kMostPieces * piece_size()) + kRowsKept * row_size() +
-         observer_n_remembered(&o);
+  return (size_t)kInputs + (size_t)model_n_inputs() + 5 + kProbeDoubles + (size_t)(kMostPieces * piece_size()) +
+         kRowsKept * row_size() + observer_n_remembered(&o);
 }
 size_t model_scratch_size(void) {
   state_observer o;
@@ -116,6 +116,9 @@ int model_n_inputs(void) {
 }
 int model_n_outputs(void) {
   return 2 + thermal.n_outputs + observer.n_sensors + 2 + (observer.takes_probings ? kProbeOutputs : 0);
+}
+int model_n_switches(void) {
+  return 0;
 }
 int model_n_states(void) {
   return 0;
@@ -212,7 +215,7 @@ const char* model_check_drive(const double* inputs, const double* before) {
 const char* model_before_input(double* saved, int input, double value) {
   const char* const wrong = model_check_input(input, value);
   if (wrong) return wrong;
-  if (input < thermal.n_drive && *view_of(saved).n_rows > 0.0 && saved[kInputs + input] != value)
+  if (input<thermal.n_drive&& * view_of(saved).n_rows> 0.0 && saved[kInputs + input] != value)
     close_piece(saved, saved[kTime]);
   if (is_strobe(input) && value > 0.5 && !(saved[kInputs + input] > 0.5)) *view_of(saved).is_probed = 1.0;
   return 0;
@@ -347,6 +350,10 @@ void model_outputs(const double* saved, void* scratch, double* outputs) {
   outputs[3] = v.probing->verdict;
   outputs[4] = v.probing->off_um;
   outputs[5] = v.probing->n_refused;
+}
+
+void model_switches(const double* saved, double* is_on, double* indicators) {
+  (void)saved, (void)is_on, (void)indicators;
 }
 
 void model_derivatives(const double* saved, void* scratch, double* derivatives) {

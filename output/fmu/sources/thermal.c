@@ -80,15 +80,25 @@ double law_slope(const drive_law* law, const double* drive, int variable) {
   return slope;
 }
 
-void decay_of(double x, double* kept, double* of_constant, double* of_slope) {
-  *kept = exp(-x);
-  if (x < 1e-2) { /* differences of nearly equal numbers: their series, to x^5 */
-    *of_constant = 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))));
-    *of_slope = 0.5 - x / 6.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0))));
-  } else {
-    *of_constant = -expm1(-x) / x;
-    *of_slope = (1.0 - *of_constant) / x;
+void load_integrals(double t_s, double lambda, double* of_power) {
+  const double y = t_s * lambda;
+  int k, j;
+  if (y < 1.0) { /* t_s^{k+1} sum over j of (-y)^j k! / (k + 1 + j)! */
+    double head = t_s;
+    for (k = 0; k < 3; ++k) {
+      double term = head / (k + 1), sum = 0.0;
+      for (j = 0; j < 20; ++j) {
+        sum += term;
+        term *= -y / (k + 2 + j);
+      }
+      of_power[k] = sum;
+      head *= t_s;
+    }
+    return;
   }
+  of_power[0] = -expm1(-y) / lambda;
+  of_power[1] = (t_s - of_power[0]) / lambda;
+  of_power[2] = (t_s * t_s - 2.0 * of_power[1]) / lambda;
 }
 
 double ambient_by_scenario_K(double time_s) {

@@ -15,9 +15,9 @@ void add_transposed(int rows, int columns, const double* matrix, const double* x
 double law_value(const drive_law* law, const double* drive);
 double law_slope(const drive_law* law, const double* drive, int variable);
 
-/* e^{-x}, (1 - e^{-x}) / x and (1 - (1 - e^{-x}) / x) / x: what a mode keeps of itself over a step, and of a constant and of a rising
- * load, x = lambda h >= 0. */
-void decay_of(double x, double* kept, double* of_constant, double* of_slope);
+/* The integrals of e^{-(t - s) lambda} s^k over s from 0 to t, k = 0, 1, 2: what a mode has at t of a load of 1, of one that
+ * rises by 1 a second, and of one that rises with the square of time. */
+void load_integrals(double t_s, double lambda, double* of_power);
 
 /* The scenario's ambient over the reference [K]; the first knot behind a time, or infinity. */
 double ambient_by_scenario_K(double time_s);
