@@ -42,7 +42,7 @@ constexpr const char* kTruth =
     "  - {type: heat_window, node: wall, power: 16 W, windows: [[377 min, 399 min]]}";
 
 TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
-  const Found found(kBox, with_effect(kBox, kTruth), "box_", {.noise_K = 0.02, .noise_um = 0.05});
+  const Found found(kBox, with_effect(kBox, kTruth), "box_", {.noise_K = 0.02, .noise_um = 0.05}, 2);
   const Beside& beside = found.beside;
   const Diagnosis& d = found.d;
   ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;

@@ -177,10 +177,11 @@ struct Found {
   Diagnosis d;
 
   /// @param plain, truth  texts of scenarios
-  Found(const std::string& plain, const std::string& truth, const std::string& prefix, const RecordNoise& as = {})
+  Found(const std::string& plain, const std::string& truth, const std::string& prefix, const RecordNoise& as = {},
+        int most_effects = 3)
       : records(noisy_records(write_file("truth.yaml", truth), prefix, as)),
         beside(write_file("plain.yaml", plain), records),
-        d(beside.diagnosed()) {}
+        d(beside.diagnosed(most_effects)) {}
   /// The scenario's text with the first cause written into it.
   [[nodiscard]] std::string written() const {
     const Claim& claim = d.search.hypothesis.at(0);
