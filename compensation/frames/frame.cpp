@@ -36,8 +36,4 @@ Frame inverse(const Frame& frame) {
   return {.linear = back, .shift_m = -back * frame.shift_m};
 }
 
-Frame active_frame(const FrameChain& chain) {
-  return compose(chain.base, compose(chain.settable, chain.programmable));
-}
-
 }  // namespace driftwright::compensation

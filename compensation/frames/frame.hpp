@@ -33,14 +33,4 @@ struct Frame {
 /// @throws RangeError  for a singular frame
 [[nodiscard]] Frame inverse(const Frame& frame);
 
-/// The control's frames: BKS <-$P_BFRAME- BNS <-$P_IFRAME- ENS <-$P_PFRAME- WKS.
-struct FrameChain {
-  Frame base;          ///< $P_BFRAME, which contains the thermal correction: every work offset follows it
-  Frame settable;      ///< $P_IFRAME: G54 ...
-  Frame programmable;  ///< $P_PFRAME: TRANS, ROT, SCALE of the program
-};
-
-/// $P_ACTFRAME = $P_BFRAME : $P_IFRAME : $P_PFRAME, from workpiece to machine coordinates.
-[[nodiscard]] Frame active_frame(const FrameChain& chain);
-
 }  // namespace driftwright::compensation

@@ -13,8 +13,8 @@ namespace driftwright::compensation {
 /// The error of a predictor of the same kind on one part of the training runs after a fit to the rest.
 struct FoldError {
   std::string kind, name;  ///< "run", "run 2.csv" (judging/folds.hpp)
-  double rms_um = 0.0;     ///< a row without a prediction counts as uncorrected
-  double within_um = 0.0;  ///< the error that 95 % of the rows do not exceed
+  double rms_um = 0.0;     ///< of what is sent: with the fail-safe, if it has one; a row without a prediction is uncorrected
+  double within_um = 0.0;  ///< of the prediction alone: the error that 95 % of the rows do not exceed
 };
 
 /// The predictor and its data.

@@ -111,10 +111,6 @@ std::vector<std::size_t> starts_after_rests(const MachineRun& run, std::size_t f
   return starts;
 }
 
-bool is_back_in_balance(const MachineRun& run, std::size_t row) {
-  return !in_balance(run, {row}).empty();
-}
-
 RunRows whole_run(const MachineRun& run, std::size_t first, std::size_t last) {
   return run_from(in_balance(run, starts_after_rests(run, 0, last)), first, last);
 }

@@ -15,12 +15,10 @@ struct RunRows {
 /// at most at 1 % of its top speed, and nothing feeds or cuts.
 [[nodiscard]] std::vector<std::size_t> starts_after_rests(const MachineRun& run, std::size_t first, std::size_t last);
 
-/// True if at `row` all temperatures (over the ambient, where it is known) and displacements are back at their values in
-/// the record's first rows: within 5 % of their range in between, or within 0.2 K and 0.5 um.
-[[nodiscard]] bool is_back_in_balance(const MachineRun& run, std::size_t row);
-
 /// The rows [first, last) as one run. Its history begins at the last restart after a rest in which the machine came back
-/// to balance, otherwise at the record's first row.
+/// to balance, otherwise at the record's first row. In balance all temperatures (over the ambient, where it is known) and
+/// displacements are back at their values in the record's first rows: within 5 % of their range in between, or within 0.2 K
+/// and 0.5 um.
 [[nodiscard]] RunRows whole_run(const MachineRun& run, std::size_t first, std::size_t last);
 
 /// The rows [first, last) as runs that begin where the drive restarts after a rest; at most eight, split at the longest

@@ -7,10 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/calibration.hpp"
-#include "diagnosis/extended_scenario.hpp"
 #include "effects/catalogue_table.hpp"
-#include "tests/shared/beside_records.hpp"
 #include "tests/shared/edited_text.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::added_kinds_test {
 namespace {
@@ -37,26 +36,15 @@ class AnAddedKind : public testing::TestWithParam<Added> {};
 
 TEST_P(AnAddedKind, IsSimulatedFoundWrittenAndListed) {
   const Added& added = GetParam();
-  const std::string plain = write_file("plain.yaml", machine()),
-                    truth = write_file("truth.yaml", with_effect(machine(), added.entry));
-  const Beside beside(plain, record(truth, added.key));
-  const Diagnosis d = beside.diagnosed(3);
+  const Found found(machine(), with_effect(machine(), added.entry), std::string(added.key) + "_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, added.key);
   EXPECT_EQ(d.causes[0].where, added.where);
   EXPECT_THAT(d.causes[0].alternatives, IsEmpty());
   EXPECT_NEAR(d.causes[0].parameters[0].value, added.value, added.tolerance * std::abs(added.value));
-
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  EXPECT_THAT(extended.text, HasSubstr(std::string("- {type: ") + added.key));
-  const Beside again(write_file("extended_again.yaml", extended.text), record(truth, added.key));
-  EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
-
+  found.expect_written_is_found_no_more(std::string("- {type: ") + added.key);
   EXPECT_THAT(effects::catalogue_table(), HasSubstr(std::string("| `") + added.key + "` |"));
 }
 
@@ -67,7 +55,8 @@ TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
   ASSERT_NE(off.find(digits), std::string::npos);
   off.replace(off.find(digits), digits.size(), fmt::format("{:g}", 0.9 * added.value));
   const Beside beside(write_file("off.yaml", with_effect(machine(), off)),
-                      record(write_file("truth.yaml", with_effect(machine(), added.entry)), added.key));
+                      noisy_records(write_file("truth.yaml", with_effect(machine(), added.entry)),
+                                    std::string(added.key) + "_", {.seed = 3}));
   const Diagnosis d = calibrate(*beside.twin, nullptr, beside.runs, {});
   const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
                                    [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });

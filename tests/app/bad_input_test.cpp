@@ -24,7 +24,9 @@ TEST_P(BadScenario, EndsWithTwoNamesThePlaceAndWritesNothing) {
   const Mistake& mistake = GetParam();
   const auto folder = fresh_folder(std::string("bad_") + mistake.name);
   const auto scenario = folder / "scenario.yaml";
-  std::ofstream(scenario) << fixtures::replaced(read_text("scenarios/fp3_spindle.yaml"), mistake.right, mistake.wrong);
+  const std::string coarser = fixtures::replaced(read_text("scenarios/fp3_spindle.yaml"), "frame: 80 mm, spindle: 20 mm",
+                                                 "frame: 100 mm, spindle: 30 mm");
+  std::ofstream(scenario) << fixtures::replaced(coarser, mistake.right, mistake.wrong);
   const CommandOutcome outcome = run_program("run " + scenario.string() + " -o " + (folder / "out").string());
   EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr(scenario.string() + ":"));

@@ -187,9 +187,8 @@ TEST_F(Fp3Spindle, TheSameScenarioGivesTheSameBytes) {
   EXPECT_GT(n_files, 15);
 }
 
-TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
+TEST(Fp3Verbs, MeshSimulateAndPredictWork) {
   const auto folder = fresh_folder("fp3_verbs");
-  EXPECT_THAT(run_program("check scenarios/fp3_spindle.yaml").output, HasSubstr(": fine\n"));
   EXPECT_EQ(run_program("mesh scenarios/fp3_spindle.yaml -o " + (folder / "mesh").string()).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "mesh/mesh.vtu"));
 

@@ -71,17 +71,6 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   EXPECT_NEAR(ranking["channels"][4]["grade"].get<double>(), 0.706740, 1e-6);
 }
 
-TEST(MeasuredScenarios, AreReadByTheProgramWithoutTheirRecords) {
-  int n = 0;
-  for (const auto& file : std::filesystem::directory_iterator("scenarios/measured")) {
-    if (file.path().extension() != ".yaml") continue;
-    const CommandOutcome outcome = run_program("check " + file.path().string());
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    ++n;
-  }
-  EXPECT_EQ(n, 11);
-}
-
 // One record of 28 h: fitted to its first 20 h, judged by the other 8.
 TEST(FlThermal, ALongRecordIsCutIntoRunsAndJudgedByItsOtherPart) {
   const std::filesystem::path file = "../shared/data/fl_thermal/first_28h.csv";

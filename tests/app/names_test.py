@@ -17,6 +17,7 @@ cyclograms:
   other: [[30 min, 5000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm]]
 study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}
 schedule: {tolerance: 10 um, rapid: 15 m/min, tool_change: 8 s, axes: {z: {displacement: nose_z, sign: -1}}}
+solver: {output_interval: 3 min}
 """
 failures = []
 

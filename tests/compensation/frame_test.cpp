@@ -48,11 +48,11 @@ TEST(FrameChain, IsNotCommutative) {
 }
 
 TEST(FrameChain, OfTheControlMapsWorkpieceToMachine) {
-  const FrameChain chain{
-      .base = frame_of({.scale = {1.5, 1.0, 1.0}}),
-      .settable = frame_of({.shift_m = {2.0, 0.0, 0.0}}),
-      .programmable = frame_of({.rotation_rad = {0.0, 0.0, 1.5707963267948966}, .mirror = {true, false, false}})};
-  const Eigen::Vector3d p = active_frame(chain).map({1.0, 4.0, 7.0});  // mirrored (-1, 4), turned (-4, -1), shifted, scaled
+  // $P_ACTFRAME = $P_BFRAME (with the thermal correction) : $P_IFRAME (G54 ...) : $P_PFRAME (TRANS, ROT, SCALE)
+  const Frame base = frame_of({.scale = {1.5, 1.0, 1.0}}), settable = frame_of({.shift_m = {2.0, 0.0, 0.0}}),
+              programmable = frame_of({.rotation_rad = {0.0, 0.0, 1.5707963267948966}, .mirror = {true, false, false}});
+  const Eigen::Vector3d p = compose(base, compose(settable, programmable)).map({1.0, 4.0, 7.0});
+  // mirrored (-1, 4), turned (-4, -1), shifted, scaled
   EXPECT_NEAR(p[0], 1.5 * (-4.0 + 2.0), 1e-14);
   EXPECT_NEAR(p[1], -1.0, 1e-14);
   EXPECT_DOUBLE_EQ(p[2], 7.0);

@@ -48,17 +48,15 @@ class AnAmbient : public testing::TestWithParam<Cause> {};
 
 TEST_P(AnAmbient, ThatIsRecordedWronglyIsNamedAndWritten) {
   const Cause& cause = GetParam();
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", with_effect(kMachine, cause.entry)),
-                                                         std::string(cause.name) + "_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(kMachine, with_effect(kMachine, cause.entry), std::string(cause.name) + "_");
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "ambient");
   EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));
   EXPECT_THAT(d.causes[0].alternatives, IsEmpty());
   EXPECT_NEAR(d.causes[0].parameters[0].value, cause.size, cause.tolerance);
-  expect_written_is_found_no_more(beside, d, records);
+  found.expect_written_is_found_no_more();
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -72,9 +70,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST(AnAmbientOfARightRecord, IsNotBlamed) {
-  const std::string plain = write_file("plain.yaml", kMachine);
-  const Diagnosis d = Beside(plain, noisy_records(plain, "right_", 60.0, 0.03, 0.2)).diagnosed();
-  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+  const Found found(kMachine, kMachine, "right_");
+  EXPECT_EQ(found.d.verdict, Verdict::kConsistent) << found.d.reason;
 }
 
 }  // namespace

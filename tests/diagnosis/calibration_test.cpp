@@ -91,9 +91,10 @@ TEST(Discrepancy, IsOfOneChannelAndAsLargeAsWhatItIsMissedBy) {
 
 class Calibration : public ::testing::Test {
  protected:
+  static inline const RecordNoise kNoise{.row_s = 120.0, .noise_K = 0.05, .noise_um = 0.3};
   static Diagnosis of(const std::string& scenario, const std::string& truth, const std::string& prefix) {
     const Beside beside(write_file(prefix + "scenario.yaml", scenario),
-                        noisy_records(write_file(prefix + "truth.yaml", truth), prefix, 120.0, 0.05, 0.3));
+                        noisy_records(write_file(prefix + "truth.yaml", truth), prefix, kNoise));
     return calibrate(*beside.twin, nullptr, beside.runs, {});
   }
   static const Estimate& number(const Diagnosis& d, const std::string& name) {
@@ -134,7 +135,7 @@ TEST_F(Calibration, OfAMachineThatErrsMissesItsOwnRowsByLess) {
 TEST_F(Calibration, WritesNothingThatPredictsKeptOutRowsWorse) {
   const std::string truth = fixtures::replaced(kTwoNodes, "monday: [[60 min, 600 rpm], [60 min, 1900 rpm]",
                                                "monday: [[60 min, 1900 rpm], [60 min, 600 rpm]");
-  const std::vector<std::string> records = noisy_records(write_file("other_truth.yaml", truth), "other_", 120.0, 0.05, 0.3);
+  const std::vector<std::string> records = noisy_records(write_file("other_truth.yaml", truth), "other_", kNoise);
   const Beside beside(write_file("other.yaml", kTwoNodes), records);
   std::vector<MeasuredRun> runs = beside.runs;
   for (Cyclogram::Section& s : runs[0].cyclogram.sections)
@@ -154,7 +155,7 @@ TEST_F(Calibration, WritesNothingThatPredictsOneChannelOfKeptOutRowsWorse) {
       kTwoNodes, "displacements:\n",
       "displacements:\n  - name: tail\n    sensitivities:\n      - {node: column, sensitivity: 9 um/K}\n");
   const auto records = [](const std::string& truth, const std::string& prefix) {
-    return noisy_records(write_file(prefix + "truth.yaml", truth), prefix, 120.0, 0.05, 0.3);
+    return noisy_records(write_file(prefix + "truth.yaml", truth), prefix, kNoise);
   };
   const std::string scenario = write_file("opposed.yaml", two),
                     more = with_effect(fixtures::replaced(two, "power: 100 W", "power: 180 W"),

@@ -42,9 +42,9 @@ constexpr const char* kTruth =
     "  - {type: heat_window, node: wall, power: 16 W, windows: [[377 min, 399 min]]}";
 
 TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
-  const Beside beside(write_file("plain.yaml", kBox),
-                      noisy_records(write_file("truth.yaml", with_effect(kBox, kTruth)), "box_", 60.0, 0.02, 0.05));
-  const Diagnosis d = beside.diagnosed();
+  const Found found(kBox, with_effect(kBox, kTruth), "box_", {.noise_K = 0.02, .noise_um = 0.05}, 2);
+  const Beside& beside = found.beside;
+  const Diagnosis& d = found.d;
   ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   ASSERT_TRUE(d.written.causes_alone) << d.reason;
   ASSERT_EQ(d.written.hypothesis.size(), d.written.causes.size());

@@ -37,28 +37,36 @@ const Beside& beside() {
   static const Beside b(
       write_file("plain.yaml", kBox),
       noisy_records(write_file("truth.yaml", with_effect(kBox, "{type: heat_source, node: wall, power: 3 W, exponent: 0}")),
-                    "box_", 60.0, 0.05, 0.1));
+                    "box_", {.noise_K = 0.05, .noise_um = 0.1}));
   return b;
 }
 
-/// Stages that a diagnosis goes through, in their order.
-std::vector<std::string> stages(const Listener& also = {}) {
-  std::vector<std::string> list;
-  Listener listener = also;
-  listener.on_begin = [&](const std::string& work) { list.push_back(work); };
-  (void)diagnose(*beside().twin, nullptr, beside().runs, {}, listener);
-  return list;
+/// A diagnosis that nobody ends: what it finds, the stages that it goes through in their order, and the shares that it tells.
+struct Whole {
+  Diagnosis diagnosis;
+  std::vector<std::string> stages;
+  std::vector<double> shares;
+};
+const Whole& whole() {
+  static const Whole w = [] {
+    Whole all;
+    const Listener listener{.on_begin = [&](const std::string& work) { all.stages.push_back(work); },
+                            .on_share = [&](double share) { all.shares.push_back(share); }};
+    all.diagnosis = diagnose(*beside().twin, nullptr, beside().runs, {}, listener);
+    return all;
+  }();
+  return w;
 }
 
 TEST(ADiagnosis, IsCompleteWhereNobodyWantsAnEnd) {
-  const Diagnosis d = diagnose(*beside().twin, nullptr, beside().runs, {});
+  const Diagnosis& d = whole().diagnosis;
   EXPECT_EQ(d.ended_at, "");
   EXPECT_EQ(d.verdict, Verdict::kAmbiguous) << d.reason;  // with a warmer ambient
   EXPECT_TRUE(d.written.keeps_numbers);
 }
 
 TEST(ADiagnosis, SaysWhatIsKnownWhereverItIsEnded) {
-  const std::vector<std::string> all = stages();
+  const std::vector<std::string>& all = whole().stages;
   ASSERT_GT(all.size(), 6U);
   bool has_cause = false;
   for (std::size_t last = 0; last < all.size(); ++last) {
@@ -80,11 +88,11 @@ TEST(ADiagnosis, SaysWhatIsKnownWhereverItIsEnded) {
 
 TEST(ADiagnosis, TellsHowFarItIs) {
   std::set<int> percent;
-  (void)stages({.on_share = [&](double share) {
+  for (const double share : whole().shares) {
     EXPECT_GE(share, 0.0);
     EXPECT_LE(share, 1.0);
     percent.insert(static_cast<int>(100.0 * share));
-  }});
+  }
   EXPECT_GT(percent.size(), 20U);
 }
 

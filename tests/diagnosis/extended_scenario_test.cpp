@@ -68,7 +68,23 @@ struct Bench {
   std::vector<MeasuredRun> runs;
   AugmentedModel augmented;
   scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+  Eigen::MatrixXd before;  ///< by_twin() as written
 };
+using Change = std::function<void(TwinState&)>;
+
+/// Readings [K, um], n_outputs x n_times.
+Eigen::MatrixXd by_twin(const Bench& b, const Change& change) {
+  const Twin& twin = *b.twin;
+  TwinState state = twin.as_written();
+  change(state);
+  Twin::Workspace workspace(twin);
+  Eigen::MatrixXd readings = twin.readings(state, b.runs[0], workspace);
+  for (Eigen::Index o = 0; o < readings.rows(); ++o) {
+    if (twin.outputs().unit[static_cast<std::size_t>(o)] == "m") readings.row(o) *= 1e6;
+  }
+  return readings;
+}
 
 MeasuredRun run_of(const scenarios::Scenario& s) {
   MeasuredRun run;
@@ -89,6 +105,8 @@ std::unique_ptr<Bench> bench(const std::string& path) {
   b->augmented = augment(b->scenario, placed.mesh, b->runs);
   const scenarios::MachineModel& model = b->augmented.model;
   b->machine = scenarios::reduce(model, scenarios::build(model, scenarios::place(model)), b->augmented.plan);
+  b->twin.emplace(b->augmented, b->machine, kTight);
+  b->before = by_twin(*b, [](TwinState&) {});
   return b;
 }
 const Bench& spindle() {
@@ -108,7 +126,6 @@ const Bench& column_and_head() {
 effects::Effect effect(const std::string& text) {
   return effects::read_effect(ConfigMap::read_file(write_file("one_effect.yaml", text)));
 }
-using Change = std::function<void(TwinState&)>;
 Change added(const std::vector<std::string>& entries) {
   return [entries](TwinState& t) {
     for (const std::string& text : entries) t.push_back(effect(text));
@@ -116,23 +133,10 @@ Change added(const std::vector<std::string>& entries) {
 }
 
 ExtendedScenario extend(const Bench& b, const Change& change) {
-  const Twin twin(b.augmented, b.machine, kTight);
-  return extended_scenario(b.scenario, twin, b.runs, {{"the change", "because", change}}, {"head"});
+  return extended_scenario(b.scenario, *b.twin, b.runs, {{"the change", "because", change}}, {"head"});
 }
 
-/// Readings [K, um], n_outputs x n_times.
-Eigen::MatrixXd by_twin(const Bench& b, const Change& change) {
-  const Twin twin(b.augmented, b.machine, kTight);
-  TwinState state = twin.as_written();
-  change(state);
-  Twin::Workspace workspace(twin);
-  Eigen::MatrixXd readings = twin.readings(state, b.runs[0], workspace);
-  for (Eigen::Index o = 0; o < readings.rows(); ++o) {
-    if (twin.outputs().unit[static_cast<std::size_t>(o)] == "m") readings.row(o) *= 1e6;
-  }
-  return readings;
-}
-/// The same from a scenario file alone, by the full model; rows of outputs that it has.
+/// Readings from a scenario file alone, by the full model; rows of outputs that it has.
 Eigen::MatrixXd by_simulation(const std::string& path) {
   const scenarios::Scenario s = scenarios::read_scenario(path);
   const scenarios::MachineModel& model = *s.machine;
@@ -164,12 +168,11 @@ void expect_runs_as_predicted(const Bench& b, const Case& finding) {
   const ExtendedScenario extended = extend(b, finding.change);
   ASSERT_THAT(extended.not_written, IsEmpty());
   const std::string path = write_file(std::string("elsewhere_") + finding.name + ".yaml", extended.text);
-  const Eigen::MatrixXd predicted = by_twin(b, finding.change), simulated = by_simulation(path),
-                        before = by_twin(b, [](TwinState&) {});
+  const Eigen::MatrixXd predicted = by_twin(b, finding.change), simulated = by_simulation(path);
   const auto apart = [&](const Eigen::MatrixXd& x) {
     return (x - predicted.topRows(simulated.rows())).cwiseAbs().maxCoeff();
   };
-  const double size = apart(before.topRows(simulated.rows()));
+  const double size = apart(b.before.topRows(simulated.rows()));
   // Six digits of a change of some 10 K or um. The reduced model of the mesh may be off by 8 mK and 16 nm, and by three
   // percent of a change of matrices that its basis was not made for (2.5 % of what another conductivity does).
   const double tolerance = finding.with_mesh ? 0.01 + 0.03 * size : 1e-3;
@@ -279,13 +282,12 @@ const std::vector<Case> kCases = {
 INSTANTIATE_TEST_SUITE_P(All, AFinding, ::testing::ValuesIn(kCases), [](const auto& i) { return i.param.name; });
 
 TEST(AnotherRun, WhatHappenedInItDoesNothingHere) {
-  const Eigen::MatrixXd before = by_twin(spindle(), [](TwinState&) {});
   for (const char* text :
        {"{type: heat_source, node: shaft, power: 40 W, in: tuesday}", "{type: ambient, offset: 2 K, in: tuesday}",
         "{type: sensor_bias, sensor: t_shaft, bias: 1 K, in: tuesday}", "{type: speed_override, factor: 2, in: tuesday}",
         "{type: changed_law, law: link housing - ambient, factor: 3, in: tuesday}",
         "{type: exchange_window, node: shaft, conductance: 9 W/K, windows: [[0 min, 90 min]], in: tuesday}"}) {
-    EXPECT_EQ(by_twin(spindle(), added({text})), before) << text;
+    EXPECT_EQ(by_twin(spindle(), added({text})), spindle().before) << text;
   }
 }
 
@@ -314,7 +316,7 @@ TEST(SemiClosedAxis, FindingsOfScrewAndColumnRunAsTheTwinPredicted) {
 }
 
 TEST(SemiClosedAxis, TheScrewIsUncertainByItsSensitivityAndTheColumnByItsExpansionOnce) {
-  const Twin twin(semi_closed().augmented, semi_closed().machine, kTight);
+  const Twin& twin = *semi_closed().twin;
   std::vector<std::string> expansions;
   for (const Knob& k : scatter(twin)) {
     if (k.effect != "expansion") continue;
@@ -365,7 +367,7 @@ TEST(ExtendedScenario, KeepsCommentsAndSaysWhatItChanged) {
 }
 
 TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
-  const Twin twin(spindle().augmented, spindle().machine, kTight);
+  const Twin& twin = *spindle().twin;
   const auto called = [&](const Change& change) { return own_effects(twin.as_written(), change); };
   EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 15");
   EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}"})),
@@ -403,9 +405,8 @@ TEST(ExtendedScenario, AddsTheMeasuredRunThatAChangeHappenedIn) {
   std::vector<MeasuredRun> runs = {b.runs[0], b.runs[0]};
   runs[1].name = "tuesday";
   runs[1].path = write_file("tuesday.csv", "time_s,speed_rpm\n0,1000\n60,0\n120,0\n");
-  const Twin twin(b.augmented, b.machine, kTight);
   const StatedChange stated{"the change", "because", added({"{type: ambient, offset: 1 K, in: tuesday}"})};
-  const ExtendedScenario e = extended_scenario(b.scenario, twin, runs, {stated}, {});
+  const ExtendedScenario e = extended_scenario(b.scenario, *b.twin, runs, {stated}, {});
   EXPECT_THAT(e.not_written, IsEmpty());
   const scenarios::Scenario read = scenarios::read_scenario(write_file("with_tuesday.yaml", e.text));
   EXPECT_EQ(read.cyclogram("tuesday").duration_s(), 120.0);
@@ -424,15 +425,14 @@ TEST(ExtendedScenario, TheMeasuredRunOfALoggersFileComesWithTheColumnsThatItIsRe
   runs[1].path = write_file("montag.csv",
                             "Zeit;Spindel [1/min];T1 (°C)\n02.11.2026 07:30:00;-1000,5;20,1\n02.11.2026 07:31:00;0;20,2\n"
                             "02.11.2026 07:32:00;0;20,3\n");
-  const Twin twin(b->augmented, b->machine, kTight);
   const StatedChange stated{"the change", "because", added({"{type: ambient, offset: 1 K, in: montag}"})};
-  const ExtendedScenario e = extended_scenario(b->scenario, twin, runs, {stated}, {});
+  const ExtendedScenario e = extended_scenario(b->scenario, *b->twin, runs, {stated}, {});
   const scenarios::Scenario read = scenarios::read_scenario(write_file("with_montag.yaml", e.text));
   EXPECT_EQ(read.cyclogram("montag").duration_s(), 120.0);
   EXPECT_EQ(read.cyclogram("montag").sections.front().drive.speed_rpm, 1000.5);
   runs[1].path = write_file("tuesday_plain.csv",
                             "time_s,speed_rpm\n0,1000\n60,0\n120,0\n");  // as a program may have read it, without the map
-  const ExtendedScenario plain = extended_scenario(b->scenario, twin, runs, {stated}, {});
+  const ExtendedScenario plain = extended_scenario(b->scenario, *b->twin, runs, {stated}, {});
   EXPECT_EQ(scenarios::read_scenario(write_file("with_plain.yaml", plain.text)).cyclogram("montag").duration_s(), 120.0);
 }
 
@@ -514,7 +514,7 @@ TEST(ExtendedScenario, StartsInTheAmbientThatTheRunReallyHad) {
 const std::string kWarm = "{type: run_state, warmed_up: 40 min, rested: 5 min, in: cycle}";
 
 TEST(AMachineThatHadRun, IsWarmerByWhatFirstReadingsSayAtTheStartOfTheRecord) {
-  const Twin twin(spindle().augmented, spindle().machine, kTight);
+  const Twin& twin = *spindle().twin;
   TwinState state = twin.as_written();
   state.push_back(effect(kWarm));
   Twin::Workspace workspace(twin);

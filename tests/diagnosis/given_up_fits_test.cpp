@@ -17,7 +17,7 @@ class GivenUpFits : public testing::Test {
   /// @param truth  what the records have and the scenario lacks
   void open(const std::string& truth) {
     beside_.emplace(write_file("plain.yaml", kTwoNodes),
-                    noisy_records(write_file("truth.yaml", with_effect(kTwoNodes, truth)), "it_", 60.0, 0.03, 0.2));
+                    noisy_records(write_file("truth.yaml", with_effect(kTwoNodes, truth)), "it_"));
     fitter_.emplace(*beside_->twin, beside_->runs, scatter(*beside_->twin), std::vector<Prediction>{});
     const NoiseModel kelvin{0.03, 0.0, 0.0};
     fitter_->set_noise({{"t_head", kelvin}, {"t_column", kelvin}, {"nose", {2e-7, 0.0, 0.0}}});

@@ -98,10 +98,8 @@ cyclograms: {long: [[50 h, 1000 rpm]]}
 }
 
 TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
-  const std::vector<std::string> records =
-      noisy_records(write_file("truth.yaml", with_effect(kMachine, kGuard)), "guard_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(kMachine, with_effect(kMachine, kGuard), "guard_");
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "hidden_body");
@@ -110,7 +108,7 @@ TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
   ASSERT_THAT(d.causes[0].parameters, SizeIs(2));
   EXPECT_NEAR(d.causes[0].parameters[0].value, 1.0 / 8.0, 0.015);
   EXPECT_NEAR(d.causes[0].parameters[1].value, 2000.0, 600.0);
-  expect_written_is_found_no_more(beside, d, records);
+  found.expect_written_is_found_no_more();
 }
 
 // A film that depends on the temperatures of both sides is the same by a guard as by its own `surrounding`; so is radiation.
@@ -178,10 +176,8 @@ TEST(AGuard, DISABLED_BesideAnotherOneIsFound) {
       "{type: node, node: box, capacity: 1 kJ/K}\n  - {type: link, node: box, to: ambient, conductance: 12 W/K}\n  - {type: "
       "guard, node: motor, air: box}\n  - {type: guard, node: tank, air: box}";
   const std::string believed = with_effect(machine, kGuard);
-  const Beside beside(
-      write_file("plain.yaml", believed),
-      noisy_records(write_file("truth.yaml", with_effect(believed, around)), "two_guards_", 60.0, 0.03, 0.2));
-  const Diagnosis d = beside.diagnosed();
+  const Found found(believed, with_effect(believed, around), "two_guards_");
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].where, "motor,tank");

@@ -55,10 +55,8 @@ class HeatOfAnAxis : public testing::TestWithParam<Cause> {};
 
 TEST_P(HeatOfAnAxis, IsNamedWithItsAxisAndWritten) {
   const Cause& cause = GetParam();
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", with_effect(kMachine, cause.entry)),
-                                                         std::string(cause.name) + "_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(kMachine, with_effect(kMachine, cause.entry), std::string(cause.name) + "_");
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "heat_source");
@@ -67,7 +65,7 @@ TEST_P(HeatOfAnAxis, IsNamedWithItsAxisAndWritten) {
   ASSERT_GE(d.causes[0].parameters.size(), cause.numbers.size());
   for (std::size_t i = 0; i < cause.numbers.size(); ++i)
     EXPECT_NEAR(d.causes[0].parameters[i].value, cause.numbers[i].first, cause.numbers[i].second);
-  expect_written_is_found_no_more(beside, d, records);
+  found.expect_written_is_found_no_more();
 }
 
 INSTANTIATE_TEST_SUITE_P(

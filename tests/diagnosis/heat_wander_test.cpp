@@ -43,11 +43,11 @@ constexpr const char* kComesAndGoes =
     "  - {type: heat_window, node: wall, power: 12 W, windows: [[120 min, 180 min]]}\n"
     "  - {type: heat_window, node: wall, power: -9 W, windows: [[180 min, 240 min]]}\n"
     "  - {type: heat_window, node: wall, power: 6 W, windows: [[240 min, 300 min]]}";
-constexpr double kRow_s = 60.0, kNoise_K = 0.03, kNoise_um = 0.1;
+constexpr double kNoise_K = 0.03, kNoise_um = 0.1;
 
 std::optional<HeatWander> wander_of(const std::string& truth) {
-  const std::vector<std::string> records =
-      noisy_records(write_file("truth.yaml", with_effect(kBox, truth)), "box_", kRow_s, kNoise_K, kNoise_um);
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", with_effect(kBox, truth)), "box_",
+                                                         {.noise_K = kNoise_K, .noise_um = kNoise_um});
   const Beside beside(write_file("plain.yaml", kBox), records);
   Fitter fitter(*beside.twin, beside.runs, scatter(*beside.twin), {});
   const NoiseModel kelvin{kNoise_K, 0.0, 0.0};

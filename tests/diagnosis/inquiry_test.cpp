@@ -39,7 +39,7 @@ class TwoRecords : public testing::Test {
       : beside_(write_file("plain.yaml", kBox),
                 noisy_records(
                     write_file("truth.yaml", with_effect(kBox, "{type: heat_source, node: wall, power: 4 W, exponent: 0}")),
-                    "box_", 60.0, kNoise_K, 0.1)) {}
+                    "box_", {.noise_K = kNoise_K, .noise_um = 0.1})) {}
 
   /// An inquiry about the first record beside a diagnosis of both.
   Inquiry of_the_first(bool is_spoilt) {

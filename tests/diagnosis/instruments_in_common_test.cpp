@@ -4,14 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "diagnosis/extended_scenario.hpp"
-#include "tests/shared/beside_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::instruments_in_common_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 /// Three spindles on a beam, alike to a third or so.
@@ -45,19 +43,8 @@ solver: {output_interval: 1 min}
 )";
 
 /// What is said of records of a truth.
-struct Said {
-  Beside beside;
-  Diagnosis d;
-  Said(const std::string& truth, const std::string& name)
-      : beside(write_file("plain.yaml", kMachine), record(write_file("truth.yaml", truth), name)), d(beside.diagnosed(3)) {}
-  [[nodiscard]] std::string written() const {
-    const Claim& claim = d.search.hypothesis.front();
-    const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-    const ExtendedScenario extended =
-        extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-    EXPECT_THAT(extended.not_written, IsEmpty());
-    return extended.text;
-  }
+struct Said : Found {
+  Said(const std::string& truth, const std::string& name) : Found(kMachine, truth, name + "_", {.seed = 3}) {}
 };
 
 std::string with(std::initializer_list<std::string> entries) {

@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "diagnosis/scatter.hpp"
-#include "tests/shared/beside_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::known_to_test {
 namespace {
@@ -42,7 +42,7 @@ solver: {output_interval: 1 min}
 }
 
 std::vector<std::string> records_of(const std::string& text) {
-  return record(write_file("known_to_truth.yaml", text), "known_to");
+  return noisy_records(write_file("known_to_truth.yaml", text), "known_to_", {.seed = 3});
 }
 
 const Knob* knob(const std::vector<Knob>& list, const std::string& effect, const std::string& where) {

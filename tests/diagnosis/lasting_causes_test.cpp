@@ -64,10 +64,8 @@ TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   const std::string plain = with_effect(kTwoNodes, cause.believed);
   std::string truth = plain;
   for (const std::string& e : cause.entries) truth = with_effect(truth, e);
-  const std::vector<std::string> records =
-      noisy_records(write_file("truth.yaml", truth), std::string(cause.name) + "_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", plain), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(plain, truth, std::string(cause.name) + "_");
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   expect_what_is_written_is_said(d);
   EXPECT_EQ(d.causes[0].where, cause.where);
@@ -78,7 +76,7 @@ TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
     EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));
     EXPECT_NEAR(d.causes[0].parameters[0].value, cause.size, cause.tolerance);
   }
-  expect_written_is_found_no_more(beside, d, records);
+  found.expect_written_is_found_no_more();
 }
 
 const Cause kCauses[] = {
@@ -435,8 +433,7 @@ INSTANTIATE_TEST_SUITE_P(OthersAtLength, ACause, ::testing::ValuesIn(causes(fals
 
 // Between speeds that each hold for a while, a tenth apart and more; of many the widest.
 TEST(AGearStage, IsLookedForBetweenTheSpeedsOfTheRecords) {
-  const Beside beside(write_file("plain.yaml", kTwoNodes),
-                      noisy_records(write_file("truth.yaml", kTwoNodes), "geared_", 60.0, 0.03, 0.2));
+  const Beside beside(write_file("plain.yaml", kTwoNodes), noisy_records(write_file("truth.yaml", kTwoNodes), "geared_"));
   std::vector<std::string> stages;
   for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
     for (const Variant& v : c.variants) {
@@ -448,7 +445,7 @@ TEST(AGearStage, IsLookedForBetweenTheSpeedsOfTheRecords) {
 
 // Whatever a search may say of some records a scenario can say, too.
 TEST(OfSomeRecords, EveryLawCanBeWrittenAndReadAgain) {
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", kTwoNodes), "some_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", kTwoNodes), "some_");
   const Beside beside(write_file("plain.yaml", kTwoNodes), records);
   int n_laws = 0;
   for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
@@ -476,8 +473,8 @@ TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
   const std::string machine = "start: steady\n" + std::string(kTwoNodes);
   std::string truth = with_effect(machine, "{type: heat_source, node: column, power: 40 W, in: monday}");
   truth = with_effect(truth, "{type: heat_source, node: column, power: 40 W, in: friday}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "rest_", 60.0, 0.03, 0.2);
-  const Diagnosis d = Beside(write_file("plain.yaml", machine), records).diagnosed();
+  const Found found(machine, truth, "rest_");
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "heat_source");
   EXPECT_EQ(d.causes[0].where, "column");
@@ -492,8 +489,8 @@ TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
   const std::string one = "      - {node: head, sensitivity: 3 um/K}\n";
   machine.insert(machine.find(one) + one.size(), "      - {node: column, sensitivity: 2 um/K}\n");
   const std::string truth = with_effect(machine, "{type: scale_expansion, displacement: nose, factor: 2.5}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "far_", 60.0, 0.03, 0.2);
-  const Diagnosis d = Beside(write_file("plain.yaml", machine), records).diagnosed();
+  const Found found(machine, truth, "far_");
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "scale_expansion");
   const Estimate& factor = d.causes[0].parameters[0];
@@ -525,9 +522,9 @@ cyclograms:
 // if it always had.
 TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
   const std::string truth = with_effect(kTwoRecords, "{type: heat_source, node: housing, power: 40 W}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "pump_", 60.0, 0.1, 0.5);
-  const Beside beside(write_file("plain.yaml", kTwoRecords), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(kTwoRecords, truth, "pump_", {.noise_K = 0.1, .noise_um = 0.5});
+  const Beside& beside = found.beside;
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "heat_source");
   EXPECT_EQ(d.causes[0].n_again, 2);
@@ -551,8 +548,8 @@ TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
 TEST(AShortStop,
      IsFoundThoughItLiesBetweenTheTimesThatAreTriedFirst) {  // 2.5 min of a record of 5 h: rarer than any grid of stops
   const std::string truth = with_effect(kTwoNodes, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "stop_", 30.0, 0.1, 1.0);
-  const Diagnosis d = Beside(write_file("plain.yaml", kTwoNodes), records).diagnosed();
+  const Found found(kTwoNodes, truth, "stop_", {.row_s = 30.0, .noise_K = 0.1, .noise_um = 1.0});
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "missing_stop");
   EXPECT_NE(d.causes[0].standing, Standing::kSuspected);
@@ -567,9 +564,8 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   const std::string machine = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
   const std::string truth = with_effect(
       machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "speed_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", machine), records);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(machine, truth, "speed_");
+  const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "speed_override");
   EXPECT_EQ(d.causes[0].standing, Standing::kNamed);
@@ -578,7 +574,7 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_NEAR(d.causes[0].parameters[0].value, 0.55, 0.03);
   const double times_min[] = {20.0, 45.0, 180.0, 210.0};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d.causes[0].parameters[i + 1].value, times_min[i], 1.0);
-  expect_written_is_found_no_more(beside, d, records);
+  found.expect_written_is_found_no_more();
 }
 
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path
@@ -592,8 +588,8 @@ TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
   std::string truth = nominal;
   const std::string path = "to: ambient, conductance: 14 W/K";
   truth.replace(truth.find(path), path.size(), "to: ambient, conductance: 12 W/K");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "rest_", 60.0, 0.03, 0.2);
-  const Diagnosis d = Beside(write_file("plain.yaml", nominal), records).diagnosed();
+  const Found found(nominal, truth, "rest_");
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 

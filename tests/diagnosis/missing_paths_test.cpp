@@ -6,14 +6,12 @@
 #include <map>
 #include <string>
 
-#include "diagnosis/extended_scenario.hpp"
-#include "tests/shared/beside_records.hpp"
 #include "tests/shared/column_and_head.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::missing_paths_test {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -63,10 +61,8 @@ class AMissingPath : public testing::TestWithParam<Missing> {};
 
 TEST_P(AMissingPath, IsNamedWithItsNumbersAndWritten) {
   const Missing& missing = GetParam();
-  const std::string plain = write_file("plain.yaml", kMachine),
-                    truth = write_file("truth.yaml", with_effect(kMachine, missing.entry));
-  const Beside beside(plain, record(truth, missing.name));
-  const Diagnosis d = beside.diagnosed(3);
+  const Found found(kMachine, with_effect(kMachine, missing.entry), std::string(missing.name) + "_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, missing.effect);
@@ -78,14 +74,7 @@ TEST_P(AMissingPath, IsNamedWithItsNumbersAndWritten) {
     const double value = missing.values.at(e.name);
     EXPECT_NEAR(e.value, value, missing.tolerance * value) << e.name;
   }
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  EXPECT_THAT(extended.text, HasSubstr(missing.written));
-  const Beside again(write_file("extended_again.yaml", extended.text), record(truth, missing.name));
-  EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
+  found.expect_written_is_found_no_more(missing.written);
 }
 
 std::string missing_name(const ::testing::TestParamInfo<Missing>& one) {
@@ -151,14 +140,13 @@ INSTANTIATE_TEST_SUITE_P(
     missing_name);
 
 TEST(NoMissingPath, IsConsistent) {
-  const std::string plain = write_file("plain.yaml", kMachine);
-  const Diagnosis d = Beside(plain, record(plain, "none")).diagnosed(3);
-  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+  const Found found(kMachine, kMachine, "none_", {.seed = 3});
+  EXPECT_EQ(found.d.verdict, Verdict::kConsistent) << found.d.reason;
 }
 
 TEST(MissingPaths, AreOfferedOnceWhereNothingJoinsTwoBodies) {
   const std::string plain = write_file("plain.yaml", kMachine);
-  const Beside beside(plain, record(plain, "offered"));
+  const Beside beside(plain, noisy_records(plain, "offered_", {.seed = 3}));
   std::vector<std::string> links, bodies;
   for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
     if (c.effect == "link") links.push_back(c.where);
@@ -180,7 +168,7 @@ TEST(AWrittenGradient, ThatIsFarOffIsFound) {
     what.cyclograms = "{cycle: [[100 min, 1000 rpm], [100 min, 0 rpm], [100 min, 600 rpm], [60 min, 1500 rpm]]}";
     return fixtures::write_column_and_head(fresh_folder("gradient_" + gradient.substr(0, 2)), what);
   };
-  const Beside beside(written("1 K/m"), record(written("13 K/m"), "gradient"));
+  const Beside beside(written("1 K/m"), noisy_records(written("13 K/m"), "gradient_", {.seed = 3}));
   const Diagnosis d = beside.diagnosed(3);
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;

@@ -34,8 +34,7 @@ constexpr const char* kTrue = "power: 200 W, at_speed: 1000 rpm, exponent: 0.67"
 Diagnosis diagnosed(const std::string& plain, std::string truth, const char* friction,
                     const std::set<std::string>& without = {}) {
   truth.replace(truth.find(kWritten), std::string_view(kWritten).size(), friction);
-  const Beside beside(write_file("plain.yaml", plain),
-                      noisy_records(write_file("truth.yaml", truth), "cycles_", 60.0, 0.03, 0.2));
+  const Beside beside(write_file("plain.yaml", plain), noisy_records(write_file("truth.yaml", truth), "cycles_"));
   DiagnosisOptions how;
   how.most_effects = 1;
   how.without = without;

@@ -6,9 +6,7 @@
 
 #include <cmath>
 
-#include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
-#include "diagnosis/extended_scenario.hpp"
 #include "diagnosis/residual_structure.hpp"
 #include "diagnosis/scene.hpp"
 #include "machine/as_recorded.hpp"
@@ -23,8 +21,6 @@
 namespace driftwright::diagnosis::recorded_columns_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr const char* kMachine = R"(name: three_nodes
@@ -58,7 +54,6 @@ constexpr const char* kRows[] = {
     "[[50 min, 1800 rpm, 60 W, 400 W/m^2, 1, 20 degC], [70 min, 300 rpm, 0 W, 20 W/m^2, 0, 50 degC], [60 min, 1000 rpm, 110 "
     "W, 0 W/m^2, 1, 80 degC], [60 min, 0 rpm, 50 W, 350 W/m^2, 0, 35 degC], [60 min, 2000 rpm, 0 W, 200 W/m^2, 0, 25 "
     "degC]]"};
-constexpr double kNoise_K = 0.03, kNoise_um = 0.2;
 
 /// The scenario with further effects. @param with_columns  whether its cyclograms say more than speeds
 std::string scenario_with(const std::string& entry, bool with_columns = true) {
@@ -79,27 +74,6 @@ Record simulated(const scenarios::MachineModel& model, const Cyclogram& cyclogra
       machine.system.outputs, cyclogram);
 }
 
-/// Records of a scenario with noise, and with every column of its cyclograms, as files.
-std::vector<std::string> records(const std::string& path, const std::string& name) {
-  const scenarios::Scenario s = scenarios::read_scenario(path);
-  Random random(3, 0);
-  std::vector<std::string> paths;
-  for (const Cyclogram& c : s.cyclograms) {
-    Record r = simulated(*s.machine, c);
-    for (Channel& channel : r.channels) {
-      const double noise = channel.name.starts_with("t_") ? kNoise_K : channel.unit == "um" ? kNoise_um : 0.0;
-      for (double& v : channel.values) v += noise * random.normal();
-    }
-    for (const Cyclogram::Column& column : c.columns) {
-      if (r.find(column.name)) continue;
-      r.channels.push_back({column.name, column.unit, {}});
-      for (double t_s : r.time_s) r.channels.back().values.push_back(column.at(t_s));
-    }
-    paths.push_back(write_file(name + "_" + c.name + ".csv", record_csv(r)));
-  }
-  return paths;
-}
-
 struct Hidden {
   const char* name;
   const char* entry;     ///< of the truth
@@ -115,24 +89,16 @@ class ARecordedColumn : public testing::TestWithParam<Hidden> {};
 
 TEST_P(ARecordedColumn, IsFoundAndWritten) {
   const Hidden& hidden = GetParam();
-  const std::vector<std::string> files =
-      records(write_file("truth.yaml", scenario_with(hidden.entry)), std::string("columns_") + hidden.name);
-  const Beside beside(write_file("believed.yaml", scenario_with(hidden.believed, false)), files);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(scenario_with(hidden.believed, false), scenario_with(hidden.entry),
+                    fmt::format("columns_{}_", hidden.name), {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, hidden.effect);
   EXPECT_EQ(d.causes[0].where, hidden.where);
   EXPECT_EQ(d.causes[0].parameters[0].name, hidden.parameter);
   EXPECT_NEAR(d.causes[0].parameters[0].value, hidden.value, 0.1 * hidden.value);
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  EXPECT_THAT(extended.text, HasSubstr(hidden.written));
-  const Beside again(write_file("extended_again.yaml", extended.text), files);
-  EXPECT_EQ(again.diagnosed().verdict, Verdict::kConsistent);
+  found.expect_written_is_found_no_more(hidden.written);
 }
 
 std::string hidden_name(const ::testing::TestParamInfo<Hidden>& one) {
@@ -189,9 +155,8 @@ TEST(RecordedColumns, ThatHeatOneOfTwoLikeBodiesAreNamedAndTheirPlaceIsLeftOpen)
       "  - {type: link, node: left, to: column, conductance: 7 W/K}\n"
       "  - {type: link, node: right, to: column, conductance: 7 W/K}";
   const std::string sun = "\n  - {type: recorded_drive, node: left, column: sun_W_m2, gain: 0.3}";
-  const std::vector<std::string> files = records(write_file("truth.yaml", scenario_with(wings + sun)), "columns_wings");
-  const Beside beside(write_file("believed.yaml", scenario_with(wings, false)), files);
-  const Diagnosis d = beside.diagnosed();
+  const Found found(scenario_with(wings, false), scenario_with(wings + sun), "columns_wings_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   const Cause& cause = d.causes[0];
@@ -205,11 +170,9 @@ TEST(RecordedColumns, ThatHeatOneOfTwoLikeBodiesAreNamedAndTheirPlaceIsLeftOpen)
 }
 
 TEST(RecordedColumns, AreNoCauseWhereNothingIsWrong) {
-  const std::vector<std::string> files = records(write_file("truth.yaml", scenario_with("")), "columns_none");
-  const Beside beside(write_file("believed.yaml", scenario_with("", false)), files);
-  ASSERT_THAT(scene_of(*beside.twin, beside.runs).columns, SizeIs(4));
-  const Diagnosis d = beside.diagnosed();
-  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+  const Found found(scenario_with("", false), scenario_with(""), "columns_none_", {.seed = 3});
+  ASSERT_THAT(scene_of(*found.beside.twin, found.beside.runs).columns, SizeIs(4));
+  EXPECT_EQ(found.d.verdict, Verdict::kConsistent) << found.d.reason;
 }
 
 TEST(RecordedColumns, OfASimulatedRecordDriveItAgain) {
@@ -240,8 +203,8 @@ TEST(RecordedColumns, ThatAreMissingAreRefused) {
   const scenarios::Scenario s = scenarios::read_scenario(write_file("idle.yaml", scenario_with(entry, false)));
   EXPECT_REFUSED(scenarios::felt_run(*s.machine, s.cyclogram("idle")), "recorded_drive column", "'heater_W'",
                  "cyclogram 'idle'");
-  const std::vector<std::string> files =
-      records(write_file("truth.yaml", scenario_with("{type: sensor_bias, sensor: t_bed, bias: 0.1 K}")), "columns_missing");
+  const std::vector<std::string> files = noisy_records(
+      write_file("truth.yaml", scenario_with("{type: sensor_bias, sensor: t_bed, bias: 0.1 K}")), "columns_missing_");
   Record r = read_record_csv(files[0]);
   std::erase_if(r.channels, [](const Channel& c) { return c.name == "heater"; });
   EXPECT_REFUSED(read_measured(write_file("no_heater.csv", record_csv(r)), *s.machine,

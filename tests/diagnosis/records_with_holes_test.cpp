@@ -33,7 +33,7 @@ TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
   const std::string monday = "monday: [[60 min, 600 rpm], [60 min, 1900 rpm], ";
   truth.replace(truth.find(monday), monday.size(),
                 "monday: [[60 min, 600 rpm], [15 min, 1900 rpm], [20 min, 0 rpm], [25 min, 1900 rpm], ");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_");
   for (const auto& [first, last] :
        {std::pair{51, 69}, {73, 97}}) {  // speed changes in the first one; 1900 rpm before and after the second one
     const Beside beside(write_file("plain.yaml", kTwoNodes),
@@ -52,7 +52,7 @@ TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
 // What is wrong in all of a record is found on both sides of its hole.
 TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
   const std::string truth = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 25 W}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_");
   const Beside beside(write_file("plain.yaml", kTwoNodes),
                       {with_hole(records[0], 51, 90, "gap_monday.csv"), with_hole(records[1], 100, 150, "gap_tuesday.csv")});
   const Diagnosis d = beside.diagnosed();
@@ -66,7 +66,7 @@ TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
 // The readings of an hour and a half after a hole depend on the unknown drive in the hole. Such rows are not used to judge,
 // and if there are no others, no gain is reported.
 TEST(ARecordWithAHole, LeavesNothingToJudgeByWhereItIsJustBeforeAllThatIsKeptOut) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_");
   for (const auto& [first, last, is_open] : {std::tuple{150, 195, true}, {5, 12, false}}) {
     const Beside beside(write_file("plain.yaml", kTwoNodes), {with_hole(records[0], first, last, "gap_monday.csv")});
     const Diagnosis d = beside.diagnosed();
@@ -96,7 +96,7 @@ std::string without_speed(const std::string& record, int first, int last, const 
 
 // Readings with an unknown speed say nothing: within a record, at its beginning and at its end.
 TEST(ARecordWithAHole, IsNotReadWhereTheSpeedIsMissing) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_");
   for (const auto& [first, last] : {std::pair{61, 130}, {0, 79}, {226, 300}}) {
     const Beside beside(write_file("plain.yaml", kTwoNodes),
                         {without_speed(records[0], first, last, "gap_monday.csv"), records[1]});
@@ -108,7 +108,7 @@ TEST(ARecordWithAHole, IsNotReadWhereTheSpeedIsMissing) {
 
 // A logger that writes less often from a time on leaves no holes.
 TEST(ARecordWithAHole, IsNoneOfRowsThatAreFurtherApartFromATimeOn) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_", 60.0, 0.03, 0.2);
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kTwoNodes), "hole_");
   std::ifstream whole(records[0]);
   std::string kept, row;
   for (int i = -1; std::getline(whole, row); ++i) {

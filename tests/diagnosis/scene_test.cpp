@@ -19,7 +19,7 @@ std::vector<double> steps_rpm(const std::string& day) {
   const std::size_t from = text.find("cyclograms:"), to = text.find("solver:");
   text.replace(from, to - from, "cyclograms:\n  day: [" + day + "]\n");
   const std::string path = write_file("machine.yaml", text);
-  const Beside beside(path, noisy_records(path, "speeds_", 60.0, 0.03, 0.2));
+  const Beside beside(path, noisy_records(path, "speeds_"));
   return scene_of(*beside.twin, beside.runs).speed_steps_rpm;
 }
 

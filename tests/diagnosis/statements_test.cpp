@@ -14,7 +14,7 @@
 namespace driftwright::diagnosis::statements_test {
 namespace {
 
-constexpr double kNoise_K = 0.05, kNoise_um = 0.2;
+constexpr RecordNoise kNoise{.noise_K = 0.05};
 
 /// A fitter of the scenario's numbers beside records, its noise known.
 struct Ground {
@@ -27,7 +27,8 @@ struct Ground {
                                       unknown_columns(*b.twin, nullptr, 1.0, b.runs, b.twin->as_written()));
     std::map<std::string, NoiseModel> noise;
     for (const MeasuredRun& run : b.runs) {
-      for (const MeasuredChannel& c : run.channels) noise[c.name] = {.white = c.unit == "K" ? kNoise_K : 1e-6 * kNoise_um};
+      for (const MeasuredChannel& c : run.channels)
+        noise[c.name] = {.white = c.unit == "K" ? kNoise.noise_K : 1e-6 * kNoise.noise_um};
     }
     fitter->set_noise(noise);
   }
@@ -49,8 +50,9 @@ std::string first(const Posterior& p) {
 /// Records of a machine that has one effect more than the scenario.
 Posterior stated_of(const std::string& hidden, const std::string& prefix, std::uint64_t seed = 5) {
   const std::string scenario = write_file("plain.yaml", kTwoNodes);
-  const Beside beside(scenario, noisy_records(write_file("truth.yaml", with_effect(kTwoNodes, hidden)), prefix, 60.0,
-                                              kNoise_K, kNoise_um, seed));
+  RecordNoise noise = kNoise;
+  noise.seed = seed;
+  const Beside beside(scenario, noisy_records(write_file("truth.yaml", with_effect(kTwoNodes, hidden)), prefix, noise));
   return Ground(beside).stated();
 }
 
@@ -58,7 +60,7 @@ class ColumnTest : public testing::Test {
  protected:
   ColumnTest()
       : path_(write_file("plain.yaml", kTwoNodes)),
-        beside_(path_, noisy_records(path_, "column_", 60.0, kNoise_K, kNoise_um)),
+        beside_(path_, noisy_records(path_, "column_", kNoise)),
         ground_(beside_),
         space_(*ground_.fitter, beside_.twin->as_written()) {}
 
@@ -258,7 +260,7 @@ TEST(Naming, IsByQuantityAndPlace) {
 // A window of a statement becomes a window of the catalogue, at its times; candidates elsewhere are gone.
 TEST(Naming, MakesWindowsOfTheCatalogueAtTheTimesOfAStatement) {
   const std::string path = write_file("plain.yaml", kTwoNodes);
-  const Beside beside(path, noisy_records(path, "naming_", 60.0, kNoise_K, kNoise_um));
+  const Beside beside(path, noisy_records(path, "naming_", kNoise));
   Posterior p;
   p.nothing = 0.0;
   p.stated.push_back({.says = {.quantity = StatedQuantity::kHeat,

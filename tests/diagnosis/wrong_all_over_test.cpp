@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "tests/shared/beside_records.hpp"
+#include "tests/shared/lumped_records.hpp"
 
 namespace driftwright::diagnosis::wrong_all_over_test {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 using ::testing::HasSubstr;
 
 /// Three bodies. @param conductances  of spindle to head, head to column and column to the ambient [W/K]
-std::string machine(const std::string& name, const std::array<double, 3>& conductances, double head_kJ_K) {
-  return write_file(name, fmt::format(R"(name: three_nodes
+std::string machine(const std::array<double, 3>& conductances, double head_kJ_K) {
+  return fmt::format(R"(name: three_nodes
 reference_temperature: 20 degC
 machine: {{generator: lumped}}
 effects:
@@ -37,26 +37,26 @@ cyclograms:
   tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
 solver: {{output_interval: 1 min}}
 )",
-                                      head_kJ_K, conductances[0], conductances[1], conductances[2]));
+                     head_kJ_K, conductances[0], conductances[1], conductances[2]);
 }
 
 TEST(NumbersFarOff, AreCausesWhereTheyAreFew) {
-  const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {14, 26, 14}, 20), "one"));
-  const Diagnosis d = beside.diagnosed(3);
+  const Found found(machine({14, 12, 14}, 20), machine({14, 26, 14}, 20), "one_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   EXPECT_THAT(d.reason, HasSubstr("link at head,column, line 10"));
 }
 
 TEST(NumbersFarOff, AreCausesWhereTheyAreTwo) {
-  const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {14, 26, 14}, 9), "two"));
-  const Diagnosis d = beside.diagnosed(3);
+  const Found found(machine({14, 12, 14}, 20), machine({14, 26, 14}, 9), "two_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   EXPECT_THAT(d.reason, testing::AllOf(HasSubstr("link at head,column, line 10"), HasSubstr("node at head, line 6")));
 }
 
 TEST(NumbersFarOff, SayThatTheModelIsWrongAllOverWhereTheyAreMany) {
-  const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {30, 5, 32}, 8), "many"));
-  const Diagnosis d = beside.diagnosed(3);
+  const Found found(machine({14, 12, 14}, 20), machine({30, 5, 32}, 8), "many_", {.seed = 3});
+  const Diagnosis& d = found.d;
   EXPECT_EQ(d.verdict, Verdict::kSuspected) << d.reason;
   for (const Cause& c : d.causes) EXPECT_EQ(c.standing, Standing::kSuspected) << c.effect << " at " << c.where;
   EXPECT_THAT(d.reason, HasSubstr("uncertain numbers had to go beyond 3.5 sigmas"));

@@ -51,28 +51,39 @@ inline std::string with_effect(std::string text, const std::string& entry) {
   return text;
 }
 
-/// Records of all cyclograms of a scenario, by the full model, with noise, as files.
-inline std::vector<std::string> noisy_records(const std::string& scenario, const std::string& prefix, double row_s,
-                                              double noise_K, double noise_um, std::uint64_t seed = 5) {
+struct RecordNoise {
+  double row_s = 60.0, noise_K = 0.03, noise_um = 0.2;
+  std::uint64_t seed = 5;
+};
+
+/// Records of all cyclograms of a scenario, by the full model, with noise and all columns of the cyclogram, as files.
+inline std::vector<std::string> noisy_records(const std::string& scenario, const std::string& prefix,
+                                              const RecordNoise& as = {}) {
   const scenarios::Scenario s = scenarios::read_scenario(scenario);
   const scenarios::MachineModel& model = *s.machine;
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
   const solver::TransientOptions exact{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
-  Random random(seed, 0);
+  Random random(as.seed, 0);
   std::vector<std::string> paths;
   for (const Cyclogram& c : s.cyclograms) {
     const MachineRun felt = scenarios::felt_run(model, c);
     Record r = scenarios::as_recorded(
         model,
         solver::simulate(
-            machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, row_s), exact,
+            machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, as.row_s), exact,
             scenarios::after_what_was_before(machine.system, felt, exact, scenarios::start_state(model, machine))),
         machine.system.outputs, c);
     for (Channel& channel : r.channels) {
-      const double noise = channel.unit == "degC" && channel.name != "ambient" ? noise_K
-                           : channel.unit == "um"                              ? noise_um
-                                                                               : 0.0;
+      const bool is_reading = channel.name != "ambient" && !c.column(channel.name);
+      const double noise = is_reading && channel.unit == "degC" ? as.noise_K
+                           : is_reading && channel.unit == "um" ? as.noise_um
+                                                                : 0.0;
       for (double& v : channel.values) v += noise * random.normal();
+    }
+    for (const Cyclogram::Column& column : c.columns) {
+      if (r.find(column.name)) continue;
+      r.channels.push_back({column.name, column.unit, {}});
+      for (double t_s : r.time_s) r.channels.back().values.push_back(column.at(t_s));
     }
     paths.push_back(write_file(prefix + c.name + ".csv", record_csv(r)));
   }
@@ -159,17 +170,34 @@ struct AloneTwin {
   AloneTwin& operator=(const AloneTwin&) = delete;
 };
 
-/// Writes the first cause of a diagnosis into the scenario and diagnoses the records with that file: nothing must be
-/// found any more.
-inline void expect_written_is_found_no_more(const Beside& beside, const Diagnosis& d,
-                                            const std::vector<std::string>& records) {
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_TRUE(extended.not_written.empty());
-  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
-  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
-}
+/// Records of a truth, a scenario's twin beside them, and what is found.
+struct Found {
+  std::vector<std::string> records;
+  Beside beside;
+  Diagnosis d;
+
+  /// @param plain, truth  texts of scenarios
+  Found(const std::string& plain, const std::string& truth, const std::string& prefix, const RecordNoise& as = {},
+        int most_effects = 3)
+      : records(noisy_records(write_file("truth.yaml", truth), prefix, as)),
+        beside(write_file("plain.yaml", plain), records),
+        d(beside.diagnosed(most_effects)) {}
+  /// The scenario's text with the first cause written into it.
+  [[nodiscard]] std::string written() const {
+    const Claim& claim = d.search.hypothesis.at(0);
+    const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+    const ExtendedScenario extended =
+        extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+    EXPECT_TRUE(extended.not_written.empty());
+    return extended.text;
+  }
+  /// With what is written nothing is found any more in the same records. @param words  that are written
+  void expect_written_is_found_no_more(const std::string& words = "") const {
+    const std::string text = written();
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+    const Diagnosis again = Beside(write_file("extended.yaml", text), records).diagnosed();
+    EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+  }
+};
 
 }  // namespace driftwright::diagnosis

@@ -26,7 +26,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 std::vector<std::string> records() {
   static const std::vector<std::string> paths = diagnosis::noisy_records(
       write_file("truth.yaml", replaced(diagnosis::kTwoNodes, "conductance: 4 W/K", "conductance: 7 W/K")), "measured_",
-      120.0, 0.05, 0.2);
+      {.row_s = 120.0, .noise_K = 0.05});
   return paths;
 }
 

@@ -36,7 +36,8 @@ solver: {output_interval: 1 min}
 // cost it most. So does the extension. Half of the heat is missing: while the spindle turns, 5 K in the end.
 TEST(LearnBeside, SaysWhatARegressionAndTheNoiseLeave) {
   const std::string scenario = write_file("half.yaml", fixtures::replaced(kBody, "power: 100 W", "power: 50 W"));
-  const std::vector<std::string> records = diagnosis::noisy_records(write_file("truth.yaml", kBody), "", 60.0, 0.05, 0.3);
+  const std::vector<std::string> records =
+      diagnosis::noisy_records(write_file("truth.yaml", kBody), "", {.noise_K = 0.05, .noise_um = 0.3});
   const MeasuredTwin m = open_measured_twin(scenarios::read_scenario(scenario), "identify --prior", records, {});
   const LearnedBeside learned = learn_beside(m, m.twin->as_written(), {});
   ASSERT_EQ(learned.network.channels.size(), 2u);
@@ -80,7 +81,8 @@ TEST(RemainingSd, IsWhatFoldsMissWithoutTheNoise) {
 // Beside what a diagnosis wrote, here the scenario as it was.
 TEST(LearnBeside, IsTheRemainderOfADiagnosis) {
   const std::string scenario = write_file("half.yaml", fixtures::replaced(kBody, "power: 100 W", "power: 50 W"));
-  const std::vector<std::string> records = diagnosis::noisy_records(write_file("truth.yaml", kBody), "", 60.0, 0.05, 0.3);
+  const std::vector<std::string> records =
+      diagnosis::noisy_records(write_file("truth.yaml", kBody), "", {.noise_K = 0.05, .noise_um = 0.3});
   const MeasuredTwin m = open_measured_twin(scenarios::read_scenario(scenario), "diagnose", records, {});
   WrittenScenario written;
   written.effects = m.twin->as_written();
