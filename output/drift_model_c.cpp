@@ -155,7 +155,7 @@ constexpr const char* kProbePins =
 pin in bit probe_strobe = 0 "turns on when a probed value is there, and off before the next one";
 pin out float probe_residual_um "what probings have found beyond the model, um; correction-um contains it";
 pin out float probe_sigma_um "standard deviation of what is left after probings, um";
-pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number";
+pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number, 6 the same number too often in a row";
 pin out float probe_off_um "of the last probing: read minus expected, um";
 pin out signed refused_probings "how many were refused";
 )";
