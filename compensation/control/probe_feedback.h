@@ -31,9 +31,10 @@
  * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it.
  *
  * A stuck probe goes on reading the same number, though the axis was corrected by it or the prediction has moved. A good one
- * repeats its last reading by chance, as its readings are rounded: with steps of q, at a distance `off` from what is expected,
- * once in off / (PROBE_DENSEST q) readings or more seldom, whatever the deviation of a normal law. q is at most the smallest
- * difference of two readings in a row so far. A reading is refused if the product of these chances, over all readings in a row
+ * repeats its last reading by chance, as its readings are rounded: with steps of q, at a distance d from what is expected, once
+ * in d / (PROBE_DENSEST q) readings or more seldom, whatever the deviation of a normal law. d is what the filters expect, or what
+ * a residual that stays would have moved the reading by, whichever is less: a calm axis is no stuck probe. q is at most the
+ * smallest difference of two readings in a row so far. A reading is refused if the product of these chances, over all readings in a row
  * that are equal, is below PROBE_CHANCE, that of one normal value beyond PROBE_REFUSED deviations. So are further ones, until
  * the probe reads another number. What a stuck probe has said until then remains in the estimate, and fades. Not noticed is a
  * probe that has read a single number since the first row, and one that is stuck at what is expected, which does no harm.
@@ -108,7 +109,7 @@ typedef struct {
   int n_taken, n_refused, n_jumps;
   int n_in_row; /* unlikely ones since the last that was taken */
   int has_read; /* `read_um` is there */
-  double read_um, step_um; /* the last reading; the smallest difference of two in a row, 0: none yet */
+  double read_um, residual_um, step_um; /* the last reading, minus prediction; smallest difference of two in a row, 0: none yet */
   double ln_chance;        /* of so many equal readings in a row */
 } probe_state;
 

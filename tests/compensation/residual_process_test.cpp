@@ -410,14 +410,15 @@ TEST(ProbeFeedback, RefusesAStuckProbeWhileThePredictionMoves) {
   EXPECT_NE(moved[9], PROBE_STUCK);  // it reads another number
 }
 
-// The product of the chances 0.1 * 0.242 / off of equal readings decides, and falls below 1 in 15,787 after some of them.
+// The product of the chances 0.1 * 0.242 / d of equal readings decides, and falls below 1 in 15,787 after some of them.
 TEST(ProbeFeedback, RefusesWhatAGoodProbeWouldNotRepeatOnceIn16000) {
   ProbeFeedback feedback({2.0, 7200.0}, {.noise_um = 1.0}, true);
   double ln_chance = 0.0;
   const std::vector<double> reads = {0.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0, 5.0};
   for (std::size_t k = 0; k < reads.size(); ++k) {
-    feedback.row(0.0, 0.0, 3600.0);
-    const double off_um = std::abs(reads[k] - feedback.estimate_um());
+    const double predicted_um = 0.7 * static_cast<double>(k);
+    feedback.row(predicted_um, 0.0, 3600.0);
+    const double off_um = std::min(std::abs(reads[k] - predicted_um - feedback.estimate_um()), 0.7);
     if (k > 2) ln_chance += std::min(0.0, std::log(0.1 * std::exp(-0.5) / std::sqrt(2.0 * std::numbers::pi) / off_um));
     (void)feedback.probe_left_um(reads[k]);
     const bool is_stuck = ln_chance < std::log(std::erfc(4.0 / std::numbers::sqrt2));
@@ -426,7 +427,8 @@ TEST(ProbeFeedback, RefusesWhatAGoodProbeWouldNotRepeatOnceIn16000) {
   }
 }
 
-// No alarm: a calm axis whose readings are rounded to half of their noise, and a probe of which no step is known.
+// No alarm: a calm axis whose readings are rounded to half of their noise, a drift that stays while the filters expect that it
+// fades, and a probe of which no step is known.
 TEST(ProbeFeedback, DoesNotCallACalmAxisAStuckProbe) {
   for (const double rounded_um : {0.5, 1.0}) {
     Random random(11);
@@ -439,7 +441,8 @@ TEST(ProbeFeedback, DoesNotCallACalmAxisAStuckProbe) {
     }
     EXPECT_LE(n_stuck, 2) << rounded_um;
   }
-  for (const int verdict : verdicts({3.0, 3.0, 3.0, 3.0, 3.0, 3.0})) EXPECT_EQ(verdict, PROBE_TAKEN);
+  for (const int verdict : verdicts({0.0, 0.1, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0})) EXPECT_EQ(verdict, PROBE_TAKEN);
+  for (const int verdict : verdicts({0.0, 0.0, 0.0, 0.0}, 2.0)) EXPECT_NE(verdict, PROBE_STUCK);
 }
 
 TEST(ProbeFeedback, RefusesWhatIsNoProbingAndWrongSettings) {
