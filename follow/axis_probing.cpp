@@ -85,6 +85,11 @@ std::string AxisProbing::words() const {
           off);
     case PROBE_TOO_EARLY:
       return "probing refused: it was touched before the first row; probe again";
+    case PROBE_STUCK:
+      return fmt::format(
+          "probing refused: {}, and it is the same number as in the probings before; is the probe stuck, or is an old value "
+          "sent again? Check probe and wiring",
+          off);
     default:
       return fmt::format(
           "probing refused: {}; measured another tool, chips, or the machine was touched? Probe again: a second probing "

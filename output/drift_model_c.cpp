@@ -70,6 +70,12 @@ std::string c_name(const std::string& name) {
   return result;
 }
 
+/// The target's name in C. `drift` would make a drift_state of its own beside that of drift_correction.h.
+std::string target_name(const std::string& target) {
+  const std::string name = c_name(target);
+  return name == "drift" || name == "probe" || name == "axis_offset" ? "x_" + name : name;
+}
+
 /// HAL's names have at most 47 characters; "doubt-" and the name of the loaded component take part of them.
 constexpr std::size_t kLongestPin = 28;
 
@@ -155,7 +161,7 @@ constexpr const char* kProbePins =
 pin in bit probe_strobe = 0 "turns on when a probed value is there, and off before the next one";
 pin out float probe_residual_um "what probings have found beyond the model, um; correction-um contains it";
 pin out float probe_sigma_um "standard deviation of what is left after probings, um";
-pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number";
+pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number, 6 the same number too often in a row";
 pin out float probe_off_um "of the last probing: read minus expected, um";
 pin out signed refused_probings "how many were refused";
 )";
@@ -347,7 +353,7 @@ std::string probed_function(const DeployedModel& d, const std::string& name, con
 }  // namespace
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
-  const std::string name = c_name(d.model.target), capitals = upper_case(name);
+  const std::string name = target_name(d.model.target), capitals = upper_case(name);
   const std::vector<std::string> readings = reading_names(d.safe);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;
@@ -442,7 +448,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
 std::string linuxcnc_component(const DeployedModel& d, const std::string& name, const std::string& c_file,
                                const std::string& made_by) {
   if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
-  const std::string target = c_name(d.model.target);
+  const std::string target = target_name(d.model.target);
   const std::vector<std::string> readings = reading_names(d.safe, kLongestPin);
   std::string pins, doubts, values, set_doubts;
   for (std::size_t k = 0; k < readings.size(); ++k) {

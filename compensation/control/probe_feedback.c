@@ -210,7 +210,24 @@ static int probe_accept(probe_state* state, int verdict) {
   return state->verdict = verdict;
 }
 
-int probe_residual(const probe_process* process, probe_state* state, double residual_um) {
+/* Whether a good probe would read the same number so often. */
+static int probe_is_stuck(probe_state* state, double read_um, double residual_um) {
+  const double moved_um = fmin(fabs(state->off_um), fabs(residual_um - state->residual_um));
+  const double apart_um = fabs(read_um - state->read_um), chance = state->step_um * PROBE_DENSEST / moved_um;
+  if (!state->has_read || apart_um > 0.0) {
+    if (state->has_read && (state->step_um == 0.0 || apart_um < state->step_um)) state->step_um = apart_um;
+    state->ln_chance = 0.0;
+  } else if (state->step_um > 0.0 && chance < 1.0) {
+    state->ln_chance += log(chance);
+  }
+  state->has_read = 1;
+  state->read_um = read_um;
+  state->residual_um = residual_um;
+  return state->ln_chance < log(PROBE_CHANCE);
+}
+
+/* read_um: as the probe has it. */
+static int probe_hear(const probe_process* process, probe_state* state, double residual_um, double read_um) {
   double jumped_bound_um;
   int is_third = 0, k;
   state->off_um = 0.0;
@@ -219,6 +236,7 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
   if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
   state->off_um = probe_off_um(process, state->now, residual_um, &state->bound_um);
   state->loss = probe_loss(process, state->now, residual_um, state->bound_um);
+  if (probe_is_stuck(state, read_um, residual_um)) return probe_refuse(state, PROBE_STUCK);
   if (fabs(state->off_um) <= state->bound_um) {
     probe_learn(process, state->now, residual_um);
     return probe_accept(state, PROBE_TAKEN);
@@ -249,12 +267,12 @@ int probe_residual(const probe_process* process, probe_state* state, double resi
 
 int probe_drift(const probe_process* process, probe_state* state, double drift_um) {
   const probe_past at = probe_past_at(state, state->time_s - process->lag_s);
-  return probe_residual(process, state, drift_um - at.prediction_um);
+  return probe_hear(process, state, drift_um - at.prediction_um, drift_um);
 }
 
 int probe_left(const probe_process* process, probe_state* state, double left_um) {
   const probe_past at = probe_past_at(state, state->time_s - process->lag_s);
-  return probe_residual(process, state, left_um + at.correction_um - at.prediction_um);
+  return probe_hear(process, state, left_um + at.correction_um - at.prediction_um, left_um);
 }
 
 /* The bank ahead_s from now. */

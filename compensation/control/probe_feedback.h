@@ -30,6 +30,15 @@
  * probings correct it. A probing that the first bank expects ends the second one. The third refused probing in a row is
  * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it.
  *
+ * A stuck probe goes on reading the same number, though the axis was corrected by it or the prediction has moved. A good one
+ * repeats its last reading by chance, as its readings are rounded: with steps of q, at a distance d from what is expected, once
+ * in d / (PROBE_DENSEST q) readings or more seldom, whatever the deviation of a normal law. d is what the filters expect, or what
+ * a residual that stays would have moved the reading by, whichever is less: a calm axis is no stuck probe. q is at most the
+ * smallest difference of two readings in a row so far. A reading is refused if the product of these chances, over all readings in a row
+ * that are equal, is below PROBE_CHANCE, that of one normal value beyond PROBE_REFUSED deviations. So are further ones, until
+ * the probe reads another number. What a stuck probe has said until then remains in the estimate, and fades. Not noticed is a
+ * probe that has read a single number since the first row, and one that is stuck at what is expected, which does no harm.
+ *
  * Of a mixture more lies beyond PROBE_REFUSED deviations than of one normal law, 1 in 16,000: with probings each T / 2 the
  * filters refuse one of 3,000 good ones where s is right, one of 120 where errors are 3 times as large, and one of 24, the
  * first one in 5 times, where they are 9 times as large. A bound with 1 in 16,000 would be 30 s at first, and find no chip.
@@ -46,6 +55,8 @@ extern "C" {
 
 #define PROBE_REFUSED 4.0 /* deviations of the mixture */
 #define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
+#define PROBE_CHANCE 6.334e-5        /* of a normal value to be further than PROBE_REFUSED deviations from its mean */
+#define PROBE_DENSEST 0.24197072451914337 /* exp(-1/2) / sqrt(2 pi): a normal density at x is at most this / |x| */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
 #define PROBE_SIZES 4     /* factors of s: 3^-1 to 3^2 */
 #define PROBE_TIMES 4     /* factors of T: 4^-1 to 4^2 */
@@ -67,7 +78,8 @@ enum {
   PROBE_JUMP = 2,      /* it agrees with the one refused before it, or is the third in a row: the axis has jumped */
   PROBE_UNLIKELY = 3,  /* refused: too far from what is expected */
   PROBE_TOO_EARLY = 4, /* refused: touched before the first row, where there was no prediction */
-  PROBE_NO_NUMBER = 5  /* refused: the probe missed, or a setting is out of its range */
+  PROBE_NO_NUMBER = 5, /* refused: the probe missed, or a setting is out of its range */
+  PROBE_STUCK = 6      /* refused: it has read the same number too often in a row */
 };
 
 /* Of one filter of the bank: mean and covariance of level and r, and its weight; the sum of the weights is 1. */
@@ -96,6 +108,9 @@ typedef struct {
                       PROBE_REFUSED deviations count at most, so that a chip does not decide among predictors */
   int n_taken, n_refused, n_jumps;
   int n_in_row; /* unlikely ones since the last that was taken */
+  int has_read; /* `read_um` is there */
+  double read_um, residual_um, step_um; /* the last reading, minus prediction; smallest difference of two in a row, 0: none yet */
+  double ln_chance;        /* of so many equal readings in a row */
 } probe_state;
 
 /* Whether all settings are in their ranges. Otherwise the residual stays 0, and all probings are refused. */
@@ -106,7 +121,6 @@ int probe_is_valid(const probe_process* process);
 void probe_row(const probe_process* process, probe_state* state, double prediction_um, double correction_um, double dt_s);
 
 /* A probing whose value has come in the last row; what became of it. */
-int probe_residual(const probe_process* process, probe_state* state, double residual_um); /* drift minus prediction */
 int probe_drift(const probe_process* process, probe_state* state, double drift_um); /* of the axis without correction */
 int probe_left(const probe_process* process, probe_state* state, double left_um);   /* of the corrected axis */
 

@@ -64,7 +64,7 @@ static int probe_members_read(const probe_process* processes, probe_member* memb
     probe_state* state = &members[i].probing;
     const int verdict = is_left ? probe_left(&processes[i], state, read_um) : probe_drift(&processes[i], state, read_um);
     members[i].is_leading = i == leading;
-    if (verdict == PROBE_TOO_EARLY || verdict == PROBE_NO_NUMBER)
+    if (verdict == PROBE_TOO_EARLY || verdict == PROBE_NO_NUMBER || verdict == PROBE_STUCK)
       is_heard = 0;
     else
       members[i].loss = state->loss;

@@ -22,7 +22,7 @@ ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const doub
   ProbedRun run;
   std::vector<double> left_um, predictions_um(n), sum_weights(n, 0.0);
   std::optional<double> last_read_um;
-  double next_s = t_s.front() + how.every_s;
+  double next_s = t_s.front() + how.every_s, in_force_um = 0.0;
   int n_after_fault = 0;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
     bool is_known = true;
@@ -30,17 +30,19 @@ ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const doub
       predictions_um[m] = -members[m].left_um[i];  // as if there were no drift
       is_known = is_known && std::isfinite(predictions_um[m]);
     }
-    feedback.row(predictions_um, 0.0, i > 0 ? t_s[i] - t_s[i - 1] : 0.0);
+    feedback.row(predictions_um, in_force_um, i > 0 ? t_s[i] - t_s[i - 1] : 0.0);
     const double correction_um = predictions_um.front() + feedback.estimate_um();
     left_um.push_back(is_known ? -correction_um : std::numeric_limits<double>::quiet_NaN());
+    const double before_um = in_force_um;
+    if (is_known) in_force_um = correction_um;
     for (std::size_t m = 0; m < n; ++m) sum_weights[m] += feedback.members()[m].weight;
     if (t_s[i] < next_s || !is_known) continue;
     const bool is_failed = how.fault != ProbeFault::kNone && t_s[i] >= how.fails_at_s;
-    double read_um = left_um.back() + how.noise_um * random.normal();
+    double read_um = how.noise_um * random.normal() - before_um;  // of the axis as it was corrected until now
     if (is_failed && how.fault == ProbeFault::kBiased) read_um += how.error_um;
     if (is_failed && how.fault == ProbeFault::kStuck && last_read_um) read_um = *last_read_um;
     last_read_um = read_um;
-    (void)feedback.probe_drift_um(read_um + correction_um);
+    (void)feedback.probe_left_um(read_um);
     ++run.n_probings;
     const bool is_taken = feedback.state().verdict == PROBE_TAKEN;
     if (is_failed && ++n_after_fault > 0 && !is_taken && !run.noticed_at) run.noticed_at = n_after_fault;

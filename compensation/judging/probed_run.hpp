@@ -20,7 +20,7 @@ struct ProbedMember {
 
 enum class ProbeFault {
   kNone,
-  kStuck,   ///< it reads what it read last
+  kStuck,   ///< it reads on the corrected axis what it read last
   kBiased,  ///< it reads a constant error more: a wrong ball radius, a chip that stays
 };
 

@@ -77,13 +77,14 @@ probe_process probe_process_of(const ResidualProcess& process, const Probe& prob
 namespace {
 
 constexpr std::size_t kNumbersOfEstimate = 6, kNumbersOfPast = 3, kNumbersOfMember = 5;
-constexpr std::size_t kNumbersOfProbings = 13 + 2 * PROBE_BANK * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
+constexpr std::size_t kNumbersOfProbings = 18 + 2 * PROBE_BANK * kNumbersOfEstimate + kNumbersOfPast * PROBE_PASTS;
 
 void add_numbers_of(const probe_state& s, std::vector<double>& m) {
   m.insert(m.end(), {static_cast<double>(s.has_begun), static_cast<double>(s.has_jumped), static_cast<double>(s.n_pasts),
                      static_cast<double>(s.newest), s.time_s, static_cast<double>(s.verdict), s.off_um, s.bound_um,
                      static_cast<double>(s.n_taken), static_cast<double>(s.n_refused), static_cast<double>(s.n_jumps),
-                     static_cast<double>(s.n_in_row), s.loss});
+                     static_cast<double>(s.n_in_row), s.loss, static_cast<double>(s.has_read), s.read_um, s.step_um,
+                     s.ln_chance, s.residual_um});
   for (const auto* bank : {&s.now, &s.jumped}) {
     for (const probe_estimate& e : *bank)
       m.insert(m.end(), {e.level_um, e.residual_um, e.level_um2, e.both_um2, e.residual_um2, e.weight});
@@ -108,7 +109,12 @@ probe_state probe_state_of(std::span<const double> m) {
   s.n_jumps = static_cast<int>(m[10]);
   s.n_in_row = static_cast<int>(m[11]);
   s.loss = m[12];
-  const double* at = m.data() + 13;
+  s.has_read = m[13] != 0.0;
+  s.read_um = m[14];
+  s.step_um = m[15];
+  s.ln_chance = m[16];
+  s.residual_um = m[17];
+  const double* at = m.data() + 18;
   for (auto* bank : {&s.now, &s.jumped}) {
     for (probe_estimate& e : *bank) {
       e = {at[0], at[1], at[2], at[3], at[4], at[5]};

@@ -158,8 +158,7 @@ void add_observer(std::vector<FmuVariable>& list, const FmuModel& model) {
   add("probe_deviation", "standard deviation of what is left after probings", "um");
   add("probe_verdict",
       "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too "
-      "early, 5 "
-      "no number",
+      "early, 5 no number, 6 the same number too often in a row",
       "");
   add("probe_off", "of the last probing: read minus expected", "um");
   add("refused_probings", "how many were refused", "");

@@ -106,18 +106,23 @@ TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
   EXPECT_FALSE(probed_run(alone, m.time_s, how).noticed_at);
 }
 
-// A stuck probe goes on reading 2 µm: the filter takes it for an error that stays, and moves the axis by 2 µm at each of 14
-// probings. An hour of this process has a deviation of 0.7 µm, so four deviations are more than that, and none is refused.
-TEST(ProbedRun, AStuckProbeMovesTheAxisEachTime) {
-  Machine m = drawn({16.0, 3.6e6}, 900, 5);
-  for (double& um : m.left_um) um = 2.0;
-  const probe_process d = with_process({16.0, 3.6e6}, 0.01);
+// An error that grows by 2 µm an hour, and from 10 h on a probe that goes on reading what it read on the corrected axis: some
+// 2 µm. Each reading moves the axis by as much, and none is beyond four deviations. Good readings differ by 0.05 µm or more, so
+// one that is equal 2 µm from what is expected has a chance of 1 in 165 at most; two of them have 1 in 27,000, and the second
+// one is refused. Without this, five further ones would move the axis by 10 µm more.
+TEST(ProbedRun, AStuckProbeIsNoticedAfterTwoReadings) {
+  Machine m = drawn({16.0, 3.6e6}, 1000, 5);
+  for (std::size_t i = 0; i < m.left_um.size(); ++i) m.left_um[i] = 2.0 * m.time_s[i] / 3600.0;
+  const probe_process d = with_process({16.0, 3.6e6}, 0.1);
   const std::vector<ProbedMember> alone = {{d, m.left_um}};
-  const ProbedRun run =
-      probed_run(alone, m.time_s, {.every_s = 3600.0, .noise_um = 0.0, .fault = ProbeFault::kStuck, .fails_at_s = 7000.0});
-  EXPECT_EQ(run.n_probings, 14);
-  EXPECT_FALSE(run.noticed_at);
-  EXPECT_NEAR(run.left.peak_abs, 26.0, 0.5);
+  RunProbing how{.every_s = 3600.0, .noise_um = 0.1, .fault = ProbeFault::kStuck, .fails_at_s = 36000.0};
+  const ProbedRun run = probed_run(alone, m.time_s, how);
+  EXPECT_EQ(run.n_probings, 16);
+  ASSERT_TRUE(run.noticed_at);
+  EXPECT_LE(*run.noticed_at, 3);
+  EXPECT_EQ(run.n_refused, 16 - 9 - *run.noticed_at + 1);  // and all that follow
+  how.fault = ProbeFault::kNone;
+  EXPECT_EQ(probed_run(alone, m.time_s, how).n_refused, 0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -383,6 +384,66 @@ TEST(ProbeFeedback, TwoProbingsAfterAJumpAgreeWithinTheBound) {
     }
   }
   EXPECT_NEAR(n_beyond / 2000.0, 0.317, 0.032);  // three standard errors
+}
+
+/// What became of readings on the corrected axis, an hour apart, while the correction does nothing.
+std::vector<int> verdicts(const std::vector<double>& reads_um, double predicted_um_h = 0.0) {
+  ProbeFeedback feedback({2.0, 7200.0}, {.noise_um = 1.0}, true);
+  std::vector<int> all;
+  double hour = 0.0;
+  for (const double um : reads_um) {
+    feedback.row(predicted_um_h * hour, 0.0, 3600.0);
+    hour += 1.0;
+    (void)feedback.probe_left_um(um);
+    all.push_back(feedback.state().verdict);
+  }
+  return all;
+}
+
+// Steps of 0.1 um, so at 3 um from what is expected an equal reading has a chance of 0.1 * 0.242 / 3 at most, 1 in 124, and two
+// of them 1 in 15,400. The prediction moves by 2 um between probings, so the residual of an unmoved reading does, too.
+TEST(ProbeFeedback, RefusesAStuckProbeWhileThePredictionMoves) {
+  const std::vector<int> moved = verdicts({0.0, 0.1, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 14.0}, 2.0);
+  const auto stuck = std::find(moved.begin(), moved.end(), PROBE_STUCK) - moved.begin();
+  EXPECT_GE(stuck, 4);  // the second or third equal one
+  EXPECT_LE(stuck, 5);
+  for (std::size_t k = static_cast<std::size_t>(stuck); k < 9; ++k) EXPECT_EQ(moved[k], PROBE_STUCK) << k;
+  EXPECT_NE(moved[9], PROBE_STUCK);  // it reads another number
+}
+
+// The product of the chances 0.1 * 0.242 / d of equal readings decides, and falls below 1 in 15,787 after some of them.
+TEST(ProbeFeedback, RefusesWhatAGoodProbeWouldNotRepeatOnceIn16000) {
+  ProbeFeedback feedback({2.0, 7200.0}, {.noise_um = 1.0}, true);
+  double ln_chance = 0.0;
+  const std::vector<double> reads = {0.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0, 5.0};
+  for (std::size_t k = 0; k < reads.size(); ++k) {
+    const double predicted_um = 0.7 * static_cast<double>(k);
+    feedback.row(predicted_um, 0.0, 3600.0);
+    const double off_um = std::min(std::abs(reads[k] - predicted_um - feedback.estimate_um()), 0.7);
+    if (k > 2) ln_chance += std::min(0.0, std::log(0.1 * std::exp(-0.5) / std::sqrt(2.0 * std::numbers::pi) / off_um));
+    (void)feedback.probe_left_um(reads[k]);
+    const bool is_stuck = ln_chance < std::log(std::erfc(4.0 / std::numbers::sqrt2));
+    EXPECT_EQ(feedback.state().verdict == PROBE_STUCK, is_stuck) << k;
+  }
+  EXPECT_EQ(feedback.state().verdict, PROBE_STUCK);
+}
+
+// No alarm: a calm axis whose readings are rounded to half of their noise, a drift that stays while the filters expect that it
+// fades, and a probe of which no step is known.
+TEST(ProbeFeedback, DoesNotCallACalmAxisAStuckProbe) {
+  for (const double rounded_um : {0.5, 1.0}) {
+    Random random(11);
+    int n_stuck = 0;
+    ProbeFeedback feedback({0.5, 7200.0}, {.noise_um = 1.0}, true);
+    for (int k = 0; k < 5000; ++k) {
+      feedback.row(0.0, 0.0, 3600.0);
+      (void)feedback.probe_left_um(rounded_um * std::round(0.4 * random.normal() / rounded_um));  // better than is said
+      n_stuck += feedback.state().verdict == PROBE_STUCK;
+    }
+    EXPECT_LE(n_stuck, 2) << rounded_um;
+  }
+  for (const int verdict : verdicts({0.0, 0.1, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0})) EXPECT_EQ(verdict, PROBE_TAKEN);
+  for (const int verdict : verdicts({0.0, 0.0, 0.0, 0.0}, 2.0)) EXPECT_NE(verdict, PROBE_STUCK);
 }
 
 TEST(ProbeFeedback, RefusesWhatIsNoProbingAndWrongSettings) {

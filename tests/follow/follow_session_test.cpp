@@ -341,6 +341,20 @@ TEST(FollowProbing, AChipIsRefusedAndAConfirmedJumpTaken) {
   EXPECT_EQ(line.axes[0].probing->n_refused, 3);
 }
 
+// The probe goes on reading 4 um on the corrected axis, though the correction has taken up as much each time. Steps are 0.5 um, so
+// some 4 um off a repetition has a chance of 0.5 * 0.242 / 4, 1 in 33: four of them are too many.
+TEST(FollowProbing, AStuckProbeIsRefusedAndSaid) {
+  Session session = probed_session({}, "probe_left_drift_y");
+  FollowLine line;
+  int k = 0;
+  for (const double um : {0.5, 1.0, 4.0, 4.0, 4.0, 4.0, 4.0, 4.0}) {
+    for (int wait = 0; wait < 60; ++wait) line = minute(session, k++);
+    line = minute(session, k++, um);
+  }
+  EXPECT_FALSE(line.axes[0].probing->answer->is_taken);
+  EXPECT_THAT(line.axes[0].probing->answer->words, HasSubstr("it is the same number as in the probings before"));
+}
+
 TEST(FollowProbing, AsksForAProbingWhereTheIntervalPassesHalfOfTheTolerance) {
   Session session = probed_session({.tolerance_um = 10.0});
   EXPECT_THAT(line_text(minute(session, 0)),

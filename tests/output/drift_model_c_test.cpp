@@ -383,6 +383,24 @@ TEST(CFunction, OfATermWithoutAGuardIsOurOwnMistake) {
   EXPECT_THROW((void)c_function(d, "a test"), std::logic_error);
 }
 
+TEST(CFunction, OfATargetThatIsCalledAsAFileOfOursCompiles) {
+  for (const char* target : {"drift", "probe", "axis_offset"}) {
+    DeployedModel d = deployed(true, 60.0);
+    d.model.target = target;
+    d.residual = compensation::ResidualProcess{4.0, 5400.0};
+    const std::filesystem::path folder = fresh_folder("own_name");
+    std::ofstream(folder / "model.c") << "#include \"axis_offset.h\"\n" << c_function(d, "a test");
+    for (const compensation::ControlFile& file : compensation::control_files())
+      std::ofstream(folder / file.name, std::ios::binary) << file.text;
+    EXPECT_EQ(
+        std::system(
+            fmt::format("gcc -std=c99 -Wall -Werror -pedantic -c -o {0}/model.o {0}/model.c", folder.string()).c_str()),
+        0)
+        << target;
+    EXPECT_THAT(c_function(d, "a test"), HasSubstr(fmt::format("double x_{}_correction_um(", target)));
+  }
+}
+
 TEST(CFunction, OfAConstantCompilesThoughCKnowsNoEmptyTables) {
   DeployedModel d;
   d.model = {.kind = "mean", .target = "drift_y", .target_unit = "um", .intercept = 2.5, .terms = {}};
