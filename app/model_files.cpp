@@ -76,10 +76,11 @@ std::vector<ControlFile> formula_files(const output::DeployedModel& formula, con
 }
 
 void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& folder, const Listener& listener) {
+  const std::string own = findings::models_folder(m);
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
     const std::string name = findings::model_file_name(s.fitted.name);
-    folder.write_text(fmt::format("models/{}.json", name),
+    folder.write_text(findings::model_file(m, s),
                       output::predictor_json({s.fitted, judgement_json(m, s), watch_of(s, m, listener), covered_by(s, m)},
                                              folder.made_by())
                               .dump(1) +
@@ -90,12 +91,12 @@ void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& 
         fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
     for (const char* as : {"text", "linuxcnc"}) {  // the component comes with the C
       for (const ControlFile& file : formula_files(formula, as, name, {}, made_by))
-        folder.write_text("models/" + file.name, file.text);
+        folder.write_text(own + file.name, file.text);
     }
     has_formulas = true;
   }
   for (const ControlFile& file : control_files()) {
-    if (has_formulas) folder.write_text("models/" + file.name, file.text);
+    if (has_formulas) folder.write_text(own + file.name, file.text);
   }
 }
 

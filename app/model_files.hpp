@@ -21,7 +21,7 @@ namespace driftwright::app {
 /// True if control_files() belong to these files.
 [[nodiscard]] bool needs_control_files(const std::string& as);
 
-/// Writes models/<strategy>.json of each strategy, with its verdict and the conditions it was judged under, and also .txt
+/// Writes <strategy>.json of each strategy into models_folder(), with its verdict and the conditions it was judged under, and also .txt
 /// and .c of strategies that are formulas.
 /// The file of an observer has the limits by which `follow` watches it, simulated here.
 void write_models(const compensation::StrategyMatrix& matrix, output::ResultsFolder& folder, const Listener& listener);
