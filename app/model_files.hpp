@@ -1,6 +1,8 @@
 #pragma once
 // The deployable models that `validate` writes.
 
+#include <span>
+
 #include "base/listener.hpp"
 #include "compensation/control/control_files.hpp"
 #include "compensation/judging/strategy_matrix.hpp"
@@ -18,6 +20,14 @@ namespace driftwright::app {
                                                                    const std::string& as, const std::string& name,
                                                                    const output::ControlAxis& axis,
                                                                    const std::string& made_by);
+/// Formulas for places along the travel of an axis as one file: text, c, linuxcnc, st, siemens. Those of c and linuxcnc need the
+/// files of control_files() beside them.
+/// @param places  two or more, by rising position; @param name  of the files and functions
+/// @throws InputError  for formulas that this control cannot hold over a travel, such as heidenhain and fanuc
+[[nodiscard]] std::vector<compensation::ControlFile> travel_files(std::span<const output::PlacedModel> places,
+                                                                  const std::string& as, const std::string& name,
+                                                                  const output::ControlAxis& axis,
+                                                                  const std::string& made_by);
 /// True if control_files() belong to these files.
 [[nodiscard]] bool needs_control_files(const std::string& as);
 
