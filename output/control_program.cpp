@@ -474,11 +474,19 @@ std::string write_guard(Dialect& to, const FormulaPart& part) {
   return correction;
 }
 
+/// Whether the readings of two formulas are the same, with the same ranges.
+bool read_alike(const FormulaPart& a, const FormulaPart& b) {
+  const auto is_same = [](const FailSafe::Guard& x, const FailSafe::Guard& y) {
+    return x.input == y.input && x.unit == y.unit && x.low == y.low && x.high == y.high;
+  };
+  return std::equal(a.safe.guards.begin(), a.safe.guards.end(), b.safe.guards.begin(), b.safe.guards.end(), is_same);
+}
+
 /// The formulas one after the other. @return the variables with their corrections
 std::vector<std::string> write_parts(Dialect& to, const std::vector<FormulaPart>& parts) {
   std::vector<std::string> corrections;
   for (const FormulaPart& part : parts) {
-    write_readings(to, part);
+    if (&part == &parts.front() || !read_alike(part, *(&part - 1))) write_readings(to, part);
     write_formula(to, part);
     corrections.push_back(write_guard(to, part));
   }

@@ -435,9 +435,9 @@ TEST_P(InCycle, ConstantsOfFanucHaveEightDigitsWithTheZeroBeforeThePoint) {
   EXPECT_THROW((void)control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test"), InputError);
 }
 
-/// Formulas for three places: the fixture's at -100 mm, half of it without one of its thermometers at 300 mm, and twice as much at
-/// 500 mm.
-std::vector<PlacedModel> three_places(bool from_start, double period_s) {
+/// Formulas for three places: the fixture's at -100 mm, half of it at 300 mm, without one of its thermometers if they do not read
+/// alike, and twice as much at 500 mm.
+std::vector<PlacedModel> three_places(bool from_start, double period_s, bool read_alike = false) {
   std::vector<PlacedModel> places;
   for (const double at_mm : {-100.0, 300.0, 500.0}) {
     DeployedModel d = undoubted(from_start, period_s);
@@ -445,7 +445,7 @@ std::vector<PlacedModel> three_places(bool from_start, double period_s) {
     d.model.target = fmt::format("x_{:.0f}", at_mm);
     d.model.intercept *= factor;
     for (auto& term : d.model.terms) term.coefficient *= factor;
-    if (at_mm == 300.0) {
+    if (at_mm == 300.0 && !read_alike) {
       std::erase_if(d.model.terms, [](const auto& t) { return t.input == "X1"; });
       std::erase_if(d.safe.guards, [](const auto& g) { return g.input == "X1"; });
     }
@@ -492,6 +492,13 @@ TEST_P(InCycle, OverTheTravelTheCorrectionsOfPlacesAreStraightBetweenThem) {
     most_um = std::max(most_um, std::abs(um[2][i] - um[0][i]));
   }
   EXPECT_GT(most_um, 5.0);
+}
+
+// Readings that all places have are looked at once, else there were too many actions.
+TEST_P(InCycle, OverTheTravelSiemensHasTheStraightPieceInWhichTheAxisIs) {
+  const std::vector<PlacedModel> places = three_places(GetParam(), 8.0, true);
+  const Record record = troubled(8.0);
+  const std::vector<std::vector<double>> um = judged_of(places, record);
   for (bool against_dk : {false, true}) {
     const ControlProgram p =
         control_program_over_travel(places, ControlLanguage::kSiemens, "screw", {'Z', against_dk}, "a test");
