@@ -18,7 +18,7 @@ from result_schema import errors
 
 PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/how-to/controls.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
 # Shorter commands of these pages, or tests of the verb, do the same: `diagnose` of the first machine, `validate_records`, `schedule_verb`. 20 parts last so long that the FP3 is reduced again.
-AT_LENGTH = ("driftwright diagnose scenarios/fp3_spindle.yaml", "driftwright validate results/identified/monday.yaml", "driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc --start")
+AT_LENGTH = ("driftwright diagnose scenarios/fp3_spindle.yaml", "driftwright validate results/identified/monday.yaml", "driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc --start", "driftwright validate scenarios/ball_screw.yaml", "driftwright export --model results/axis/")
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
