@@ -117,6 +117,7 @@ Section travel_section(const studies::JudgedTravel& judged, const output::Proven
     const TravelStrategy& s = t.strategies[*t.chosen];
     const bool is_kept = s.along.worst_um <= tolerance_um;
     add(section, output::Value{.key = "chosen", .datum = s.name});
+    add(section, output::Value{.key = "why_chosen", .datum = t.why_chosen});
     add(section, output::Verdict{.kind = is_kept ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
                                  .title = fmt::format("{} the tolerance anywhere on the travel: {}",
                                                       is_kept ? "Keeps" : "Does not keep", s.name),

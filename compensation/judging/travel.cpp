@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/parallel.hpp"
 #include "compensation/control/axis_travel.h"
@@ -47,6 +46,22 @@ std::vector<const JudgedStrategy*> at_all_places(std::span<const StrategyMatrix>
   return found;
 }
 
+/// A strategy with what it leaves on left-out parts at all places, as choose() compares it.
+DeployedPredictor of_all_places(const std::vector<const JudgedStrategy*>& of_places) {
+  DeployedPredictor d = of_places.front()->fitted;
+  d.fold_errors.clear();
+  for (const JudgedStrategy* of_place : of_places) {
+    const std::vector<FoldError>& errors = of_place->fitted.fold_errors;
+    if (errors.empty()) {
+      d.fold_errors.clear();
+      return d;
+    }
+    d.fold_errors.insert(d.fold_errors.end(), errors.begin(), errors.end());
+    if (of_place->fitted.failed_um) d.failed_um = std::max(d.failed_um.value_or(0.0), *of_place->fitted.failed_um);
+  }
+  return d;
+}
+
 }  // namespace
 
 Travel judge_travel(std::span<const StrategyMatrix> corrected, const std::vector<double>& at_m,
@@ -69,12 +84,8 @@ Travel judge_travel(std::span<const StrategyMatrix> corrected, const std::vector
     std::vector<const JudgedStrategy*> of_places = at_all_places(corrected, s.fitted.name);
     if (of_places.empty()) continue;
     TravelStrategy row{.name = s.fitted.name, .is_formula = true};
-    for (const JudgedStrategy* of_place : of_places) {
-      const DeployedPredictor& d = of_place->fitted;
-      row.is_formula = row.is_formula && d.predictor->formula() && d.fail_safe;
-      const double um = d.fold_errors.empty() ? std::numeric_limits<double>::quiet_NaN() : left_out_um(d);
-      row.left_out_um = std::isnan(um) ? um : std::max(row.left_out_um, um);  // NaN stays: max(NaN, x) is NaN
-    }
+    for (const JudgedStrategy* of_place : of_places)
+      row.is_formula = row.is_formula && of_place->fitted.predictor->formula() && of_place->fitted.fail_safe;
     row.alone.resize(at_m.size());
     travel.strategies.push_back(std::move(row));
     fitted.push_back(std::move(of_places));
@@ -90,17 +101,21 @@ Travel judge_travel(std::span<const StrategyMatrix> corrected, const std::vector
       take_run(row.along, r, travel.places, drift_um[r], at_m, corrections_um);
     }
   });
-  const auto least = [&](bool of_formulas) {
-    std::optional<std::size_t> best;
-    for (std::size_t s = 0; s < travel.strategies.size(); ++s) {
-      const TravelStrategy& row = travel.strategies[s];
-      if ((of_formulas && !row.is_formula) || std::isnan(row.left_out_um)) continue;
-      if (!best || row.left_out_um < travel.strategies[*best].left_out_um) best = s;
+  std::vector<DeployedPredictor> all, formulas;
+  for (std::size_t s = 0; s < fitted.size(); ++s) {
+    all.push_back(of_all_places(fitted[s]));
+    if (travel.strategies[s].is_formula) formulas.push_back(all.back());
+  }
+  const auto index_of_name = [&](const std::string& name) -> std::optional<std::size_t> {
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      if (all[s].name == name) return s;
     }
-    return best;
+    return std::nullopt;
   };
-  travel.chosen = least(false);
-  travel.chosen_formula = least(true);
+  Choice choice = choose(all);
+  travel.chosen = index_of_name(choice.name);
+  travel.why_chosen = std::move(choice.why);
+  travel.chosen_formula = index_of_name(choose(formulas).name);
   return travel;
 }
 

@@ -2,6 +2,7 @@
 // What corrections leave along the travel of an axis: one for a single place, used everywhere, and those for several places,
 // straight between them (control/axis_travel.h), as controls run them.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,10 +28,9 @@ struct LeftAlong {
 struct TravelStrategy {
   std::string name;  ///< "ridge, all sensors"
   std::vector<LeftAlong> alone =
-      {};                    ///< the correction for one place, used everywhere; in the order of the corrected places
-  LeftAlong along = {};      ///< all of them, straight between their places
-  bool is_formula = false;   ///< for every place: a control can run it
-  double left_out_um = 0.0;  ///< RMS on parts of the training runs that it was not fitted on, the worst place; NaN: none
+      {};                   ///< the correction for one place, used everywhere; in the order of the corrected places
+  LeftAlong along = {};     ///< all of them, straight between their places
+  bool is_formula = false;  ///< for every place: a control can run it
 };
 
 struct Travel {
@@ -38,9 +38,10 @@ struct Travel {
   std::vector<double> corrected_m;  ///< positions that have a correction of their own
   LeftAlong uncorrected;
   std::vector<TravelStrategy> strategies;  ///< fitted at every corrected place, without baselines
-  /// Index of the strategy that leaves least on parts of the training runs left out, at the worst of its places; of all, and of
-  /// those that are formulas. No number of the judged runs decides it. None: nothing could be left out.
+  /// The one to deploy by choose() on the left-out parts of all places, and the same of those that are formulas. No row of the
+  /// judged runs decides it. None: nothing could be left out.
   std::optional<std::size_t> chosen = {}, chosen_formula = {};
+  std::string why_chosen = {};  ///< one sentence
 };
 
 /// @param corrected  strategies judged for one place each, on the same runs, by rising position; at least two
