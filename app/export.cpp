@@ -141,9 +141,59 @@ void refuse_options_of_axes(const ExportOptions& options) {
       "leave these options out");
 }
 
+/// A formula of models/, as a control runs it. @throws InputError  for another predictor
+output::DeployedModel formula_in(const output::PredictorFile& file, const std::string& path) {
+  const compensation::DeployedPredictor& d = file.predictor;
+  if (d.predictor->observer())
+    throw InputError(
+        fmt::format("{}: an observer is no formula. It becomes C: `driftwright export SCENARIO --as c --of "
+                    "observer --model {}`, with the scenario that it was fitted with",
+                    path, path));
+  if (!d.predictor->formula() || !d.fail_safe)
+    throw InputError(fmt::format("{}: '{}' is no formula of readings, and no control takes it; export a formula of models/",
+                                 path, d.name));
+  return output::deployed_model(d);
+}
+
+/// Formulas for places of one screw, by rising position, and that screw's name.
+struct OverTravel {
+  std::string screw;
+  std::vector<output::PlacedModel> places;
+};
+OverTravel over_travel(const std::vector<std::string>& paths) {
+  OverTravel travel;
+  std::string first;
+  for (const std::string& path : paths) {
+    const output::PredictorFile file = output::read_predictor(path);
+    const auto& judged = file.judged;
+    if (!judged.is_object() || !judged.contains("screw") || !judged["screw"].is_string() ||
+        !judged.contains("position_mm") || !judged["position_mm"].is_number())
+      throw InputError(fmt::format(
+          "{}: several --model are places of one axis, and this file does not say its place; `validate` writes it where the "
+          "target is one of several places (`at`) of a `screw` (docs/how-to/feed_axis.md)",
+          path));
+    const std::string screw = judged["screw"];
+    if (travel.places.empty()) {
+      travel.screw = screw;
+      first = path;
+    }
+    if (screw != travel.screw)
+      throw InputError(fmt::format("{} is of screw '{}' and {} of screw '{}'; several --model must be places of one screw",
+                                   path, screw, first, travel.screw));
+    travel.places.push_back({formula_in(file, path), judged["position_mm"].get<double>()});
+  }
+  std::stable_sort(travel.places.begin(), travel.places.end(),
+                   [](const auto& a, const auto& b) { return a.at_mm < b.at_mm; });
+  for (std::size_t k = 1; k < travel.places.size(); ++k) {
+    if (travel.places[k].at_mm == travel.places[k - 1].at_mm)
+      throw InputError(fmt::format("two --model are of {:g} mm; each place may have one", travel.places[k].at_mm));
+  }
+  return travel;
+}
+
 /// A formula of models/ as files for a control.
 void export_formula(const ExportOptions& options) {
-  if (options.model.empty())
+  if (options.models.empty())
     throw InputError(fmt::format("--as {} requires --model FILE, a formula of models/ as `validate` writes it{}", options.as,
                                  options.as == "c" ? ", or a scenario, whose machine or observer becomes C" : ""));
   refuse_options_of_units(options);
@@ -159,23 +209,21 @@ void export_formula(const ExportOptions& options) {
                     options.as));
   if (is_of_axis && options.axis.empty())
     throw InputError(fmt::format("--as {} requires --axis, the letter of the axis that is corrected", options.as));
-  const output::PredictorFile file = output::read_predictor(options.model);
-  const compensation::DeployedPredictor& d = file.predictor;
-  if (d.predictor->observer())
-    throw InputError(
-        fmt::format("{}: an observer is no formula. It becomes C: `driftwright export SCENARIO --as c --of "
-                    "observer --model {}`, with the scenario that it was fitted with",
-                    options.model, options.model));
-  if (!d.predictor->formula() || !d.fail_safe)
-    throw InputError(fmt::format("{}: '{}' is no formula of readings, and no control takes it; export a formula of models/",
-                                 options.model, d.name));
-  const std::string name = fs::path(options.model).stem().string();
   const output::ControlAxis axis{options.axis.empty() ? 'Z' : options.axis[0], options.axis_moves == "against_dk"};
-  const std::vector<compensation::ControlFile> files =
-      formula_files(output::deployed_model(d), options.as, name, axis,
-                    fmt::format("Driftwright {}, {}", kVersion, fs::path(options.model).filename().string()));
+  const std::string& model = options.models.front();
+  std::string name = fs::path(model).stem().string();
+  std::vector<compensation::ControlFile> files;
+  const auto made_of = [&](const std::string& what) { return fmt::format("Driftwright {}, {}", kVersion, what); };
+  if (options.models.size() > 1) {
+    const OverTravel travel = over_travel(options.models);
+    name = travel.screw + "_over_travel";
+    files = travel_files(travel.places, options.as, name, axis, made_of(fmt::format("{} places", travel.places.size())));
+  } else {
+    files = formula_files(formula_in(output::read_predictor(model), model), options.as, name, axis,
+                          made_of(fs::path(model).filename().string()));
+  }
   CommonOptions common;
-  common.scenario = options.model;
+  common.scenario = model;
   common.out = options.out;
   output::ResultsFolder folder = open_results(common, name + "_" + options.as);
   for (const compensation::ControlFile& f : files) folder.write_text(f.name, f.text);
@@ -213,7 +261,10 @@ void export_model(const ExportOptions& options) {
   refuse_options_of_axes(options);
   if (!options.fmu) refuse_options_of_units(options);
   const bool of_observer = options.of == "observer";
-  if (of_observer == options.model.empty())
+  if (options.models.size() > 1)
+    throw InputError("several --model are places of one axis, without a scenario; an observer is one file");
+  const std::string file_of_model = options.models.empty() ? "" : options.models.front();
+  if (of_observer == file_of_model.empty())
     throw InputError(of_observer
                          ? "--of observer requires --model FILE, an observer as `validate` writes it (models/observer.json)"
                          : "--model names the file of an observer; it requires --of observer");
@@ -229,8 +280,8 @@ void export_model(const ExportOptions& options) {
                          .interfaces = {.model_exchange = options.type != "cs", .co_simulation = options.type != "me"}};
   scenario.solver.model = scenarios::ModelKind::kReduced;
   if (of_observer) {
-    const output::PredictorFile file = output::read_predictor(options.model);
-    const compensation::Observer& observer = observer_in(file, options.model);
+    const output::PredictorFile file = output::read_predictor(file_of_model);
+    const compensation::Observer& observer = observer_in(file, file_of_model);
     const compensation::DeployedPredictor& d = file.predictor;
     order.model = output::observer_fmu(
         scenario, observer,

@@ -198,7 +198,11 @@ void add_export(CLI::App& cli, ExportOptions& options) {
   verb->add_option("--type", options.type, "interface: me (model exchange), cs (co-simulation) or both")
       ->check(CLI::IsMember({"me", "cs", "both"}))
       ->capture_default_str();
-  verb->add_option("--model", options.model, "predictor to export: a file of models/ written by `validate`");
+  verb->add_option(
+          "--model", options.models,
+          "predictor to export: a file of models/ written by `validate`; once for each place of an axis' travel, for "
+          "one correction that follows its position")
+      ->allow_extra_args(false);
   verb->footer(
       "Example:\n  driftwright export scenarios/fp3_spindle.yaml --fmu -o machine.fmu\n  driftwright export "
       "scenarios/fp3_spindle.yaml --fmu --fmi 3 --of observer --model results/validation/models/observer.json -o "

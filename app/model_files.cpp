@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "base/quantity.hpp"
 #include "compensation/judging/judgement_json.hpp"
@@ -46,6 +47,15 @@ std::optional<output::Covered> covered_by(const JudgedStrategy& s, const Strateg
   return c.high_degC >= c.low_degC ? std::optional(c) : std::nullopt;
 }
 
+output::ControlLanguage language_of(const std::string& as) {
+  using Language = output::ControlLanguage;
+  if (as == "st") return Language::kStructuredText;
+  if (as == "siemens") return Language::kSiemens;
+  if (as == "heidenhain") return Language::kHeidenhain;
+  if (as == "fanuc") return Language::kFanuc;
+  throw std::logic_error("no control's language: " + as);
+}
+
 }  // namespace
 
 bool needs_control_files(const std::string& as) {
@@ -62,24 +72,35 @@ std::vector<ControlFile> formula_files(const output::DeployedModel& formula, con
     files.push_back({name + "_axis.comp", output::linuxcnc_component(formula, name + "_axis", name + ".c", made_by)});
     return files;
   }
-  using Language = output::ControlLanguage;
-  const std::vector<std::pair<std::string, Language>> languages = {{"st", Language::kStructuredText},
-                                                                   {"siemens", Language::kSiemens},
-                                                                   {"heidenhain", Language::kHeidenhain},
-                                                                   {"fanuc", Language::kFanuc}};
-  for (const auto& [word, language] : languages) {
-    if (word != as) continue;
-    const output::ControlProgram program = output::control_program(formula, language, name, axis, made_by);
-    files.push_back({program.file, program.text});
+  const output::ControlProgram program = output::control_program(formula, language_of(as), name, axis, made_by);
+  return {{program.file, program.text}};
+}
+
+std::vector<ControlFile> travel_files(std::span<const output::PlacedModel> places, const std::string& as,
+                                      const std::string& name, const output::ControlAxis& axis, const std::string& made_by) {
+  if (as == "text") {
+    std::string text = "One correction over the travel, straight between these places and held beyond them.\n";
+    for (const output::PlacedModel& p : places)
+      text += fmt::format("\nAt {:g} mm:\n{}", p.at_mm, output::formula_text(p.model));
+    return {{name + ".txt", text}};
   }
-  return files;
+  if (needs_control_files(as)) {
+    std::vector<ControlFile> files = {{name + ".c", output::c_over_travel(places, name, made_by)}};
+    if (as == "linuxcnc")
+      files.push_back(
+          {name + "_axis.comp", output::linuxcnc_over_travel(places, name, name + "_axis", name + ".c", made_by)});
+    return files;
+  }
+  const output::ControlProgram program = output::control_program_over_travel(places, language_of(as), name, axis, made_by);
+  return {{program.file, program.text}};
 }
 
 void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& folder, const Listener& listener) {
+  const std::string own = findings::models_folder(m);
   bool has_formulas = false;
   for (const compensation::JudgedStrategy& s : m.strategies) {
     const std::string name = findings::model_file_name(s.fitted.name);
-    folder.write_text(fmt::format("models/{}.json", name),
+    folder.write_text(findings::model_file(m, s),
                       output::predictor_json({s.fitted, judgement_json(m, s), watch_of(s, m, listener), covered_by(s, m)},
                                              folder.made_by())
                               .dump(1) +
@@ -90,12 +111,12 @@ void write_models(const compensation::StrategyMatrix& m, output::ResultsFolder& 
         fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
     for (const char* as : {"text", "linuxcnc"}) {  // the component comes with the C
       for (const ControlFile& file : formula_files(formula, as, name, {}, made_by))
-        folder.write_text("models/" + file.name, file.text);
+        folder.write_text(own + file.name, file.text);
     }
     has_formulas = true;
   }
   for (const ControlFile& file : control_files()) {
-    if (has_formulas) folder.write_text("models/" + file.name, file.text);
+    if (has_formulas) folder.write_text(own + file.name, file.text);
   }
 }
 

@@ -1,23 +1,57 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "app/model_files.hpp"
 #include "app/results.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/programme_section.hpp"
 #include "findings/strategy_section.hpp"
+#include "findings/travel_section.hpp"
 #include "output/document_csv.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/travel_places.hpp"
 #include "studies/record_study.hpp"
 #include "studies/validation_study.hpp"
 
 namespace driftwright::app {
 namespace {
 
+using Judge = std::function<compensation::StrategyMatrix(const scenarios::Scenario&)>;
+
 void write_strategies(const compensation::StrategyMatrix& matrix, output::ResultsFolder& folder, const Listener& listener) {
-  folder.write_text("strategies.csv", output::table_csv(findings::cases_table(matrix), folder.made_by()));
+  const compensation::StrategySettings& how = matrix.settings.strategies;
+  folder.write_text((how.place ? how.target + "_" : "") + "strategies.csv",
+                    output::table_csv(findings::cases_table(matrix), folder.made_by()));
   write_models(matrix, folder, listener);
+}
+
+/// Judges for the study's target, or for each of the places of its screw, writes the files, and adds what is found.
+/// @param places  of scenarios::places_along(); none: the target alone
+/// @return what is said of the records, a sentence each
+std::vector<std::string> add_strategies(const scenarios::Scenario& scenario,
+                                        const std::vector<scenarios::DisplacementOutput>& places, const Judge& judge,
+                                        output::Document& document, output::ResultsFolder& folder,
+                                        const Listener& listener) {
+  if (places.empty()) {
+    const compensation::StrategyMatrix matrix = judge(scenario);
+    write_strategies(matrix, folder, listener);
+    document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
+    return matrix.findings;
+  }
+  const studies::JudgedTravel judged = studies::judge_places(scenario, places, judge);
+  document.body.sections.push_back(findings::travel_section(judged, folder.made_by()));
+  for (const compensation::StrategyMatrix& matrix : judged.places) {
+    const std::string& target = matrix.settings.strategies.target;
+    write_strategies(matrix, folder, listener);
+    output::Section section = findings::strategy_section(matrix, scenario, folder.made_by());
+    section.title = "The place of " + target;
+    section.item = output::Item{"place", target};
+    section.detail = true;
+    document.body.sections.push_back(std::move(section));
+  }
+  return judged.places.front().findings;
 }
 
 std::optional<compensation::Probing> probing_of(const RecordOptions& options) {
@@ -64,8 +98,22 @@ std::string only_target(const scenarios::Scenario& scenario) {
                                              : fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
+/// The places of the target's screw that all records have read; none: the target alone.
+std::vector<scenarios::DisplacementOutput> read_places(const scenarios::Scenario& scenario,
+                                                       const studies::StudyRecords& records) {
+  if (!scenario.machine) return {};
+  std::vector<scenarios::DisplacementOutput> places = scenarios::places_along(*scenario.machine, scenario.study->target);
+  std::erase_if(places, [&](const scenarios::DisplacementOutput& d) {
+    const auto has_none = [&](const MachineRun& run) { return run.readings.find(d.name) == nullptr; };
+    return std::any_of(records.train.begin(), records.train.end(), has_none) ||
+           std::any_of(records.test.begin(), records.test.end(), has_none);
+  });
+  if (places.size() < 2) places.clear();
+  return places;
+}
+
 /// The strategies of `validation`, the predictors of `programme`, or both.
-void validate_machine(const scenarios::Scenario& scenario, const std::string& note, const RecordOptions& options) {
+void validate_machine(scenarios::Scenario scenario, const std::string& note, const RecordOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   std::vector<Cyclogram> asked;
@@ -79,6 +127,11 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
   }
   std::vector<const Cyclogram*> pointers;
   for (const Cyclogram& c : asked) pointers.push_back(&c);
+  std::vector<scenarios::DisplacementOutput> places;
+  if (scenario.validation) {
+    places = scenarios::places_along(*scenario.machine, scenario.study->target);
+    scenarios::add_places_between(*scenario.machine, scenario.study->target);
+  }
   const scenarios::Model model = scenarios::open_model(scenario, pointers, progress.listener(), false);
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + (scenario.validation ? ": strategies" : ": predictors of drift") +
@@ -86,10 +139,10 @@ void validate_machine(const scenarios::Scenario& scenario, const std::string& no
                             .subtitle = model.words()};
   std::string seconds;
   if (scenario.validation) {
-    const compensation::StrategyMatrix matrix =
-        studies::validate_strategies(scenario, model, probing_of(options), progress.listener());
-    write_strategies(matrix, folder, progress.listener());
-    document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
+    const auto judge = [&](const scenarios::Scenario& of_target) {
+      return studies::validate_strategies(of_target, model, probing_of(options), progress.listener());
+    };
+    add_strategies(scenario, places, judge, document, folder, progress.listener());
     if (!note.empty())
       document.body.sections.push_back({.blocks = {output::Notes{.key = "notes", .sort = "note", .lines = {note}}}});
   }
@@ -142,13 +195,14 @@ void validate(const RecordOptions& options) {
   warnings.insert(warnings.begin(), records.notes.begin(), records.notes.end());
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
-  const compensation::StrategyMatrix matrix =
-      studies::validate_on_records(scenario, std::move(records), probing_of(options), progress.listener());
-  warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
-  write_strategies(matrix, folder, progress.listener());
   output::Document document{.made_by = folder.made_by(),
                             .title = scenario.name + ": strategies judged on records they were not fitted on"};
-  document.body.sections.push_back(findings::strategy_section(matrix, scenario, folder.made_by()));
+  const auto judge = [&](const scenarios::Scenario& of_target) {
+    return studies::validate_on_records(of_target, records, probing_of(options), progress.listener());
+  };
+  const std::vector<std::string> found =
+      add_strategies(scenario, read_places(scenario, records), judge, document, folder, progress.listener());
+  warnings.insert(warnings.end(), found.begin(), found.end());
   document.body.sections.push_back({.blocks = {output::Notes{.key = "warnings", .sort = "warning", .lines = warnings}}});
   finish(document, folder, progress, options);
 }

@@ -414,4 +414,9 @@ void read_out_at_nut(Effect& e, const std::string& displacement) {
                                  e.words.at(feed_axis::kAtNut), e.words.at("screw")));
 }
 
+std::string read_at_nut(const Effect& e) {
+  const auto displacement = e.words.find(feed_axis::kAtNut);
+  return displacement == e.words.end() ? "" : displacement->second;
+}
+
 }  // namespace driftwright::effects

@@ -47,5 +47,7 @@ struct ErrorAlong {
 /// Makes the effect add the error at the nut's present place to a displacement. One displacement a screw.
 /// @throws RangeError  without a recorded position, for a second displacement
 void read_out_at_nut(Effect& feed_axis, const std::string& displacement);
+/// The displacement to which an effect adds it; "": none, or another sort of effect.
+[[nodiscard]] std::string read_at_nut(const Effect& effect);
 
 }  // namespace driftwright::effects

@@ -151,7 +151,7 @@ std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrateg
         "them are left out in turn to choose a strategy."};
   const std::string path = made_by.scenario.empty() ? "SCENARIO" : made_by.scenario;
   if (chosen->safety == Safety::kUnsafe) return steps_without(m, *chosen, scenario, path);
-  const std::string file = output::path_in_results(made_by, "models/" + model_file_name(chosen->fitted.name) + ".json");
+  const std::string file = output::path_in_results(made_by, model_file(m, *chosen));
   return {correction_step(m, scenario, path, file),
           fmt::format("`driftwright follow {}` then corrects beside the running machine{}.", file,
                       chosen->safety == Safety::kSafe ? "" : ", only within the limits above")};
@@ -174,6 +174,8 @@ Section conditions_of(const StrategyMatrix& m) {
   Section section;
   const auto put = [&](const char* key, Datum datum) { add(section, Value{.key = key, .datum = std::move(datum)}); };
   put("target", how.target);
+  put("screw", how.place ? Datum(how.place->screw) : Datum());
+  put("position_mm", how.place ? Datum(1e3 * how.place->at_m) : Datum());
   put("not_judged", other_axes(m));
   put("tolerance_um", m.settings.tolerance_um);
   put("count_from_start", how.count_from_start);
@@ -276,6 +278,14 @@ std::string model_file_name(const std::string& strategy) {
     }
   }
   return name;
+}
+
+std::string models_folder(const StrategyMatrix& m) {
+  return m.settings.strategies.place ? fmt::format("models/{}/", m.settings.strategies.target) : "models/";
+}
+
+std::string model_file(const StrategyMatrix& m, const JudgedStrategy& strategy) {
+  return models_folder(m) + model_file_name(strategy.fitted.name) + ".json";
 }
 
 Section strategy_section(const StrategyMatrix& m, const scenarios::Scenario& scenario, const output::Provenance& made_by) {

@@ -75,6 +75,11 @@ class Dialect {
   virtual void set_if(const std::string& a, Compare compare, const std::string& b, const std::string& target,
                       const std::string& value) = 0;
   [[nodiscard]] virtual ControlProgram program(const std::vector<std::string>& remarks, const std::string& correction) = 0;
+  /// The correction where the axis is, from those of places of its travel, as program() takes it.
+  [[nodiscard]] virtual std::string over_travel(const std::vector<double>& /*at_mm*/,
+                                                const std::vector<std::string>& /*corrections*/) {
+    throw std::logic_error("a language that knows no position");
+  }
 
   [[nodiscard]] std::string number(double x) const { return digits_of(x, digits_); }
   [[nodiscard]] const NumberFormat& digits() const { return digits_; }
@@ -95,8 +100,9 @@ const char* sign_of(Dialect::Compare compare, const char* less, const char* equa
 
 class StructuredText final : public Dialect {
  public:
-  StructuredText(const std::string& name, const FailSafe& safe) : Dialect({}), name_(plain_name(name)) {
-    for (const FailSafe::Guard& g : safe.guards) {
+  StructuredText(const std::string& name, const std::vector<FailSafe::Guard>& guards)
+      : Dialect({}), name_(plain_name(name)) {
+    for (const FailSafe::Guard& g : guards) {
       const std::string plain = plain_name(fmt::format("in_{}_{}", g.input, g.unit));
       std::string own = plain;
       const auto is_taken = [&](const std::string& other) { return upper(other) == upper(own); };  // case does not count
@@ -117,6 +123,17 @@ class StructuredText final : public Dialect {
               const std::string& value) override {
     text_ += fmt::format("IF {} {} {} THEN {} := {}; END_IF;\n", a, sign_of(compare, "<", "=", ">"), b, target, value);
   }
+  std::string over_travel(const std::vector<double>& at_mm, const std::vector<std::string>& corrections) override {
+    readings_.emplace_back(kPosition);
+    const std::string along = variable("along");
+    set(along, corrections.front());
+    for (std::size_t k = 1; k < at_mm.size(); ++k)
+      set_if(kPosition, Compare::kGreater, number(at_mm[k - 1]), along,
+             fmt::format("{0} + ( {1} - {0} ) * ( {2} - {3} ) / {4}", corrections[k - 1], corrections[k], kPosition,
+                         number(at_mm[k - 1]), number(at_mm[k] - at_mm[k - 1])));
+    set_if(kPosition, Compare::kGreater, number(at_mm.back()), along, corrections.back());
+    return along;
+  }
   ControlProgram program(const std::vector<std::string>& remarks, const std::string& correction) override {
     std::string head = fmt::format("FUNCTION_BLOCK {}\n", name_);
     for (const std::string& r : remarks) head += fmt::format("(* {} *)\n", r);
@@ -129,6 +146,7 @@ class StructuredText final : public Dialect {
   }
 
  private:
+  static constexpr const char* kPosition = "position_mm";
   std::string name_;
   std::vector<std::string> readings_, variables_;
 };
@@ -152,8 +170,8 @@ class Siemens final : public Dialect {
                        value));
   }
   ControlProgram program(const std::vector<std::string>& remarks, const std::string& correction) override {
-    set(fmt::format("$$SA_TEMP_COMP_ABS_VALUE[{}]", axis_.letter),
-        fmt::format("{} * {}", correction, axis_.against_dk ? "0.001" : "( -0.001 )"));
+    if (!is_over_travel_)
+      set(fmt::format("$$SA_TEMP_COMP_ABS_VALUE[{}]", axis_.letter), fmt::format("{} * {}", correction, mm_of_axis()));
     action("DO $AC_MARKER[0]=0");
     if (n_actions_ > kSiemensActions)
       throw InputError(
@@ -168,11 +186,12 @@ class Siemens final : public Dialect {
         "; MD28254 must be at least {}, MD28256 and MD28258 at least 1 (timers are 0 as delivered), and MD28250 large "
         "enough "
         "for these actions: an alarm of an illegal array index or of too few elements names what is missing.\n"
-        "; Call once after power-on. It needs MD32750 bit 0 = 1 of the axis; MD32760 limits the speed of the correction.\n"
+        "; Call once after power-on. It needs MD32750 {} of the axis; MD32760 limits the speed of the correction.\n"
         "; Measure the sign before use: SD43900 = 0.1 with the axis at rest and a dial gauge on it; an axis that moves "
         "{} by 0.1 mm agrees with this file, otherwise export with --axis-moves {}.\n",
-        index_.size() - 1, n_actions_, index_.size(), axis_.against_dk ? "to minus" : "to plus",
-        axis_.against_dk ? "by_dk" : "against_dk");
+        index_.size() - 1, n_actions_, index_.size(),
+        is_over_travel_ ? "= 3 (bits 0 and 1), and the axis referenced: positions are those of the machine," : "bit 0 = 1",
+        axis_.against_dk ? "to minus" : "to plus", axis_.against_dk ? "by_dk" : "against_dk");
     head +=
         "IF $MN_SCALING_SYSTEM_IS_METRIC==TRUE GOTOF METRIC\n"
         "SETAL(65024)                            ; mm are required: SD43900 of a control in inches is in inches\n"
@@ -182,6 +201,25 @@ class Siemens final : public Dialect {
     head += fmt::format("$AC_MARKER[0]=0\n$AC_TIMER[0]={}\n", number(period_s_));
     return {name_ + ".SPF", head + text_ + "RET\n"};
   }
+  /// In each cycle the straight piece in which the axis is: all three data at once, so that the value never jumps.
+  std::string over_travel(const std::vector<double>& at_mm, const std::vector<std::string>& corrections) override {
+    is_over_travel_ = true;
+    const std::string place = fmt::format("$AA_IM[{}]", axis_.letter);
+    const auto piece = [&](const std::string& where, std::size_t k, const std::string& slope) {
+      action(
+          fmt::format("WHENEVER {1} DO $$SA_TEMP_COMP_REF_POSITION[{0}]={2} $$SA_TEMP_COMP_ABS_VALUE[{0}]={3} * {4} "
+                      "$$SA_TEMP_COMP_SLOPE[{0}]={5}",
+                      axis_.letter, where, number(at_mm[k]), corrections[k], mm_of_axis(), slope));
+    };
+    const std::size_t last = at_mm.size() - 1;
+    piece(fmt::format("{}<{}", place, number(at_mm.front())), 0, number(0.0));
+    for (std::size_t k = 0; k < last; ++k)
+      piece(fmt::format("({0}>={1}) AND ({0}<{2})", place, number(at_mm[k]), number(at_mm[k + 1])), k,
+            fmt::format("( {} - {} ) * {} / {}", corrections[k + 1], corrections[k], mm_of_axis(),
+                        number(at_mm[k + 1] - at_mm[k])));
+    piece(fmt::format("{}>={}", place, number(at_mm.back())), last, number(0.0));
+    return "";
+  }
   /// The first actions: once a period the marker is 1 in one cycle.
   void begin() {
     action(fmt::format("WHENEVER $AC_TIMER[0]>={} DO $AC_MARKER[0]=1", number(period_s_)));
@@ -190,12 +228,15 @@ class Siemens final : public Dialect {
 
  private:
   void action(const std::string& words) { text_ += fmt::format("IDS={} {}\n", ++n_actions_, words); }
+  /// What makes a correction in um a compensation in mm.
+  [[nodiscard]] const char* mm_of_axis() const { return axis_.against_dk ? "0.001" : "( -0.001 )"; }
 
   std::string name_;
   ControlAxis axis_;
   double period_s_;
   std::map<std::string, std::size_t> index_;
   int n_actions_ = 0;
+  bool is_over_travel_ = false;
 };
 
 class Heidenhain final : public Dialect {
@@ -334,16 +375,25 @@ void require_static(const DriftModel& model, const std::string& control) {
   }
 }
 
+/// A formula among those of a program.
+struct FormulaPart {
+  const DriftModel& model;
+  const FailSafe& safe;
+  std::vector<std::size_t> readings;  ///< of the program, one for each guard
+  std::string own;                    ///< before the names of what it keeps: "", or "p0_"
+};
+
 /// Readings as drift_repair() leaves them while it doubts none, in x0, x1, ..., and the trust that they deserve.
-void write_readings(Dialect& to, const FailSafe& safe) {
+void write_readings(Dialect& to, const FormulaPart& part) {
+  const FailSafe& safe = part.safe;
   const std::string deserved = to.variable("deserved"), out = to.variable("out"), room = to.variable("room");
   to.set(deserved, to.number(1.0));
   for (std::size_t k = 0; k < safe.guards.size(); ++k) {
     const FailSafe::Guard& g = safe.guards[k];
     const std::string x = to.variable(fmt::format("x{}", k)), low = to.number(g.low), high = to.number(g.high);
-    to.set(x, to.reading(k));
+    to.set(x, to.reading(part.readings[k]));
     if (safe.from_start && !compensation::is_drive(g.unit)) {
-      const std::string base = to.kept(fmt::format("base{}", k));
+      const std::string base = to.kept(fmt::format("{}base{}", part.own, k));
       to.set_if(to.kept("started"), Dialect::Compare::kEqual, to.number(0.0), base, x);
       to.set(x, fmt::format("{} - {}", x, base));
     }
@@ -360,7 +410,9 @@ void write_readings(Dialect& to, const FailSafe& safe) {
 }
 
 /// The formula of these readings, in `sum`.
-void write_formula(Dialect& to, const DriftModel& model, const FailSafe& safe) {
+void write_formula(Dialect& to, const FormulaPart& part) {
+  const DriftModel& model = part.model;
+  const FailSafe& safe = part.safe;
   const std::string sum = to.variable("sum"), value = to.variable("value"), started = to.kept("started");
   const auto if_first = [&](const std::string& target, const std::string& v) {
     to.set_if(started, Dialect::Compare::kEqual, to.number(0.0), target, v);
@@ -384,7 +436,8 @@ void write_formula(Dialect& to, const DriftModel& model, const FailSafe& safe) {
       to.set(value, product);
     }
     if (t.lag_s > 0.0) {
-      const std::string lag = to.kept(fmt::format("lag{}", j)), before = to.kept(fmt::format("before{}", j));
+      const std::string lag = to.kept(fmt::format("{}lag{}", part.own, j)),
+                        before = to.kept(fmt::format("{}before{}", part.own, j));
       const std::string share = to.number(1.0 - std::exp(-safe.period_s / t.lag_s));
       if_first(lag, holds ? to.number(0.0) : value);
       if_first(before, holds ? to.number(0.0) : value);
@@ -397,17 +450,18 @@ void write_formula(Dialect& to, const DriftModel& model, const FailSafe& safe) {
   }
 }
 
-/// What may go to the axis, in `correction`.
-void write_guard(Dialect& to, const FailSafe& safe) {
+/// What may go to the axis. @return the variable with it
+std::string write_guard(Dialect& to, const FormulaPart& part) {
+  const FailSafe& safe = part.safe;
   const std::string deserved = to.variable("deserved"), sum = to.variable("sum"), wanted = to.variable("wanted");
-  const std::string started = to.kept("started"), correction = to.kept("correction");
+  const std::string started = to.kept("started"), correction = to.kept(part.own + "correction");
   const auto if_first = [&](const std::string& target, const std::string& v) {
     to.set_if(started, Dialect::Compare::kEqual, to.number(0.0), target, v);
   };
   if (to.is_called()) {
     to.set(wanted, fmt::format("{} * {}", deserved, sum));
   } else {
-    const std::string trust = to.kept("trust");
+    const std::string trust = to.kept(part.own + "trust");
     if_first(trust, deserved);
     to.set(trust, fmt::format("{0} + {1} * ( {2} - {0} )", trust, to.number(1.0 - std::exp(-safe.period_s / safe.fade_s)),
                               deserved));
@@ -425,26 +479,49 @@ void write_guard(Dialect& to, const FailSafe& safe) {
     to.at_most(wanted, to.number(most_um));
     to.set(correction, fmt::format("{} + {}", correction, wanted));
   }
-  to.set(started, to.number(1.0));
+  return correction;
 }
 
-std::vector<std::string> remarks_of(const DeployedModel& d, Dialect& to, const std::string& made_by, double error_um) {
+/// Whether the readings of two formulas are the same, with the same ranges.
+bool read_alike(const FormulaPart& a, const FormulaPart& b) {
+  const auto is_same = [](const FailSafe::Guard& x, const FailSafe::Guard& y) {
+    return x.input == y.input && x.unit == y.unit && x.low == y.low && x.high == y.high;
+  };
+  return std::equal(a.safe.guards.begin(), a.safe.guards.end(), b.safe.guards.begin(), b.safe.guards.end(), is_same);
+}
+
+/// The formulas one after the other. @return the variables with their corrections
+std::vector<std::string> write_parts(Dialect& to, const std::vector<FormulaPart>& parts) {
+  std::vector<std::string> corrections;
+  for (const FormulaPart& part : parts) {
+    if (&part == &parts.front() || !read_alike(part, *(&part - 1))) write_readings(to, part);
+    write_formula(to, part);
+    corrections.push_back(write_guard(to, part));
+  }
+  to.set(to.kept("started"), to.number(1.0));
+  return corrections;
+}
+
+/// @param of      what is corrected, by which formula: a line each
+/// @param guards  of the readings, in the program's order
+std::vector<std::string> remarks_of(const std::vector<std::string>& of, const FailSafe& safe,
+                                    const std::vector<FailSafe::Guard>& guards, Dialect& to, const std::string& made_by,
+                                    double error_um) {
   const auto plain = [](std::string text) {  // safe in a comment of any of these languages
     std::replace_if(
         text.begin(), text.end(), [](char ch) { return ch < ' ' || ch > '~' || ch == '*'; }, '_');
     return text;
   };
-  std::vector<std::string> list = {
-      plain(made_by),
-      plain(fmt::format("Correction of {} by {}: the axis moves by its negative", d.model.target, d.model.kind))};
-  for (std::size_t k = 0; k < d.safe.guards.size(); ++k) {
-    const FailSafe::Guard& g = d.safe.guards[k];
+  std::vector<std::string> list = {plain(made_by)};
+  for (const std::string& line : of) list.push_back(plain(line));
+  for (std::size_t k = 0; k < guards.size(); ++k) {
+    const FailSafe::Guard& g = guards[k];
     list.push_back(
         plain(fmt::format("{}: {} in {}, valid from {:.5g} to {:.5g}{}", to.reading(k), g.input, g.unit, g.low, g.high,
-                          d.safe.from_start && !compensation::is_drive(g.unit) ? " above the first reading" : "")));
+                          safe.from_start && !compensation::is_drive(g.unit) ? " above the first reading" : "")));
   }
   if (!to.is_called()) {
-    list.push_back(fmt::format("One row every {:g} s", d.safe.period_s));
+    list.push_back(fmt::format("One row every {:g} s", safe.period_s));
     list.push_back(fmt::format("Where a run begins (the machine starts cold) set {} = 0", to.kept("started")));
   }
   list.push_back(fmt::format("Equal to what was judged within {:.1g} um while every reading is right", error_um));
@@ -467,43 +544,88 @@ double rounding_um(const DeployedModel& d, const NumberFormat& digits) {
   return std::max(1e-9, std::pow(10.0, 1 - digits.significant) * size_um + std::pow(10.0, -digits.decimals) * values);
 }
 
+/// A program of a language that runs in a cycle, or that is called, without lines yet.
+std::unique_ptr<Dialect> dialect(ControlLanguage language, const std::string& name,
+                                 const std::vector<FailSafe::Guard>& guards, double period_s, const ControlAxis& axis) {
+  switch (language) {
+    case ControlLanguage::kStructuredText:
+      return std::make_unique<StructuredText>(name, guards);
+    case ControlLanguage::kSiemens: {
+      auto siemens = std::make_unique<Siemens>(name, axis, period_s);
+      siemens->begin();
+      return siemens;
+    }
+    case ControlLanguage::kHeidenhain:
+      if (guards.size() > kHeidenhainReadings)
+        throw InputError(
+            fmt::format("the formula reads {} thermometers, and the PLC of a Heidenhain control passes at most "
+                        "{} numbers to an NC program (Q100 to Q107); take a formula of fewer",
+                        guards.size(), kHeidenhainReadings));
+      return std::make_unique<Heidenhain>(name, axis);
+    case ControlLanguage::kFanuc:
+      return std::make_unique<Fanuc>(name, axis, guards.size());
+  }
+  throw std::logic_error("a control's language without a dialect");
+}
+
+void require_one_start(const DeployedModel& d) {
+  if (d.safe.from_start != d.model.from_start) throw std::logic_error("formula and fail-safe count from different rows");
+}
+
 }  // namespace
 
 ControlProgram control_program(const DeployedModel& d, ControlLanguage language, const std::string& name,
                                const ControlAxis& axis, const std::string& made_by) {
-  if (d.safe.from_start != d.model.from_start) throw std::logic_error("formula and fail-safe count from different rows");
-  std::unique_ptr<Dialect> to;
-  switch (language) {
-    case ControlLanguage::kStructuredText:
-      to = std::make_unique<StructuredText>(name, d.safe);
-      break;
-    case ControlLanguage::kSiemens: {
-      auto siemens = std::make_unique<Siemens>(name, axis, d.safe.period_s);
-      siemens->begin();
-      to = std::move(siemens);
-      break;
-    }
-    case ControlLanguage::kHeidenhain:
-      require_static(d.model, "Heidenhain's control");
-      if (d.safe.guards.size() > kHeidenhainReadings)
-        throw InputError(
-            fmt::format("the formula reads {} thermometers, and the PLC of a Heidenhain control passes at most "
-                        "{} numbers to an NC program (Q100 to Q107); take a formula of fewer",
-                        d.safe.guards.size(), kHeidenhainReadings));
-      to = std::make_unique<Heidenhain>(name, axis);
-      break;
-    case ControlLanguage::kFanuc:
-      require_static(d.model, "Fanuc's control");
-      to = std::make_unique<Fanuc>(name, axis, d.safe.guards.size());
-      break;
-  }
-  if (!to) throw std::logic_error("a control's language without a dialect");
+  require_one_start(d);
+  if (language == ControlLanguage::kHeidenhain) require_static(d.model, "Heidenhain's control");
+  if (language == ControlLanguage::kFanuc) require_static(d.model, "Fanuc's control");
+  const std::unique_ptr<Dialect> to = dialect(language, name, d.safe.guards, d.safe.period_s, axis);
   const double error_um = rounding_um(d, to->digits());
-  const std::vector<std::string> remarks = remarks_of(d, *to, made_by, error_um);
-  write_readings(*to, d.safe);
-  write_formula(*to, d.model, d.safe);
-  write_guard(*to, d.safe);
-  ControlProgram program = to->program(remarks, to->kept("correction"));
+  const std::vector<std::string> remarks =
+      remarks_of({fmt::format("Correction of {} by {}: the axis moves by its negative", d.model.target, d.model.kind)},
+                 d.safe, d.safe.guards, *to, made_by, error_um);
+  std::vector<std::size_t> readings;
+  for (std::size_t k = 0; k < d.safe.guards.size(); ++k) readings.push_back(k);
+  ControlProgram program = to->program(remarks, write_parts(*to, {FormulaPart{d.model, d.safe, readings, ""}}).front());
+  program.error_um = error_um;
+  return program;
+}
+
+ControlProgram control_program_over_travel(std::span<const PlacedModel> places, ControlLanguage language,
+                                           const std::string& name, const ControlAxis& axis, const std::string& made_by) {
+  if (language == ControlLanguage::kHeidenhain || language == ControlLanguage::kFanuc)
+    throw InputError(fmt::format(
+        "a program that {} calls sets one shift for the whole travel, so it cannot follow the position of the axis; take "
+        "--as siemens, linuxcnc, st or c, or one --model of the place where the parts are",
+        language == ControlLanguage::kFanuc ? "Fanuc's control" : "Heidenhain's control"));
+  const FailSafe& first = places.front().model.safe;
+  std::vector<FailSafe::Guard> guards;
+  std::vector<FormulaPart> parts;
+  std::vector<std::string> of = {
+      "One correction over the travel, straight between these places, held beyond: the axis moves by "
+      "its negative"};
+  std::vector<double> at_mm;
+  for (const PlacedModel& p : places) {
+    const FailSafe& safe = p.model.safe;
+    require_one_start(p.model);
+    if (safe.period_s != first.period_s || safe.from_start != first.from_start)
+      throw InputError(fmt::format("'{}' and '{}' cannot run in one program: {}; take models of one run of `validate`",
+                                   places.front().model.model.target, p.model.model.target,
+                                   safe.period_s != first.period_s
+                                       ? fmt::format("their rows are {:g} s and {:g} s apart", first.period_s, safe.period_s)
+                                       : "one of them counts temperatures from the first row"));
+    FormulaPart part{p.model.model, safe, {}, fmt::format("p{}_", parts.size())};
+    for (const FailSafe::Guard& g : safe.guards) part.readings.push_back(reading_among(guards, g));
+    parts.push_back(std::move(part));
+    at_mm.push_back(p.at_mm);
+    of.push_back(fmt::format("At {:g} mm {} by {}", p.at_mm, p.model.model.target, p.model.model.kind));
+  }
+  const std::unique_ptr<Dialect> to = dialect(language, name, guards, first.period_s, axis);
+  double error_um = 0.0;
+  for (const PlacedModel& p : places) error_um = std::max(error_um, rounding_um(p.model, to->digits()));
+  const std::vector<std::string> remarks = remarks_of(of, first, guards, *to, made_by, error_um);
+  const std::vector<std::string> corrections = write_parts(*to, parts);
+  ControlProgram program = to->program(remarks, to->over_travel(at_mm, corrections));
   program.error_um = error_um;
   return program;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // A formula with its limits as a program in a control's own language. (drift_model_c writes it as C and for LinuxCNC.)
 
+#include <span>
+
 #include "output/drift_model_files.hpp"
 
 namespace driftwright::output {
@@ -32,5 +34,14 @@ struct ControlProgram {
 ///                     kFanuc, too many readings or numbers
 [[nodiscard]] ControlProgram control_program(const DeployedModel& deployed, ControlLanguage language,
                                              const std::string& name, const ControlAxis& axis, const std::string& made_by);
+
+/// The same for an axis whose correction depends on where it is, in every cycle of the control: kStructuredText has the position
+/// as an input, kSiemens writes SD43900, SD43910 and SD43920 by the machine position of the axis.
+/// @param places  two or more, by rising position
+/// @throws InputError  as above; for kHeidenhain and kFanuc, whose shift is one number for the whole travel; for places whose rows
+///                     have different intervals, or of which only some count from the first row
+[[nodiscard]] ControlProgram control_program_over_travel(std::span<const PlacedModel> places, ControlLanguage language,
+                                                         const std::string& name, const ControlAxis& axis,
+                                                         const std::string& made_by);
 
 }  // namespace driftwright::output

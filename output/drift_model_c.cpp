@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
 #include "base/characters.hpp"
+#include "base/errors.hpp"
+#include "compensation/control/axis_travel.h"
 #include "compensation/predictors/control_tables.hpp"
 
 namespace driftwright::output {
@@ -40,6 +43,7 @@ const std::vector<std::string> kTaken = {"s",
                                          "step_s",
                                          "model",
                                          "axis",
+                                         "position",
                                          "waited_s",
                                          "is_started",
                                          "heartbeat_is_late",
@@ -80,9 +84,9 @@ std::string target_name(const std::string& target) {
 constexpr std::size_t kLongestPin = 28;
 
 /// The names of the readings, in the order of the guards.
-std::vector<std::string> reading_names(const FailSafe& safe, std::size_t longest = std::string::npos) {
+std::vector<std::string> reading_names(const std::vector<FailSafe::Guard>& guards, std::size_t longest = std::string::npos) {
   std::vector<std::string> names, taken = kTaken;
-  for (const FailSafe::Guard& g : safe.guards) {
+  for (const FailSafe::Guard& g : guards) {
     const std::string plain = c_name(fmt::format("{}_{}", g.input, g.unit)).substr(0, longest);
     std::string name = plain;
     for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k)  // "a b" and "a-b" give the same name
@@ -197,7 +201,7 @@ For the axis L, with [AXIS_L]OFFSET_AV_RATIO in the INI file:
   net thermal-counts thermal.eoffset-counts => axis.l.eoffset-counts
   net thermal-scale thermal.eoffset-scale => axis.l.eoffset-scale
   net thermal-enable thermal.eoffset-enable => axis.l.eoffset-enable
-
+{nets}
 LinuxCNC adds up changes of the counts, drops them before all joints are homed, and forgets them when the machine is switched off.
 machine-is-on must therefore be the and of motion.motion-enabled and motion.is-all-homed.
 """;
@@ -221,19 +225,19 @@ param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for
 param rw float most_age_s = {age} "the heartbeat must turn over within this time, s; above 0";
 param rw float step_s = {period} "from one step of the model to the next, s: as far apart as the readings that it was judged on; 0: each cycle";
 {probe_parameters}variable {state} model;
-variable axis_offset_state axis;
+variable {axis_state} axis;
 variable double waited_s;
 variable int is_started;
 {probe_variables}include "{c_file}";
 include "drift_correction.c";
 {probe_include}include "axis_offset.c";
-function _ fp;
+{axis_include}function _ fp;
 license "GPL";
 ;;
 FUNCTION(_) {{
   static const {state} at_start;
 {begin}  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
-  const int is_late = axis_offset_watch(&settings, &axis, heartbeat, fperiod);
+  const int is_late = {watch};
   waited_s += fperiod;
 {wait}  if (restart) {{
     model = at_start;
@@ -243,12 +247,11 @@ FUNCTION(_) {{
 {step}    is_started = 1;
     waited_s = 0.0;
   }}
-{probe}  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);
-  eoffset_counts = axis.counts;
+{probe}{apply}  eoffset_counts = axis.counts;
   eoffset_scale = axis.scale;
   eoffset_enable = axis.is_offset_enabled;
   axis_offset_um = axis.offset_um;
-  model_trust = model.run.trust;
+  model_trust = {trust};
   heartbeat_is_late = is_late;
   setting_is_wrong = {is_wrong};
 {outputs}{set_doubts}}}
@@ -350,11 +353,83 @@ std::string probed_function(const DeployedModel& d, const std::string& name, con
   return text;
 }
 
+/// The parts of a component that depend on what it runs; the defaults are those of one formula without a probe.
+struct ComponentParts {
+  std::string target, kind, state, files, step;
+  std::string pins, doubts, values, set_doubts;  ///< of the readings
+  std::string nets = "", axis_state = "axis_offset_state", axis_include = "";
+  std::string watch = "axis_offset_watch(&settings, &axis, heartbeat, fperiod)";
+  std::string apply = "  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);\n";
+  std::string trust = "model.run.trust", is_wrong = "axis.is_wrong";
+  std::string probe_pins, probe_parameters, probe_variables, probe_include, begin, wait, probe, outputs, forget;
+};
+
+/// With pins for the readings. @param doubted  C that says whether a reading is doubted
+ComponentParts component_of(const FailSafe& safe, const std::vector<std::string>& readings,
+                            const std::function<std::string(std::size_t)>& doubted) {
+  ComponentParts c;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    c.pins += fmt::format("pin in float {} \"{} in {}; not a number while there is none\";\n", readings[k],
+                          quoted(safe.guards[k].input), quoted(safe.guards[k].unit));
+    c.doubts += fmt::format("pin out bit doubt_{} \"{} is doubted, and replaced where others allow it\";\n", readings[k],
+                            quoted(safe.guards[k].input));
+    c.values += fmt::format("is_late ? NAN : {}, ", readings[k]);
+    c.set_doubts += fmt::format("    doubt_{} = {};\n", readings[k], doubted(k));
+  }
+  return c;
+}
+
+std::string component_text(const ComponentParts& c, const FailSafe& safe, const std::string& name, const std::string& c_file,
+                           const std::string& made_by) {
+  return fmt::format(kComponent, fmt::arg("name", name), fmt::arg("target", quoted(c.target)),
+                     fmt::arg("kind", quoted(c.kind)), fmt::arg("made_by", quoted(made_by)), fmt::arg("c_file", c_file),
+                     fmt::arg("nets", c.nets), fmt::arg("pins", c.pins), fmt::arg("doubts", c.doubts),
+                     fmt::arg("step", c.step), fmt::arg("set_doubts", c.set_doubts), fmt::arg("state", c.state),
+                     fmt::arg("files", c.files), fmt::arg("probe_pins", c.probe_pins),
+                     fmt::arg("probe_parameters", c.probe_parameters), fmt::arg("probe_variables", c.probe_variables),
+                     fmt::arg("probe_include", c.probe_include), fmt::arg("begin", c.begin), fmt::arg("wait", c.wait),
+                     fmt::arg("probe", c.probe), fmt::arg("outputs", c.outputs), fmt::arg("is_wrong", c.is_wrong),
+                     fmt::arg("forget", c.forget), fmt::arg("axis_state", c.axis_state),
+                     fmt::arg("axis_include", c.axis_include), fmt::arg("watch", c.watch), fmt::arg("apply", c.apply),
+                     fmt::arg("trust", c.trust), fmt::arg("rate", c_number(safe.most_rate_um_s)),
+                     fmt::arg("most", c_number(std::max(-safe.lowest_um, safe.highest_um))),
+                     fmt::arg("age", c_number(safe.stale_s)), fmt::arg("period", c_number(safe.period_s)));
+}
+
+/// The readings of all places, each once.
+struct PlacedReadings {
+  std::vector<FailSafe::Guard> guards;
+  std::vector<std::string> names;                  ///< in C
+  std::vector<std::vector<std::size_t>> of_place;  ///< of each place, in the order of its guards
+};
+PlacedReadings readings_of(std::span<const PlacedModel> places, std::size_t longest = std::string::npos) {
+  PlacedReadings r;
+  for (const PlacedModel& p : places) {
+    r.of_place.emplace_back();
+    for (const FailSafe::Guard& g : p.model.safe.guards) r.of_place.back().push_back(reading_among(r.guards, g));
+  }
+  r.names = reading_names(r.guards, longest);
+  return r;
+}
+
+DeployedModel without_probings(DeployedModel d) {
+  d.residual.reset();
+  d.members.clear();
+  d.member_residuals.clear();
+  return d;
+}
+
+std::vector<double> positions_mm(std::span<const PlacedModel> places) {
+  std::vector<double> mm;
+  for (const PlacedModel& p : places) mm.push_back(p.at_mm);
+  return mm;
+}
+
 }  // namespace
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
   const std::string name = target_name(d.model.target), capitals = upper_case(name);
-  const std::vector<std::string> readings = reading_names(d.safe);
+  const std::vector<std::string> readings = reading_names(d.safe.guards);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;
   for (std::size_t k = 0; k < n; ++k) {
@@ -445,27 +520,112 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   return text + probed_function(d, name, arguments, readings);
 }
 
+std::string c_over_travel(std::span<const PlacedModel> places, const std::string& of, const std::string& made_by) {
+  if (places.size() > AXIS_TRAVEL_PLACES)
+    throw InputError(fmt::format("a correction over the travel takes at most {} places, and there are {}",
+                                 AXIS_TRAVEL_PLACES, places.size()));
+  const std::string name = target_name(of);
+  const PlacedReadings readings = readings_of(places);
+  std::string text =
+      fmt::format("/* One correction over the travel of {}, straight between its places and held beyond them. {}\n",
+                  quoted(of), quoted(made_by));
+  text +=
+      " * Compile it with drift_correction.c, axis_travel.c and axis_offset.c, which lie beside it. */\n"
+      "#include \"axis_travel.h\"\n\n";
+  std::vector<std::string> at, states, steps, trusts, arguments;
+  for (const std::string& r : readings.names) arguments.push_back(fmt::format("double {}, ", r));
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::string target = target_name(places[k].model.model.target);
+    std::string given;
+    for (std::size_t r : readings.of_place[k]) given += readings.names[r] + ", ";
+    text += c_function(without_probings(places[k].model), made_by) + "\n";
+    at.push_back(c_number(places[k].at_mm));
+    states.push_back(fmt::format("  {}_state place_{};\n", target, k));
+    steps.push_back(
+        fmt::format("  s->corrections_um[{0}] = {1}_correction_um(&s->place_{0}, {2}dt_s);\n", k, target, given));
+    trusts.push_back(fmt::format("  if (s->place_{0}.run.trust < s->trust) s->trust = s->place_{0}.run.trust;\n", k));
+  }
+  text += fmt::format(
+      "/* Positions of the axis [mm]. */\nstatic const double {0}_at_mm[] = {{{1}}};\n\n"
+      "/* All zero before the first call. trust: the least of all places. */\n"
+      "typedef struct {{\n{2}  double corrections_um[{3}], trust;\n}} {0}_state;\n\n"
+      "/* A row for all places. Readings that are missing are NAN. dt_s: since the call before. */\n"
+      "void {0}_row({0}_state *s, {4}double dt_s) {{\n{5}  s->trust = 1.0;\n{6}}}\n\n"
+      "/* What to take away from the position [um] where the axis is: the axis moves by its negative. It may be called more "
+      "often\n"
+      " * than {0}_row(): as often as the axis moves on. */\n"
+      "double {0}_correction_um(const {0}_state *s, double position_mm) {{\n"
+      "  return axis_travel_value({0}_at_mm, s->corrections_um, {3}, position_mm);\n}}\n",
+      name, fmt::join(at, ", "), fmt::join(states, ""), places.size(), fmt::join(arguments, ""), fmt::join(steps, ""),
+      fmt::join(trusts, ""));
+  return text;
+}
+
+std::string linuxcnc_over_travel(std::span<const PlacedModel> places, const std::string& of, const std::string& name,
+                                 const std::string& c_file, const std::string& made_by) {
+  if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
+  const std::string own = target_name(of);
+  const PlacedReadings readings = readings_of(places, kLongestPin);
+  std::vector<std::string> targets;
+  FailSafe safe = places.front().model.safe;
+  for (const PlacedModel& p : places) {
+    targets.push_back(fmt::format("{} at {:g} mm", p.model.model.target, p.at_mm));
+    safe.lowest_um = std::min(safe.lowest_um, p.model.safe.lowest_um);
+    safe.highest_um = std::max(safe.highest_um, p.model.safe.highest_um);
+    safe.most_rate_um_s = std::max(safe.most_rate_um_s, p.model.safe.most_rate_um_s);
+  }
+  safe.guards = readings.guards;
+  ComponentParts c = component_of(safe, readings.names, [&](std::size_t r) {
+    std::vector<std::string> doubts;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (std::size_t g = 0; g < readings.of_place[k].size(); ++g) {
+        if (readings.of_place[k][g] == r) doubts.push_back(fmt::format("model.place_{}.inputs[{}].is_doubted", k, g));
+      }
+    }
+    return fmt::format("{}", fmt::join(doubts, " || "));
+  });
+  const std::size_t n = places.size();
+  c.target = fmt::format("{}", fmt::join(targets, ", "));
+  c.kind = "one formula a place";
+  c.state = own + "_state";
+  c.files =
+      "drift_correction.c, axis_offset.c and\naxis_travel.c the code. They, with drift_correction.h, axis_offset.h and "
+      "axis_travel.h,";
+  c.nets =
+      "  net thermal-position joint.n.pos-cmd => thermal.position\n\n"
+      "(The joint n of that axis. Its correction is straight between the places, and held beyond them. Slew limit and "
+      "largest "
+      "offset are of\neach place.)\n";
+  c.pins = fmt::format(
+               "pin in float position \"of the axis, in units of the machine, from the zero of the positions ({} mm)\";\n",
+               fmt::join(positions_mm(places), ", ")) +
+           c.pins;
+  c.step = fmt::format("    {}_row(&model, {}waited_s);\n", own, c.values);
+  c.axis_state = "axis_travel_state";
+  c.axis_include = "include \"axis_travel.c\";\n";
+  c.watch = fmt::format("axis_travel_watch(&settings, &axis, {}, heartbeat, fperiod)", n);
+  c.apply = fmt::format(
+      "  correction_um = {0}_correction_um(&model, 1e-3 * machine_unit_um * position);\n"
+      "  axis_travel_step(&settings, &axis, {0}_at_mm, {1}, machine_is_on, enable, model.corrections_um,\n"
+      "                   1e-3 * machine_unit_um * position, fperiod);\n",
+      own, n);
+  c.trust = "model.trust";
+  return component_text(c, safe, name, c_file, made_by);
+}
+
 std::string linuxcnc_component(const DeployedModel& d, const std::string& name, const std::string& c_file,
                                const std::string& made_by) {
   if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
   const std::string target = target_name(d.model.target);
-  const std::vector<std::string> readings = reading_names(d.safe, kLongestPin);
-  std::string pins, doubts, values, set_doubts;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    pins += fmt::format("pin in float {} \"{} in {}; not a number while there is none\";\n", readings[k],
-                        quoted(d.safe.guards[k].input), quoted(d.safe.guards[k].unit));
-    doubts += fmt::format("pin out bit doubt_{} \"{} is doubted, and replaced where others allow it\";\n", readings[k],
-                          quoted(d.safe.guards[k].input));
-    values += fmt::format("is_late ? NAN : {}, ", readings[k]);
-    set_doubts += fmt::format("    doubt_{} = model.inputs[{}].is_doubted;\n", readings[k], k);
-  }
-  std::string step = fmt::format("    correction_um = {}_correction_um(&model, {}waited_s);\n", target, values);
-  std::string probe_pins, probe_parameters, probe_variables, begin, probe, outputs, is_wrong = "axis.is_wrong";
-  std::string probe_include = d.residual ? "include \"probe_feedback.c\";\n" : "";
-  std::string description_files =
-      "drift_correction.c the code. Both, with\ndrift_correction.h, axis_offset.h and axis_offset.c,";
+  ComponentParts c = component_of(d.safe, reading_names(d.safe.guards, kLongestPin),
+                                  [](std::size_t k) { return fmt::format("model.inputs[{}].is_doubted", k); });
+  c.target = d.model.target;
+  c.kind = d.model.kind;
+  c.state = target + "_state";
+  c.step = fmt::format("    correction_um = {}_correction_um(&model, {}waited_s);\n", target, c.values);
+  c.files = "drift_correction.c the code. Both, with\ndrift_correction.h, axis_offset.h and axis_offset.c,";
   if (d.residual) {
-    description_files =
+    c.files =
         "drift_correction.c and\nprobe_feedback.c the code. They, with drift_correction.h, probe_feedback.h, axis_offset.h "
         "and "
         "axis_offset.c,";
@@ -473,46 +633,37 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
     const ProbeCalls calls = probe_calls(d, is_blend ? "processes" : "process", "probing", "prediction_um");
     const std::string state_type = is_blend ? target + "_probing_state" : "probe_state";
     const std::string row = fmt::format(kProbeRow, calls.prefix, calls.arguments, calls.prediction);
+    c.probe_include = "include \"probe_feedback.c\";\n";
     if (is_blend) {
-      description_files =
+      c.files =
           "drift_correction.c,\nprobe_feedback.c and probe_members.c the code. They, with drift_correction.h, "
           "probe_feedback.h, probe_members.h,\naxis_offset.h and axis_offset.c,";
-      probe_include = "include \"probe_feedback.c\";\ninclude \"probe_members.c\";\n";
+      c.probe_include += "include \"probe_members.c\";\n";
     }
-    probe_pins = kProbePins;
-    probe_parameters = fmt::format(
+    c.probe_pins = kProbePins;
+    c.probe_parameters = fmt::format(
         "param rw float probe_noise_um = {} \"of a probing, 1 sigma, um; above 0\";\n"
         "param rw float probe_lag_s = {} \"from the touch until probe-strobe turns on, s; 0 or more\";\n",
         c_number(d.probe.noise_um), c_number(d.probe.lag_s));
-    probe_variables = fmt::format(
+    c.probe_variables = fmt::format(
         "variable {} probing;\nvariable double prediction_um;\nvariable double probe_waited_s;\n"
         "variable int strobe_was_on;\n",
         state_type);
-    begin = fmt::format("  static const {} unprobed;\n  const probe_process process{} = {};\n", state_type,
-                        is_blend ? "es[]" : "", processes_text(d, "probe_noise_um", "probe_lag_s"));
-    step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, values);
+    c.begin = fmt::format("  static const {} unprobed;\n  const probe_process process{} = {};\n", state_type,
+                          is_blend ? "es[]" : "", processes_text(d, "probe_noise_um", "probe_lag_s"));
+    c.step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, c.values);
     if (is_blend)
-      step += fmt::format("    {}_predictions_um(&model, prediction_um, waited_s, probing.predictions_um);\n", target);
-    step += row;
-    probe = fmt::format(kProbeCycle, fmt::arg("row", row), fmt::arg("prefix", calls.prefix),
-                        fmt::arg("arguments", calls.arguments), fmt::arg("corrected", calls.corrected),
-                        fmt::arg("lowest", c_number(d.safe.lowest_um)), fmt::arg("highest", c_number(d.safe.highest_um)));
-    outputs = fmt::format(kProbeOutputs, calls.prefix, calls.arguments, calls.said, calls.refused);
-    is_wrong = fmt::format("axis.is_wrong || !probe_is_valid({})", is_blend ? "&processes[0]" : "&process");
+      c.step += fmt::format("    {}_predictions_um(&model, prediction_um, waited_s, probing.predictions_um);\n", target);
+    c.step += row;
+    c.probe = fmt::format(kProbeCycle, fmt::arg("row", row), fmt::arg("prefix", calls.prefix),
+                          fmt::arg("arguments", calls.arguments), fmt::arg("corrected", calls.corrected),
+                          fmt::arg("lowest", c_number(d.safe.lowest_um)), fmt::arg("highest", c_number(d.safe.highest_um)));
+    c.outputs = fmt::format(kProbeOutputs, calls.prefix, calls.arguments, calls.said, calls.refused);
+    c.is_wrong = fmt::format("axis.is_wrong || !probe_is_valid({})", is_blend ? "&processes[0]" : "&process");
+    c.wait = "  probe_waited_s += fperiod;\n";
+    c.forget = "    probing = unprobed;\n    probe_waited_s = 0.0;\n";
   }
-  return fmt::format(kComponent, fmt::arg("name", name), fmt::arg("target", quoted(d.model.target)),
-                     fmt::arg("kind", quoted(d.model.kind)), fmt::arg("made_by", quoted(made_by)),
-                     fmt::arg("c_file", c_file), fmt::arg("pins", pins), fmt::arg("doubts", doubts), fmt::arg("step", step),
-                     fmt::arg("set_doubts", set_doubts), fmt::arg("state", target + "_state"),
-                     fmt::arg("files", description_files), fmt::arg("probe_pins", probe_pins),
-                     fmt::arg("probe_parameters", probe_parameters), fmt::arg("probe_variables", probe_variables),
-                     fmt::arg("probe_include", probe_include), fmt::arg("begin", begin),
-                     fmt::arg("wait", d.residual ? "  probe_waited_s += fperiod;\n" : ""), fmt::arg("probe", probe),
-                     fmt::arg("outputs", outputs), fmt::arg("is_wrong", is_wrong),
-                     fmt::arg("forget", d.residual ? "    probing = unprobed;\n    probe_waited_s = 0.0;\n" : ""),
-                     fmt::arg("rate", c_number(d.safe.most_rate_um_s)),
-                     fmt::arg("most", c_number(std::max(-d.safe.lowest_um, d.safe.highest_um))),
-                     fmt::arg("age", c_number(d.safe.stale_s)), fmt::arg("period", c_number(d.safe.period_s)));
+  return component_text(c, d.safe, name, c_file, made_by);
 }
 
 }  // namespace driftwright::output

@@ -2,6 +2,7 @@
 // A formula with its fail-safe as code for a control: tables for the same C code that the program itself judges by, and a
 // component for LinuxCNC. Both need the files of compensation/control beside them, unchanged (control_files()).
 
+#include <span>
 #include <string>
 
 #include "output/drift_model_files.hpp"
@@ -15,6 +16,20 @@ namespace driftwright::output {
 /// @param made_by  text for its first comment
 /// @throws std::logic_error  when a term has no guard
 [[nodiscard]] std::string c_function(const DeployedModel& deployed, const std::string& made_by);
+
+/// C99 source of a correction over the travel: the functions of c_function() for each place, which take no probings, a function
+/// that steps them all, and one that gives what to take away where the axis is. Compile it with drift_correction.c,
+/// axis_travel.c and axis_offset.c.
+/// @param places  one to AXIS_TRAVEL_PLACES, by rising position
+/// @param name    of these functions and of their state
+/// @throws InputError  for more places
+[[nodiscard]] std::string c_over_travel(std::span<const PlacedModel> places, const std::string& name,
+                                        const std::string& made_by);
+
+/// The component of such a correction: it has a pin for the position of the axis, and no probe. @param of  as of c_over_travel()
+[[nodiscard]] std::string linuxcnc_over_travel(std::span<const PlacedModel> places, const std::string& of,
+                                               const std::string& name, const std::string& c_file,
+                                               const std::string& made_by);
 
 /// A component for LinuxCNC's halcompile. It includes the file of c_function() and sends its correction to an axis as an
 /// external offset: inputs are readings, enable and heartbeat; outputs are counts and scale. A model whose residual is known

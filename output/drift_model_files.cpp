@@ -49,6 +49,14 @@ DeployedModel deployed_model(const compensation::DeployedPredictor& d) {
   return model;
 }
 
+std::size_t reading_among(std::vector<FailSafe::Guard>& guards, const FailSafe::Guard& guard) {
+  const auto at = std::find_if(guards.begin(), guards.end(),
+                               [&](const FailSafe::Guard& g) { return g.input == guard.input && g.unit == guard.unit; });
+  const auto k = static_cast<std::size_t>(at - guards.begin());
+  if (at == guards.end()) guards.push_back(guard);
+  return k;
+}
+
 std::string formula_text(const DeployedModel& d) {
   const DriftModel& m = d.model;
   std::string text = fmt::format("{} [{}] =  {:.4g}\n", m.target, unit_word(m.target_unit), m.intercept);

@@ -20,6 +20,18 @@ struct DeployedModel {
   std::vector<compensation::MemberResidual> member_residuals = {};
 };
 
+/// A formula that corrects an axis at one place of its travel. Several of them, by rising position, are one correction for the
+/// whole travel: straight between the places, and held beyond the outermost (compensation/control/axis_travel.h). They take no
+/// probings, which are of one place.
+struct PlacedModel {
+  DeployedModel model;
+  double at_mm = 0.0;  ///< position of the axis
+};
+
+/// Where a guard's reading is among those of several formulas: each input once. One that is not there is added.
+[[nodiscard]] std::size_t reading_among(std::vector<compensation::FailSafe::Guard>& guards,
+                                        const compensation::FailSafe::Guard& guard);
+
 /// What a control can run of a predictor: its formula with its fail-safe.
 /// @throws std::logic_error  for a predictor that gives no formula, and for one without a fail-safe
 [[nodiscard]] DeployedModel deployed_model(const compensation::DeployedPredictor& deployed);

@@ -134,6 +134,10 @@ Iso230Figures iso_figures(const CorrectionStudy& o, const MachineRun& run, const
               .time_s = o.time_s,
               .channels = {{"speed", "rpm", {}}, {channel, "um", o.drift_um}, {channel + " corrected", "um", o.left_um}}};
   for (double t_s : o.time_s) test.channels.front().values.push_back(run.cyclogram.speed_rpm(t_s));
+  for (const char* feed : {"feed_x", "feed_y", "feed_z"}) {
+    if (const Channel* recorded = run.readings.find(feed); recorded && recorded->values.size() == o.time_s.size())
+      test.channels.push_back(*recorded);
+  }
   return iso230_3_figures(test);
 }
 

@@ -12,9 +12,11 @@
 #include "base/random.hpp"
 #include "base/record_channel.hpp"
 #include "compensation/sensors/thermometers.hpp"
+#include "effects/feed_axis.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/travel_places.hpp"
 #include "solver/reduced_transient.hpp"
 #include "studies/linear_physics.hpp"
 
@@ -58,6 +60,13 @@ Thermometers instrument_of(const Validation& v) {
 /// @param run  index among the training runs followed by the judged ones
 std::uint64_t seed_of(const Validation& v, std::size_t run) {
   return 1000 * static_cast<std::uint64_t>(v.seed) + run;
+}
+
+/// Whether an effect changes what instruments read, other than a displacement that is not the target.
+bool changes_what_is_judged(const effects::Effect& e, const std::string& target) {
+  if (!effects::has_reading_effects({e})) return false;
+  const std::string own = e.place_kind == effects::Place::kDisplacement ? e.place : effects::read_at_nut(e);
+  return own.empty() || own == target;
 }
 
 std::string speed_channel(const Record& record) {
@@ -231,9 +240,12 @@ Record read_in_validation(const Validation& v, Record exact, std::size_t run) {
 StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Model& model) {
   const Validation& v = *scenario.validation;
   const scenarios::Study& study = *scenario.study;
-  if (effects::has_reading_effects(scenario.machine->effects)) {
-    throw InputError(v.where,
-                     "strategies are judged by the true drift; leave out the effects that change what instruments read");
+  for (const effects::Effect& e : scenario.machine->effects) {
+    if (changes_what_is_judged(e, study.target))
+      throw InputError(
+          e.where, fmt::format("strategies are judged by the true drift of '{}' and by what thermometers read; '{}' changes "
+                               "that: leave this effect out",
+                               study.target, e.name()));
   }
   std::vector<MachineRun> runs(v.train.size());
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = simulate(scenario, model, {&v.train[i], &v.seasons.front()}); });
@@ -333,6 +345,26 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
       compensation::judge_strategies(settings, std::move(records.train), std::move(judged));
   matrix.findings.insert(matrix.findings.begin(), records.findings.begin(), records.findings.end());
   return matrix;
+}
+
+JudgedTravel judge_places(Scenario scenario, const std::vector<scenarios::DisplacementOutput>& places,
+                          const std::function<compensation::StrategyMatrix(const Scenario&)>& judge) {
+  JudgedTravel judged;
+  std::vector<double> at_m;
+  for (const scenarios::DisplacementOutput& place : places) {
+    scenario.study->target = place.name;
+    judged.places.push_back(judge(scenario));
+    judged.places.back().settings.strategies.place = ScrewPlace{place.on_screw->screw, *place.on_screw->at_m};
+    at_m.push_back(*place.on_screw->at_m);
+  }
+  std::vector<TravelPlace> read;
+  const std::vector<JudgedRunOfMachine>& runs = judged.places.front().runs;
+  for (const scenarios::DisplacementOutput& d : scenarios::places_along(*scenario.machine, places.front().name)) {
+    if (std::all_of(runs.begin(), runs.end(), [&](const auto& r) { return r.run.readings.find(d.name) != nullptr; }))
+      read.push_back({d.name, *d.on_screw->at_m});
+  }
+  judged.travel = judge_travel(judged.places, at_m, std::move(read));
+  return judged;
 }
 
 }  // namespace driftwright::studies

@@ -2,7 +2,10 @@
 // The runs on which strategies are fitted and judged: simulated in every season of a scenario's `validation`, or
 // measured.
 
+#include <functional>
+
 #include "compensation/judging/strategy_matrix.hpp"
+#include "compensation/judging/travel.hpp"
 #include "machine/model.hpp"
 #include "scenarios/reader/scenario.hpp"
 #include "studies/record_study.hpp"
@@ -40,6 +43,18 @@ struct StrategyTraining {
 [[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
                                                                const std::optional<compensation::Probing>& probing,
                                                                const Listener& listener);
+
+/// Strategies judged for several places of a screw, by rising position, and along its travel.
+struct JudgedTravel {
+  std::vector<compensation::StrategyMatrix> places;
+  compensation::Travel travel;
+};
+/// Judges for each place, then along the travel: at all places of the target's entry in the machine that the judged runs have read.
+/// @param places  two or more of scenarios::places_along()
+/// @param judge   for a scenario whose study has one of them as its target
+[[nodiscard]] JudgedTravel judge_places(
+    scenarios::Scenario scenario, const std::vector<scenarios::DisplacementOutput>& places,
+    const std::function<compensation::StrategyMatrix(const scenarios::Scenario&)>& judge);
 
 /// The reason why a model of the machine cannot follow a measured run: its drive is unknown, or it begins out of balance
 /// with its ambient. "" if it can.

@@ -10,7 +10,7 @@ struct ControlFile {
   std::string name;  ///< "drift_correction.h"
   std::string text;
 };
-/// drift_correction.h and .c, axis_offset.h and .c, probe_feedback.h and .c, probe_members.h and .c.
+/// drift_correction.h and .c, axis_offset.h and .c, axis_travel.h and .c, probe_feedback.h and .c, probe_members.h and .c.
 [[nodiscard]] const std::vector<ControlFile>& control_files();
 
 }  // namespace driftwright::compensation

@@ -14,21 +14,46 @@ namespace {
 constexpr double kRounding = 1e-9;  // of a time: row times are sums of intervals
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-bool is_distortion(const Channel& channel) {
-  return is_displacement_unit(channel.unit);
+/// Speed and feeds of a record.
+std::vector<const Channel*> drives_of(const Record& record) {
+  std::vector<const Channel*> drives;
+  for (const auto& [name, unit] :
+       {std::pair{"speed", "rpm"}, {"feed_x", "mm_min"}, {"feed_y", "mm_min"}, {"feed_z", "mm_min"}}) {
+    const Channel* channel = record.find(name);
+    if (channel && channel->unit == unit) drives.push_back(channel);
+  }
+  return drives;
 }
 
-/// Duration of the spindle's running [s], from the first row to the end of the last row in which it turns; 0 if it does not
-/// turn at the start.
-double running_period_s(const Record& record, const Channel& speed) {
+/// Displacements and tilts; not the places of axes, which are in mm beside errors in um.
+std::vector<const Channel*> distortions_of(const Record& record, bool has_axes) {
+  std::vector<const Channel*> all;
+  bool has_um = false;
+  for (const Channel& c : record.channels) {
+    if (!is_displacement_unit(c.unit)) continue;
+    all.push_back(&c);
+    has_um = has_um || c.unit == "um";
+  }
+  if (has_axes && has_um) std::erase_if(all, [](const Channel* c) { return c->unit == "mm"; });
+  return all;
+}
+
+double top_of(const Channel& drive) {
+  double top = 0.0;
+  for (double v : drive.values) top = std::max(top, std::isnan(v) ? 0.0 : v);
+  return top;
+}
+
+/// Duration of a drive's running [s], from the first row to the end of the last row in which it moves; 0 if it does not move at
+/// the start.
+double running_period_s(const Record& record, const Channel& drive) {
   constexpr double kStill = 0.01;  // of the top speed: a drive at rest may be logged with this much
-  double running_s = 0.0, rpm = 0.0, top_rpm = 0.0;
-  for (double v : speed.values) top_rpm = std::max(top_rpm, std::isnan(v) ? 0.0 : v);
-  const double still_rpm = kStill * top_rpm;
+  double running_s = 0.0, now = 0.0;
+  const double still = kStill * top_of(drive);
   for (std::size_t i = 0; i + 1 < record.n_samples(); ++i) {
-    if (!std::isnan(speed.values[i])) rpm = speed.values[i];
-    if (i == 0 && !(rpm > still_rpm)) return 0.0;
-    if (rpm > still_rpm) running_s = record.time_s[i + 1] - record.time_s.front();
+    if (!std::isnan(drive.values[i])) now = drive.values[i];
+    if (i == 0 && !(now > still)) return 0.0;
+    if (now > still) running_s = record.time_s[i + 1] - record.time_s.front();
   }
   return running_s;
 }
@@ -69,38 +94,66 @@ Course course_of(const Record& record, const Channel& channel) {
 
 }  // namespace
 
-Iso230Figures iso230_3_figures(const Record& record) {
+namespace {
+
+/// Which test a record is, and for how long it runs; `not_available` if it is none.
+Iso230Figures test_of(const Record& record, const std::vector<const Channel*>& drives) {
   Iso230Figures figures;
-  const Channel* speed = record.find("speed");
-  const bool has_distortion = std::any_of(record.channels.begin(), record.channels.end(), is_distortion);
-  if (!has_distortion || record.n_samples() < 2) {
-    figures.not_available = "the record has no displacement and no tilt";
+  if (drives.empty()) {
+    figures.not_available = "the record has neither a spindle speed (speed_rpm) nor a feed of an axis (feed_x_mm_min)";
     return figures;
   }
-  if (!speed || speed->unit != "rpm") {
-    figures.not_available = "the record has no spindle speed (speed_rpm)";
-    return figures;
+  bool moves = false, spindle_moves = false;
+  for (const Channel* drive : drives) {
+    const bool is_spindle = drive->unit == "rpm";
+    if (!(top_of(*drive) > 0.0)) continue;
+    moves = true;
+    spindle_moves = spindle_moves || is_spindle;
+    if (!is_spindle && spindle_moves) continue;  // of a spindle that turns, axes are part of its cycle
+    const double running_s = running_period_s(record, *drive);
+    if (!(running_s > 0.0)) continue;
+    figures.running_period_s = std::max(figures.running_period_s, running_s);
+    if (is_spindle) continue;
+    figures.test = Iso230Test::kLinearAxis;
+    figures.axes += drive->name.back();
   }
-  figures.running_period_s = running_period_s(record, *speed);
-  if (!(figures.running_period_s > 0.0)) {
-    figures.not_available = "the spindle does not turn at the start of the record";
-    return figures;
-  }
-  if (!(figures.running_period_s >= kHour_s * (1.0 - kRounding))) {
+  const char* what = figures.test == Iso230Test::kLinearAxis ? "the axis moves" : "the spindle runs";
+  if (!moves) {
+    figures.test = Iso230Test::kAmbient;
+    figures.running_period_s = record.time_s.back() - record.time_s.front();
+    what = "the record lasts";
+  } else if (!(figures.running_period_s > 0.0)) {
     figures.not_available =
-        fmt::format("the spindle runs for {:.4g} min; the test takes 60 min at least", figures.running_period_s / 60.0);
+        spindle_moves ? "the spindle does not turn at the start of the record" : "no axis moves at the start of the record";
     return figures;
   }
-  for (const Channel& channel : record.channels) {
-    if (!is_distortion(channel)) continue;
-    const Course course = course_of(record, channel);
-    const double t_s = figures.running_period_s;
-    figures.channels.push_back({.name = channel.name,
-                                .unit = channel.unit,
-                                .range_first_60_min = course.range_until(kHour_s),
-                                .range_running = course.range_until(t_s),
-                                .at_end_of_running = course.time_s.empty() ? kNone : course.at(t_s) - course.value.front(),
-                                .range_whole_record = course.range_until(record.time_s.back() - record.time_s.front())});
+  if (!(figures.running_period_s >= kHour_s * (1.0 - kRounding)))
+    figures.not_available =
+        fmt::format("{} for {:.4g} min; the test takes 60 min at least", what, figures.running_period_s / 60.0);
+  return figures;
+}
+
+}  // namespace
+
+Iso230Figures iso230_3_figures(const Record& record) {
+  const std::vector<const Channel*> drives = drives_of(record);
+  const bool has_axes = std::any_of(drives.begin(), drives.end(), [](const Channel* d) { return d->unit != "rpm"; });
+  const std::vector<const Channel*> distortions = distortions_of(record, has_axes);
+  if (distortions.empty() || record.n_samples() < 2)
+    return {.channels = {}, .not_available = "the record has no displacement and no tilt"};
+  Iso230Figures figures = test_of(record, drives);
+  if (!figures.not_available.empty()) return figures;
+  for (const Channel* channel : distortions) {
+    const Course course = course_of(record, *channel);
+    const double t_s = figures.running_period_s, whole = course.range_until(record.time_s.back() - record.time_s.front());
+    const bool runs = figures.test != Iso230Test::kAmbient;
+    figures.channels.push_back(
+        {.name = channel->name,
+         .unit = channel->unit,
+         .range_first_60_min = runs ? course.range_until(kHour_s) : kNone,
+         .range_running = runs ? course.range_until(t_s) : kNone,
+         .at_end_of_running = !runs || course.time_s.empty() ? kNone : course.at(t_s) - course.value.front(),
+         .range_whole_record = whole});
   }
   return figures;
 }

@@ -27,6 +27,8 @@ Json conditions_json(const StrategyMatrix& m) {
   const StrategySettings& how = m.settings.strategies;
   const LinearisedModel* linearised = how.physics && how.physics->linearised ? &*how.physics->linearised : nullptr;
   Json j = {{"target", how.target},
+            {"screw", how.place ? Json(how.place->screw) : Json(nullptr)},
+            {"position_mm", how.place ? Json(1e3 * how.place->at_m) : Json(nullptr)},
             {"not_judged", other_axes(m)},
             {"tolerance_um", m.settings.tolerance_um},
             {"count_from_start", how.count_from_start},

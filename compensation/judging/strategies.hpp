@@ -38,10 +38,17 @@ struct Probing {
   double takes_s = 120.0;                  ///< time that a probing takes
 };
 
+/// The place of a feed axis whose error is corrected.
+struct ScrewPlace {
+  std::string screw;
+  double at_m = 0.0;  ///< position of the axis
+};
+
 /// Settings of all strategies.
 struct StrategySettings {
-  std::string target;                   ///< channel in um
-  std::vector<std::string> candidates;  ///< thermometers to choose from
+  std::string target;                    ///< channel in um
+  std::optional<ScrewPlace> place = {};  ///< of the target, if it is one of several places that are judged
+  std::vector<std::string> candidates;   ///< thermometers to choose from
   int n_sensors = 4;
   bool count_from_start = false;
   Image image = Image::kAutomatic;  ///< of grey grades

@@ -49,9 +49,11 @@ const char* word(Safety safety) {
 
 std::vector<std::string> other_axes(const StrategyMatrix& m) {
   std::vector<std::string> names;
-  const Record& readings = m.runs.front().run.readings;
+  const MachineRun& run = m.runs.front().run;
+  const Record& readings = run.readings;
   for (const Channel& c : readings.channels) {
-    const bool is_axis = is_displacement_unit(c.unit);
+    const bool is_axis =
+        is_displacement_unit(c.unit) && !run.cyclogram.column(c.name);  // a column may be an axis' place in mm
     if (is_axis && &c != readings.find(m.settings.strategies.target)) names.push_back(c.name);
   }
   return names;

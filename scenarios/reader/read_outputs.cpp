@@ -71,7 +71,7 @@ std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const Displace
 
 /// `screw: x_screw, at: [0 mm, 400 mm, 800 mm]`: places of the axis; without `at` the place of the nut.
 std::vector<DisplacementOutput> on_screw(const ConfigMap& in, DisplacementOutput base) {
-  base.on_screw = OnScrew{in.text("screw"), std::nullopt, in.where("screw")};
+  base.on_screw = OnScrew{.screw = in.text("screw"), .at_m = {}, .where = in.where("screw"), .entry = base.name};
   if (!base.by_sensitivity) base.by_sensitivity = BySensitivity{.terms = {}, .where = in.where("screw")};
   if (!in.has("at")) return {base};
   std::vector<DisplacementOutput> outputs;

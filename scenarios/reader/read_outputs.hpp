@@ -52,6 +52,8 @@ struct OnScrew {
   std::string screw;           ///< name that an effect `feed_axis` gives
   std::optional<double> at_m;  ///< position of the axis; none: where the nut is
   Where where;                 ///< of `screw`, or of `at`
+  std::string entry = {};      ///< name of the entry in the scenario, which its places share
+  std::size_t n_own = 0;       ///< the first terms of by_sensitivity are the entry's own, the rest are the screw's
 };
 
 /// Error of the tool against the table along an axis: actual - commanded. The indicator's stand is a rigid body that

@@ -18,6 +18,7 @@
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "scenarios/reader/read_limits.hpp"
 #include "scenarios/reader/read_materials.hpp"
+#include "scenarios/reader/travel_places.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -54,7 +55,7 @@ void keep_wanted_columns(const MachineModel& machine, Cyclogram& cyclogram) {
 void find_screws(MachineModel& m) {
   for (DisplacementOutput& d : m.displacements) {
     if (!d.on_screw) continue;
-    const OnScrew& on = *d.on_screw;
+    OnScrew& on = *d.on_screw;
     effects::Effect* axis = effects::feed_axis_of(m.effects, on.screw);
     if (!axis) {
       const std::vector<std::string> known = effects::screw_names(m.effects);
@@ -69,10 +70,8 @@ void find_screws(MachineModel& m) {
         m.written += fmt::format("at the nut of {}: {}\n", on.screw, d.name);
         continue;
       }
-      for (const auto& [body, sensitivity_m_K] : effects::axis_error_at(*axis, *on.at_m)) {
-        d.by_sensitivity->terms.push_back({body, sensitivity_m_K});
-        m.written += fmt::format("{}: {} {:.17g}\n", d.name, body.name, sensitivity_m_K);
-      }
+      on.n_own = d.by_sensitivity->terms.size();
+      read_axis_error(m, *axis, d);
     } catch (const RangeError& e) {
       throw InputError(on.where, e.what());
     }
@@ -204,7 +203,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     }
     must_know("judge", s.judge);
     for (const std::string& name : s.train) {
-      if (name == s.judge || scenario.cyclogram(name).sections == scenario.cyclogram(s.judge).sections) {
+      if (name == s.judge || drive_alike(scenario.cyclogram(name), scenario.cyclogram(s.judge))) {
         in.fail("judge",
                 fmt::format("a strategy is judged on a cyclogram it was not fitted on; '{}' is one of `train`", s.judge));
       }

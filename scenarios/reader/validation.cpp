@@ -91,7 +91,7 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   for (const std::string& name : in.texts("train")) v.train.push_back(named(in, "train", name, known));
   for (std::size_t i = 0; i < v.train.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      if (v.train[i].sections == v.train[k].sections)
+      if (drive_alike(v.train[i], v.train[k]))
         in.fail("train", fmt::format("'{}' is the same as '{}'; fitted on twice, it is never left out", v.train[i].name,
                                      v.train[k].name));
     }
@@ -101,7 +101,7 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
     v.families.push_back(read_family(families, name, known, v.seed));
     for (const Cyclogram& c : v.families.back().cyclograms) {
       for (const Cyclogram& t : v.train) {
-        if (c.sections == t.sections)
+        if (drive_alike(c, t))
           families.fail(name,
                         fmt::format("'{}' is what strategies are fitted on ('{}'); it cannot judge them", c.name, t.name));
       }
@@ -133,7 +133,7 @@ Validation default_validation(const std::vector<Cyclogram>& cyclograms, double t
   std::set<double> speeds_rpm;
   double longest_s = 0.0;
   for (const Cyclogram& c : cyclograms) {
-    const auto is_same = [&](const Cyclogram& d) { return d.sections == c.sections; };
+    const auto is_same = [&](const Cyclogram& d) { return drive_alike(d, c); };
     const auto turns = [](const Cyclogram::Section& s) { return s.drive.speed_rpm > 0.0; };
     if (std::any_of(different.begin(), different.end(), is_same)) continue;
     if (std::none_of(c.sections.begin(), c.sections.end(), turns)) continue;
@@ -163,6 +163,14 @@ Validation default_validation(const std::vector<Cyclogram>& cyclograms, double t
                         .cyclograms = random_cyclograms({.count = 2, .duration_s = longest_s},
                                                         {speeds_rpm.begin(), speeds_rpm.end()}, v.seed)});
   return v;
+}
+
+bool drive_alike(const Cyclogram& a, const Cyclogram& b) {
+  const auto is_same = [](const Cyclogram::Column& x, const Cyclogram::Column& y) {
+    return x.name == y.name && x.unit == y.unit && x.rows.time_s == y.rows.time_s && x.rows.value == y.rows.value;
+  };
+  return a.sections == b.sections &&
+         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), is_same);
 }
 
 TimeSeries ambient_in(const Validation::Season& season, const TimeSeries& ambient, double duration_s) {

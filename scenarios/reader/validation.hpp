@@ -45,6 +45,9 @@ struct Validation {
 /// @throws InputError  where fewer than two different cyclograms turn the spindle
 [[nodiscard]] Validation default_validation(const std::vector<Cyclogram>& cyclograms, double tolerance_um);
 
+/// True if two cyclograms drive the machine alike: the same sections, and the same columns, such as positions of axes.
+[[nodiscard]] bool drive_alike(const Cyclogram& a, const Cyclogram& b);
+
 /// The ambient of a season [K, as the series given], over a cyclogram.
 [[nodiscard]] TimeSeries ambient_in(const Validation::Season& season, const TimeSeries& ambient, double duration_s);
 

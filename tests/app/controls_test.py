@@ -6,6 +6,7 @@ judged rows, and compared with what the program itself says.
 """
 import array
 import csv
+import json
 import math
 import pathlib
 import re
@@ -235,6 +236,48 @@ def formula(call, folder, name, record):
         expect(not refused or "--as st" in done.stderr or "take a formula of fewer" in done.stderr, f"{name} as {as_} says what to use")
 
 
+def over_travel(call, folder, top):
+    """Corrections for two places of the shipped screw, judged along its travel and exported as one."""
+    text = (top / "scenarios/ball_screw.yaml").read_text()
+    (folder / "screw.yaml").write_text(text.replace("[0 mm, 400 mm, 800 mm]", "[0 mm, 800 mm]").replace("output_interval: 1 min", "output_interval: 5 min"))
+    done = call("validate", "screw.yaml", "-o", "along")
+    expect(done.returncode == 0, f"validate along a travel: {done.stderr.strip()[-300:]}")
+    summary = json.loads((folder / "along/summary.json").read_text())
+    left = summary["travel"]["left"]
+    chosen = [row for row in left if row["strategy"] == summary["travel"]["chosen"]]
+    expect([row["corrected"] for row in chosen] == ["0 mm", "800 mm", "0 and 800 mm"], f"one of two places, and both: {chosen}")
+    none, alone, both = left[0]["peak_um"], min(row["peak_um"] for row in chosen[:2]), chosen[2]["peak_um"]
+    expect(none > 90 and alone > 0.5 * none and both < 0.75 * alone, f"{none:.1f} um without, {alone:.1f} um with one place at best, {both:.1f} um with both")
+    expect([place["place"] for place in summary["validation"]] == ["x_0", "x_800"], "each place has its own judgement")
+    models = [f"along/models/{place}/ridge_all_sensors.json" for place in ("x_0", "x_800")]
+    blocks = []
+    for given in ([models[0]], [models[1]], models[::-1]):  # in any order
+        done = call("export", *(word for model in given for word in ("--model", model)), "--as", "st", "-o", f"st{len(blocks)}")
+        expect(done.returncode == 0, f"{given} as st: {done.stderr.strip()[-300:]}")
+        blocks.append(structured_text(next((folder / f"st{len(blocks)}").glob("*.st")).read_text()))
+    done = call("simulate", "screw.yaml", "--cyclogram", "shift", "-o", "screw_run")
+    expect(done.returncode == 0, f"simulate: {done.stderr.strip()[-300:]}")
+    names = re.findall(r"^  in_(\w+) : LREAL;", next((folder / "st2").glob("*.st")).read_text(), re.M)
+    worst, most = 0.0, 0.0
+    for n, row in enumerate(numbers(folder / "screw_run/record.csv")):
+        inputs = {"in_" + name: float(row[name]) for name in names}
+        near, far = blocks[0](inputs), blocks[1](inputs)
+        at_mm = (-100.0, 0.0, 200.0, 800.0, 900.0)[n % 5]
+        share = min(max(at_mm / 800.0, 0.0), 1.0)
+        worst = max(worst, abs(blocks[2]({**inputs, "position_mm": at_mm}) - (near + share * (far - near))))
+        most = max(most, abs(far - near))
+    expect(worst <= STATED_um and most > 20.0, f"over the travel it is straight between the places: within {worst:.1e} um, they differ by {most:.1f} um")
+    both_words = [word for model in models for word in ("--model", model)]
+    done = call("export", *both_words, "--as", "linuxcnc", "-o", "screw_hal")
+    expect(done.returncode == 0 and (folder / "screw_hal/x_screw_over_travel_axis.comp").exists(), f"as linuxcnc: {done.stderr.strip()[-300:]}")
+    done = subprocess.run([*PLAIN[:-1], "-c", "x_screw_over_travel.c", "drift_correction.c", "axis_travel.c", "axis_offset.c"], cwd=folder / "screw_hal", capture_output=True, text=True)
+    expect(done.returncode == 0, f"its C compiles without a warning: {done.stderr[-300:]}")
+    for words, said in (((*both_words, "--as", "heidenhain", "--axis", "X"), "one shift for the whole travel"), (("--model", models[0], "--model", models[0], "--as", "st"), "each place may have one"),
+                        (("--model", models[0], "--model", "judged/models/ridge_all_sensors.json", "--as", "st"), "does not say its place")):
+        done = call("export", *words, "-o", "refused")
+        expect(done.returncode == 2 and said in done.stderr, f"refused: {done.stderr.strip()[-200:]}")
+
+
 def main():
     program, top = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory(prefix="driftwright_controls-") as name:
@@ -265,6 +308,7 @@ def main():
         for words in (("--as", "st", "--axis", "Y"), ("--as", "fanuc", "--axis", "Y", "--axis-moves", "against_dk")):
             done = call("export", "--model", "judged/models/one_thermometer.json", *words, "-o", "refused")
             expect(done.returncode == 2 and "leave" in done.stderr, f"{words[1]} does not take {words[-2]}: {done.stderr.strip()[-200:]}")
+        over_travel(call, folder, top)
         expect(not (folder / "refused").exists(), "nothing is left of what was refused")
     return 1 if failures else 0
 

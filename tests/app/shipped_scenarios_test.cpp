@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
@@ -61,6 +62,37 @@ TEST(BallScrew, GrowsWhereItsNutIsAndReadsLittleByAScale) {
   EXPECT_NEAR(brief.at("x_800").values[30], 57.0, 1.0);
   EXPECT_NEAR(brief.at("x_400").values[30], 6.0, 1.0);
   for (const double um : brief.at("x_by_scale").values) EXPECT_LT(std::abs(um), 1.0);
+}
+
+/// The figures of ISO 230-3 of a simulated cyclogram.
+nlohmann::json iso230_3(const std::string& scenario, const std::string& cyclogram) {
+  const std::filesystem::path folder = simulate(scenario, cyclogram);
+  return nlohmann::json::parse(read_text(folder / "summary.json")).at("cyclograms").at(0).at("iso_230_3");
+}
+
+// Values by independent integration of the three bodies' balances.
+TEST(WorkshopDay, IsTestedAsIso230_3TestsTheAmbientAndASpindle) {
+  const auto etve = iso230_3("workshop_day", "etve");
+  EXPECT_EQ(etve.at("test"), "environment");
+  EXPECT_EQ(etve.at("duration_min"), 1440.0);
+  EXPECT_NEAR(etve.at("channels").at(0).at("range_whole_record"), 23.45, 0.02);
+  EXPECT_NEAR(etve.at("channels").at(1).at("range_whole_record"), 4.92, 0.02);
+  EXPECT_TRUE(etve.at("channels").at(0).at("range_running_period").is_null());
+  const auto spindle = iso230_3("workshop_day", "spindle");
+  EXPECT_EQ(spindle.at("test"), "rotating_spindle");
+  EXPECT_NEAR(spindle.at("channels").at(0).at("range_first_60_min"), 28.53, 0.02);
+  EXPECT_NEAR(spindle.at("channels").at(0).at("range_running_period"), 47.62, 0.02);
+}
+
+TEST(BallScrew, IsTestedAsIso230_3TestsMovingAxes) {
+  const auto axis = iso230_3("ball_screw", "iso_230_3");
+  EXPECT_EQ(axis.at("test"), "linear_axes");
+  EXPECT_EQ(axis.at("axes"), "x");
+  EXPECT_EQ(axis.at("axis_running_period_min"), 240.0);
+  EXPECT_EQ(axis.at("channels").at(0).at("name"), "x_0") << "position_x and stroke_x are no errors";
+  EXPECT_NEAR(axis.at("channels").at(0).at("range_first_60_min"), 10.9, 0.1);
+  EXPECT_NEAR(axis.at("channels").at(2).at("range_first_60_min"), 131.3, 0.2);
+  EXPECT_NEAR(axis.at("channels").at(2).at("range_running_period"), 147.4, 0.2);
 }
 
 TEST(CFrame, FromADrawingToFieldsWithStresses) {

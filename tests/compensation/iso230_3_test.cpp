@@ -81,13 +81,53 @@ TEST(Iso230Figures, TakeTheSixtiethMinuteBetweenRowsAndDoWithoutMissingReadings)
   EXPECT_NEAR(z.range_running, 8.4, 1e-12);
 }
 
+// The same of an axis that goes to and fro: errors at two places of its travel; its position in mm is no error.
+TEST(Iso230Figures, OfAMovingAxisAreThoseOfEachPlace) {
+  Record record = test_of(240, 1, 180, warming_um);
+  const std::vector<double> feed = record.channels[0].values;
+  record.channels = {{"speed", "rpm", std::vector<double>(feed.size(), 0.0)},
+                     {"feed_x", "mm_min", feed},
+                     {"position_x", "mm", std::vector<double>(feed.size(), 400.0)},
+                     {"x_0", "um", record.channels[1].values},
+                     {"x_800", "um", record.channels[2].values}};
+  const Iso230Figures f = iso230_3_figures(record);
+  ASSERT_EQ(f.not_available, "");
+  EXPECT_EQ(f.test, Iso230Test::kLinearAxis);
+  EXPECT_EQ(f.axes, "x");
+  EXPECT_DOUBLE_EQ(f.running_period_s, 180 * 60.0);
+  ASSERT_EQ(f.channels.size(), 2U);
+  EXPECT_EQ(f.channels[0].name, "x_0");
+  EXPECT_NEAR(f.channels[0].range_first_60_min, warming_um(60), 1e-12);
+  EXPECT_NEAR(f.channels[1].at_end_of_running, -2.0 * warming_um(180), 1e-12);
+  EXPECT_NEAR(f.channels[1].range_whole_record, 2.0 * warming_um(240), 1e-12);
+  record.channels[0].values.assign(feed.size(), 500.0);
+  EXPECT_EQ(iso230_3_figures(record).test, Iso230Test::kSpindle) << "a spindle that turns while axes move";
+}
+
+// A day of the ambient: +-6 um.
+TEST(Iso230Figures, OfAMachineAtRestAreTheRangeOfTheWholeRecord) {
+  const auto day_um = [](double t_min) { return 6.0 * std::sin(2.0 * M_PI * t_min / 1440.0); };
+  const Iso230Figures f = iso230_3_figures(test_of(1440, 10, 0, day_um));
+  ASSERT_EQ(f.not_available, "");
+  EXPECT_EQ(f.test, Iso230Test::kAmbient);
+  EXPECT_DOUBLE_EQ(f.running_period_s, 86400.0);
+  EXPECT_NEAR(f.channels[0].range_whole_record, 12.0, 1e-9);
+  EXPECT_NEAR(f.channels[1].range_whole_record, 24.0, 1e-9);
+  EXPECT_TRUE(std::isnan(f.channels[0].range_running));
+  EXPECT_THAT(iso230_3_figures(test_of(50, 10, 0, day_um)).not_available, HasSubstr("lasts for 50 min"));
+}
+
 TEST(Iso230Figures, SayWhatARecordLacks) {
   EXPECT_THAT(iso230_3_figures(test_of(45, 1, 45, warming_um)).not_available, HasSubstr("runs for 45 min"));
   EXPECT_THAT(iso230_3_figures(test_of(240, 1, 59, warming_um)).not_available, HasSubstr("runs for 59 min"));
-  EXPECT_THAT(iso230_3_figures(test_of(240, 1, 0, warming_um)).not_available, HasSubstr("does not turn at the start"));
+  Record later = test_of(240, 1, 240, warming_um);
+  later.channels[0].values[0] = 0.0;
+  EXPECT_THAT(iso230_3_figures(later).not_available, HasSubstr("does not turn at the start"));
+  later.channels[0] = {"feed_x", "mm_min", later.channels[0].values};
+  EXPECT_THAT(iso230_3_figures(later).not_available, HasSubstr("no axis moves at the start"));
   Record no_speed = test_of(240, 1, 240, warming_um);
   no_speed.channels.erase(no_speed.channels.begin());
-  EXPECT_THAT(iso230_3_figures(no_speed).not_available, HasSubstr("no spindle speed"));
+  EXPECT_THAT(iso230_3_figures(no_speed).not_available, HasSubstr("neither a spindle speed"));
   Record no_drift = test_of(240, 1, 240, warming_um);
   no_drift.channels.resize(1);
   EXPECT_THAT(iso230_3_figures(no_drift).not_available, HasSubstr("no displacement"));

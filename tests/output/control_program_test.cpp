@@ -163,6 +163,12 @@ class StructuredTextControl final : public Control {
   std::vector<std::string> inputs_, body_;
 };
 
+/// A program over the travel: the position is the last input.
+double at_position(StructuredTextControl& control, std::vector<double> readings, double position_mm) {
+  readings.push_back(position_mm);
+  return control.row(readings);
+}
+
 /// Synchronized actions in the order of their numbers, in each of several interpolation cycles a row.
 class SiemensControl final : public Control {
  public:
@@ -192,6 +198,13 @@ class SiemensControl final : public Control {
     }
     return sign_ * memory_["$$SA_TEMP_COMP_ABS_VALUE[Z]"];
   }
+  /// Where the axis is during the next rows.
+  void go_to(double position_mm) { memory_["$AA_IM[Z]"] = position_mm; }
+  /// What the control compensates there: K0 + tan beta (P - P0).
+  double compensated_um() {
+    return sign_ * (memory_["$$SA_TEMP_COMP_ABS_VALUE[Z]"] +
+                    memory_["$$SA_TEMP_COMP_SLOPE[Z]"] * (memory_["$AA_IM[Z]"] - memory_["$$SA_TEMP_COMP_REF_POSITION[Z]"]));
+  }
 
  private:
   struct Relation {
@@ -199,15 +212,20 @@ class SiemensControl final : public Control {
   };
   struct Action {
     std::vector<Relation> conditions;
-    std::string target, value;
+    std::vector<std::pair<std::string, std::string>> assignments;  ///< all in one cycle
   };
 
   static Action read(const std::string& text) {
-    static const std::regex whole("(WHENEVER (.*) )?DO (\\$\\$?[A-Z_]+\\[[A-Z0-9]+\\])=(.*)"),
-        two("\\((.*?)\\) AND \\((.*)\\)"), relation("(\\$[A-Z_]+\\[\\d+\\])(==|>=|<|>)(.*)");
+    static const std::regex whole("(WHENEVER (.*) )?DO (.*)"), two("\\((.*?)\\) AND \\((.*)\\)"),
+        relation("(\\$[A-Z_]+\\[[A-Z0-9]+\\])(==|>=|<|>)(.*)"),
+        assigned("(\\$\\$?[A-Z_]+\\[[A-Z0-9]+\\])=(.*?)(?= \\$\\$[A-Z_]+\\[[A-Z]\\]=|$)");
     std::smatch m, r;
     EXPECT_TRUE(std::regex_match(text, m, whole)) << text;
-    Action action{{}, m[3], m[4]};
+    Action action;
+    const std::string all = m[3];
+    for (std::sregex_iterator a(all.begin(), all.end(), assigned), end; a != end; ++a)
+      action.assignments.emplace_back((*a)[1], (*a)[2]);
+    EXPECT_FALSE(action.assignments.empty()) << text;
     const std::string condition = m[2];
     std::vector<std::string> conditions;
     if (std::regex_match(condition, r, two)) {
@@ -227,7 +245,7 @@ class SiemensControl final : public Control {
           c.sign == ">=" ? value_of(c.a, memory_) >= value_of(c.b, memory_) : compares(c.a, c.sign, c.b, memory_);
       if (!is_true) return;
     }
-    memory_[action.target] = value_of(action.value, memory_);
+    for (const auto& [target, value] : action.assignments) memory_[target] = value_of(value, memory_);
   }
 
   Memory memory_;
@@ -433,6 +451,96 @@ TEST_P(InCycle, ConstantsOfFanucHaveEightDigitsWithTheZeroBeforeThePoint) {
   expect_judged(d, p, control, false);
   d.model.intercept = 2e7;
   EXPECT_THROW((void)control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test"), InputError);
+}
+
+/// Formulas for three places: the fixture's at -100 mm, half of it at 300 mm, without one of its thermometers if they do not read
+/// alike, and twice as much at 500 mm.
+std::vector<PlacedModel> three_places(bool from_start, double period_s, bool read_alike = false) {
+  std::vector<PlacedModel> places;
+  for (const double at_mm : {-100.0, 300.0, 500.0}) {
+    DeployedModel d = undoubted(from_start, period_s);
+    const double factor = at_mm < 0.0 ? 1.0 : at_mm < 400.0 ? 0.5 : 2.0;
+    d.model.target = fmt::format("x_{:.0f}", at_mm);
+    d.model.intercept *= factor;
+    for (auto& term : d.model.terms) term.coefficient *= factor;
+    if (at_mm == 300.0 && !read_alike) {
+      std::erase_if(d.model.terms, [](const auto& t) { return t.input == "X1"; });
+      std::erase_if(d.safe.guards, [](const auto& g) { return g.input == "X1"; });
+    }
+    places.push_back({std::move(d), at_mm});
+  }
+  return places;
+}
+
+/// The judged corrections of the places in the rows of a run.
+std::vector<std::vector<double>> judged_of(const std::vector<PlacedModel>& places, const Record& record) {
+  std::vector<std::vector<double>> all;
+  for (const PlacedModel& p : places) {
+    const compensation::Repaired r = compensation::repaired(p.model.safe, record);
+    all.push_back(compensation::guarded(p.model.safe, r, p.model.model.predict(r.readings)).correction_um);
+  }
+  return all;
+}
+
+/// Straight between the places, held beyond them.
+double straight(const std::vector<PlacedModel>& places, const std::vector<std::vector<double>>& um, std::size_t row,
+                double mm) {
+  if (mm <= places[0].at_mm) return um[0][row];
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    const double share = (mm - places[k - 1].at_mm) / (places[k].at_mm - places[k - 1].at_mm);
+    if (share <= 1.0) return (1.0 - share) * um[k - 1][row] + share * um[k][row];
+  }
+  return um.back()[row];
+}
+
+// Wherever the axis is: beyond the ends, at places and between them.
+TEST_P(InCycle, OverTheTravelTheCorrectionsOfPlacesAreStraightBetweenThem) {
+  const std::vector<PlacedModel> places = three_places(GetParam(), 8.0);
+  const Record record = troubled(8.0);
+  const std::vector<std::vector<double>> um = judged_of(places, record);
+  const ControlProgram st = control_program_over_travel(places, ControlLanguage::kStructuredText, "screw", {}, "a test");
+  StructuredTextControl block(st.text);
+  EXPECT_EQ(st.error_um, 1e-9);
+  double most_um = 0.0;
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    std::vector<double> readings;
+    for (const auto& g : places.front().model.safe.guards) readings.push_back(record.at(g.input).values[i]);
+    const double mm = -250.0 + 900.0 * std::fmod(0.37 * static_cast<double>(i), 1.0);
+    ASSERT_NEAR(at_position(block, readings, mm), straight(places, um, i, mm), 1e-9) << i << " " << mm;
+    most_um = std::max(most_um, std::abs(um[2][i] - um[0][i]));
+  }
+  EXPECT_GT(most_um, 5.0);
+}
+
+// Readings that all places have are looked at once, else there were too many actions.
+TEST_P(InCycle, OverTheTravelSiemensHasTheStraightPieceInWhichTheAxisIs) {
+  const std::vector<PlacedModel> places = three_places(GetParam(), 8.0, true);
+  const Record record = troubled(8.0);
+  const std::vector<std::vector<double>> um = judged_of(places, record);
+  const bool against_dk = GetParam();
+  const ControlProgram p =
+      control_program_over_travel(places, ControlLanguage::kSiemens, "screw", {'Z', against_dk}, "a test");
+  EXPECT_THAT(p.text, HasSubstr("MD32750 = 3"));
+  SiemensControl control(p.text, 8.0, against_dk);
+  const std::vector<double> all_mm = {-200.0, -100.0, 0.0, 299.0, 300.0, 450.0, 500.0, 700.0};
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    std::vector<double> readings;
+    for (const auto& g : places.front().model.safe.guards) readings.push_back(record.at(g.input).values[i]);
+    const double mm = all_mm[i % all_mm.size()];
+    control.go_to(mm);
+    (void)control.row(readings);
+    ASSERT_NEAR(control.compensated_um(), straight(places, um, i, mm), 1e-9) << i << " " << mm;
+  }
+}
+
+TEST(ControlProgram, OverTheTravelIsRefusedWhereAControlKnowsNoPositionAndForPlacesOfTwoStudies) {
+  std::vector<PlacedModel> places = three_places(true, 60.0);
+  for (ControlLanguage language : {ControlLanguage::kHeidenhain, ControlLanguage::kFanuc})
+    EXPECT_THAT(refusal([&] { (void)control_program_over_travel(places, language, "screw", {}, "a test"); }),
+                HasSubstr("one shift for the whole travel"));
+  places[1].model.safe.period_s = 30.0;
+  EXPECT_THAT(refusal([&] { (void)control_program_over_travel(places, ControlLanguage::kSiemens, "screw", {}, "a test"); }),
+              HasSubstr("60 s and 30 s apart"));
 }
 
 TEST(ControlProgram, IsRefusedWhereTheLanguageCannotHoldTheFormula) {

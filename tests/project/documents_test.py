@@ -21,7 +21,7 @@ PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs
 # 20 parts last so long that the FP3 is reduced again.
 AT_LENGTH = ("driftwright diagnose scenarios/fp3_spindle.yaml", "driftwright validate results/identified/monday.yaml", "driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc --start",
              "driftwright place scenarios/fp3_spindle.yaml", "driftwright warmup scenarios/fp3_spindle.yaml", "driftwright predict scenarios/fp3_spindle.yaml --cyclogram chaotic --start results/warmup/",
-             "driftwright run results/mill/mill.yaml")
+             "driftwright run results/mill/mill.yaml", "driftwright validate scenarios/ball_screw.yaml", "driftwright export --model results/axis/")
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 

@@ -53,6 +53,19 @@ TEST(DefaultValidation, FitsOnAllCyclogramsButTheLastAndJudgesOnItAndOnRandomOne
   EXPECT_EQ(v.tolerance_um, 12.0);
 }
 
+// A feed axis that moves to and fro elsewhere is driven otherwise.
+TEST(DriveAlike, CyclogramsOfTheSameDriveDifferByTheirColumns) {
+  Cyclogram a = known()[0], b = a;
+  b.name = "elsewhere";
+  EXPECT_TRUE(drive_alike(a, b));
+  a.columns = {{"position_x", "mm", {{0.0}, {100.0}}}};
+  EXPECT_FALSE(drive_alike(a, b));
+  b.columns = {{"position_x", "mm", {{0.0}, {700.0}}}};
+  EXPECT_FALSE(drive_alike(a, b));
+  b.columns = a.columns;
+  EXPECT_TRUE(drive_alike(a, b));
+}
+
 TEST(DefaultValidation, OfTwoCyclogramsJudgesOnRandomOnesAloneAndRefusesOne) {
   const Validation v = default_validation({known()[0], known()[1]}, 12.0);
   EXPECT_THAT(v.train, SizeIs(2));
