@@ -46,12 +46,12 @@ class Jury {
        std::span<const Record> simulated = {});
   [[nodiscard]] const std::vector<HiddenRows>& folds() const { return folds_; }
 
-  /// Uses the penalties with the smallest error: common ones for all thermometers and for all displacements. If a scenario is
-  /// extended, each channel is the mean of its members (Judged::members) with the smallest error on kept-out rows and those
-  /// that have at most 1.5 times that error: this mean predicts new conditions better than one chosen member (docs/theory/
-  /// measured.md). Less of the scenario is a member only if it predicts hidden speeds better than all of it does; if the
-  /// records have a speed and no fold hides one, all of it is a member in any case, because nothing else knows how heat grows
-  /// with the speed.
+  /// Uses the penalties with the smallest error: common ones for all thermometers and for all displacements. If a scenario
+  /// is extended, each channel is the mean of the member (Judged::members) with the smallest error on kept-out rows and of
+  /// those with at most 1.5 times that error: in the mean this predicts new conditions better than one chosen member
+  /// (docs/theory/measured.md). Less of the scenario is a member only if it predicts hidden speeds better than all of it
+  /// does; if the records have a speed and no fold hides one, all of it is a member in any case, because nothing else knows
+  /// how heat grows with the speed.
   /// @param like  uses the members of this one
   [[nodiscard]] Judged judged(const Structure& structure, const Judged* like = nullptr) const;
   /// Errors of the unchanged scenario.
