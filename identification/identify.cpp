@@ -25,7 +25,8 @@ constexpr double kHottest = 3.0;         // rise of heated bodies over the large
 constexpr double kDefaultRise_K = 10.0;  // without a thermometer
 constexpr double kLagOfSign = 0.03;      // of a record: lag of a column before it is compared with thermometers
 constexpr std::size_t kFewestBlocks = 30;
-constexpr double kMostRows = 3000.0;  // of all records; more rows are averaged
+constexpr double kLeastChange = 1e-3;  // of a channel's deviation: an extension that changes less says nothing
+constexpr double kMostRows = 3000.0;   // of all records; more rows are averaged
 
 double top_of(std::span<const Record> records, const std::string& channel) {
   double top = 0.0;
@@ -263,8 +264,11 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     const Loss* loss = &now.loss;
     if (scenario) {
       channel.missed_more_without = missed_more(*scenario, now.loss, c);
-      channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0;
       const ChannelFit alone = problem.fit(normal, c, now.scenario[c]);
+      const double change =
+          (problem.predicted(c, channel.fit, false) - problem.predicted(c, alone, false)).cwiseAbs().maxCoeff();
+      channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0 &&
+                            change > kLeastChange * deviation(problem.measured(c));
       channel.scenario_simulated = problem.rms(all, c, alone, false);
       channel.scenario_kept_out = missed(scenario->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
       if (!channel.is_extended) {
