@@ -37,6 +37,36 @@ std::size_t Structure::n_heated() const {
   return n;
 }
 
+ChannelFit mean_fit(std::span<const ChannelFit> fits) {
+  ChannelFit mean = fits.front();
+  const auto n = static_cast<double>(fits.size());
+  for (const ChannelFit& f : fits.subspan(1)) {
+    mean.weight += f.weight;
+    mean.of_ambient += f.of_ambient;
+    mean.kept += f.kept;
+    mean.offset += f.offset;
+    mean.of_records += f.of_records;
+    if (mean.covariance.size() == 0)
+      mean.covariance = f.covariance;
+    else if (f.covariance.size() > 0)
+      mean.covariance += f.covariance;
+  }
+  mean.weight /= n;
+  mean.of_ambient /= n;
+  mean.kept /= n;
+  mean.offset /= n;
+  mean.of_records /= n;
+  mean.covariance /= n;
+  return mean;
+}
+
+Eigen::MatrixXd spread(std::span<const ChannelFit> fits) {
+  const Eigen::VectorXd mean = mean_fit(fits).weight;
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+  for (const ChannelFit& f : fits) squares += (f.weight - mean) * (f.weight - mean).transpose();
+  return squares / static_cast<double>(fits.size());
+}
+
 std::vector<NetworkBody> bodies_of(const Structure& structure, bool has_ambient, double rise_K) {
   std::vector<NetworkBody> bodies;
   for (const Pole& p : structure.poles) {
@@ -169,7 +199,15 @@ FosterProblem::Normal FosterProblem::normal(const std::vector<bool>& hidden) con
   return result;
 }
 
+std::vector<ChannelFit> FosterProblem::fits(const Normal& normal, std::size_t channel,
+                                            std::span<const Smoothness> members) const {
+  std::vector<ChannelFit> list;
+  for (const Smoothness& s : members) list.push_back(fit(normal, channel, s));
+  return list;
+}
+
 ChannelFit FosterProblem::fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const {
+  if (smoothness.is_scenario_alone) return scenario_alone(normal, channel, smoothness);
   Eigen::MatrixXd g = normal.own[normal.of[channel]];
   const auto at = static_cast<Eigen::Index>(channel);
   if (extends_scenario()) {
@@ -281,6 +319,7 @@ ChannelFit FosterProblem::fit_displacement(const Eigen::MatrixXd& g, const Eigen
 }
 
 ChannelFit FosterProblem::scenario_alone(const Normal& normal, std::size_t channel, Smoothness smoothness) const {
+  smoothness.is_scenario_alone = false;
   smoothness.thermometers = smoothness.drive = smoothness.ambient = kNothing;
   smoothness.scenario_of_thermometers = smoothness.scenario_of_displacements = smoothness.offset = kNothing;
   ChannelFit alone = fit(normal, channel, smoothness);

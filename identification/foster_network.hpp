@@ -42,6 +42,7 @@ struct Smoothness {
   double offset = 0.0;  ///< on a thermometer's constant
   /// On the initial difference of a record from the ambient, which belongs to that record alone; huge: it begins in balance.
   double start_of_thermometers = 1e-3, start_of_displacements = 1e-3;
+  bool is_scenario_alone = false;  ///< the unchanged scenario; of the penalties those of starts count
 };
 
 /// The fit of one channel. Bodies are in the order of bodies_of().
@@ -56,6 +57,12 @@ struct ChannelFit {
   /// of ridge regression as a Bayesian sees it; a thermometer's weights at 0 have none. Empty for a scenario alone.
   Eigen::MatrixXd covariance;
 };
+
+/// The mean of fits, term by term. With the same columns it predicts the mean of their predictions. The covariance is the
+/// mean, too: the fits have the same rows, so their errors do not cancel.
+[[nodiscard]] ChannelFit mean_fit(std::span<const ChannelFit> fits);
+/// Mean square distance of the weights of fits from their mean: what the choice of one among them adds to its covariance.
+[[nodiscard]] Eigen::MatrixXd spread(std::span<const ChannelFit> fits);
 
 /// A body of the network.
 struct NetworkBody {
@@ -105,8 +112,9 @@ class FosterProblem {
   [[nodiscard]] Normal normal(const std::vector<bool>& hidden) const;
 
   [[nodiscard]] ChannelFit fit(const Normal& normal, std::size_t channel, const Smoothness& smoothness) const;
-  /// The unchanged scenario, with the terms of single records.
-  [[nodiscard]] ChannelFit scenario_alone(const Normal& normal, std::size_t channel, Smoothness smoothness) const;
+  /// One fit for each of several penalties.
+  [[nodiscard]] std::vector<ChannelFit> fits(const Normal& normal, std::size_t channel,
+                                             std::span<const Smoothness> members) const;
   [[nodiscard]] bool extends_scenario() const { return n_scenario_ > 0; }
   /// The scenario's simulation of a channel, in the units of measured().
   [[nodiscard]] Eigen::VectorXd simulated(std::size_t channel) const {
@@ -142,6 +150,8 @@ class FosterProblem {
   [[nodiscard]] Eigen::Index first_of_records() const { return n_heated_ + n_ambient_ + n_direct_ + n_scenario_; }
   /// Zero point of a record's residuals: the first of them, or 0.
   [[nodiscard]] double zero_of(std::size_t record, std::size_t channel, const ChannelFit& fit, bool in_records) const;
+  /// The unchanged scenario, with the terms of single records.
+  [[nodiscard]] ChannelFit scenario_alone(const Normal& normal, std::size_t channel, Smoothness smoothness) const;
   [[nodiscard]] ChannelFit fit_thermometer(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n, bool is_rise,
                                            const Smoothness& smoothness) const;
   [[nodiscard]] ChannelFit fit_displacement(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, double n,

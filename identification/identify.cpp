@@ -25,7 +25,8 @@ constexpr double kHottest = 3.0;         // rise of heated bodies over the large
 constexpr double kDefaultRise_K = 10.0;  // without a thermometer
 constexpr double kLagOfSign = 0.03;      // of a record: lag of a column before it is compared with thermometers
 constexpr std::size_t kFewestBlocks = 30;
-constexpr double kMostRows = 3000.0;  // of all records; more rows are averaged
+constexpr double kLeastChange = 1e-3;  // of a channel's deviation: an extension that changes less says nothing
+constexpr double kMostRows = 3000.0;   // of all records; more rows are averaged
 
 double top_of(std::span<const Record> records, const std::string& channel) {
   double top = 0.0;
@@ -212,8 +213,7 @@ Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, con
     for_each_index(
         less.size(), [] { return 0; },
         [&](std::size_t b, int&) {
-          if (const auto structure = without(now.structure, has_ambient, b))
-            less[b] = jury.judged(*structure, now.smoothness);
+          if (const auto structure = without(now.structure, has_ambient, b)) less[b] = jury.judged(*structure, &now);
         });
     gains.assign(less.size(), 0.0);
     std::size_t best = less.size();
@@ -223,9 +223,7 @@ Chosen choose(const Jury& jury, std::vector<Judged> tried, bool has_ambient, con
       if (best == less.size() || less[b]->loss.mean < less[best]->loss.mean) best = b;
     }
     if (best < less.size() && less[best]->loss.mean <= now.loss.mean) {
-      const std::vector<Smoothness> kept = now.smoothness;
       now = *less[best];
-      now.smoothness = kept;
       goes_on = true;
     }
   }
@@ -261,15 +259,20 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     IdentifiedChannel channel;
     channel.name = problem.channels()[c];
     channel.unit = records[0].at(channel.name).unit;
-    channel.fit = problem.fit(normal, c, now.smoothness[c]);
+    std::vector<ChannelFit> fits = problem.fits(normal, c, now.members[c]);
+    channel.fit = mean_fit(fits);
     const Loss* loss = &now.loss;
     if (scenario) {
       channel.missed_more_without = missed_more(*scenario, now.loss, c);
-      channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0;
-      const ChannelFit alone = problem.scenario_alone(normal, c, now.smoothness[c]);
+      const ChannelFit alone = problem.fit(normal, c, now.scenario[c]);
+      const double change =
+          (problem.predicted(c, channel.fit, false) - problem.predicted(c, alone, false)).cwiseAbs().maxCoeff();
+      channel.is_extended = is_extended && surely_above(channel.missed_more_without) > 0.0 &&
+                            change > kLeastChange * deviation(problem.measured(c));
       channel.scenario_simulated = problem.rms(all, c, alone, false);
       channel.scenario_kept_out = missed(scenario->rms.col(static_cast<Eigen::Index>(c)), jury.folds());
       if (!channel.is_extended) {
+        fits = {alone};
         channel.fit = alone;
         loss = &*scenario;
       }
@@ -287,6 +290,7 @@ Identified network_of(std::span<const Record> records, const RecordRoles& roles,
     channel.square_kept_out = mean_error(std::span(squares.data(), static_cast<std::size_t>(squares.size())));
     channel.missed_simulated = problem.rms(all, c, channel.fit, false);
     channel.fit.covariance *= channel.missed_own * channel.missed_own * rows_as_one(std::span(&channel.misses, 1));
+    if (channel.fit.covariance.size() > 0) channel.fit.covariance += spread(fits);
     result.channels.push_back(std::move(channel));
   }
   return result;

@@ -76,8 +76,9 @@ struct Identified {
 [[nodiscard]] Identified identify(std::span<const Record> records, const RoleHints& hints, const Listener& listener = {});
 
 /// Learns what a scenario lacks: the share of its simulation that is kept, and additional bodies, chosen and judged in the
-/// same way. Nothing is learned without support by kept-out rows: the error of all channels together must be larger without
-/// it, with 95 % confidence over the folds (Student), and so must the error of each extended channel.
+/// same way; each channel is the mean of up to three fits (Jury::judged()). Nothing is learned without support by kept-out
+/// rows: the error of all channels together must be larger without it, with 95 % confidence over the folds (Student), and so
+/// must the error of each extended channel.
 /// @param simulated  the scenario's simulation of the same rows, one record each, with all thermometers and displacements of
 ///                   the roles
 [[nodiscard]] Identified extend(std::span<const Record> records, const RecordRoles& roles, std::span<const Record> simulated,

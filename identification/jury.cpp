@@ -1,5 +1,6 @@
 #include "identification/jury.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -12,8 +13,11 @@ namespace {
 
 constexpr std::array<double, 3> kPenalties = {1e-4, 1e-3, 1e-2};
 constexpr std::array<double, 3> kPenaltiesBeside = {1.0, 1e-2, 1e-4};  // of the terms that extend a scenario
-constexpr std::array<double, 3> kScenarios = {1e6, 1e-2, 1e-4};        // kept completely; may lose
+constexpr std::array<double, 1> kAllKept = {1e6};                      // of the scenario's lost part: kept completely
+constexpr std::array<double, 2> kLessKept = {1e-2, 1e-4};              // may lose
 constexpr std::array<double, 2> kStarts = {1e6, 1e-3};                 // in balance; free
+// Of the smallest error of a member of the mean: members with larger errors are left out, as in the blend of `validate`.
+constexpr double kEnters = 1.5;
 constexpr double kFloor = 0.02;  // of a channel's deviation: smaller errors count as equal
 
 /// Records with the first row of each block, from which folds are made.
@@ -109,11 +113,12 @@ std::array<std::vector<Smoothness>, 2> alone(bool of_thermometers) {
   return lists;
 }
 
-/// The same for the extension of a scenario; of equal results the first is used, which keeps the scenario most.
-std::array<std::vector<Smoothness>, 2> beside_scenario(bool of_thermometers) {
+/// The same for the extension of a scenario, of which all is kept, or less; of equal results the first is used, which keeps
+/// the scenario most.
+std::array<std::vector<Smoothness>, 2> beside_scenario(bool of_thermometers, std::span<const double> kept) {
   std::array<std::vector<Smoothness>, 2> lists;
   for (std::size_t free : {0, 1}) {
-    for (double s : kScenarios) {
+    for (double s : kept) {
       for (double p : kPenaltiesBeside) {
         if (of_thermometers) {
           lists[free].push_back({.thermometers = p, .scenario_of_thermometers = s, .start_of_thermometers = kStarts[free]});
@@ -165,7 +170,7 @@ Jury::Jury(std::span<const Record> records, const RecordRoles& roles, double ris
       simulated_(simulated),
       folds_(hidden_rows(thinned(records, blocks), roles)) {}
 
-Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& only) const {
+Judged Jury::judged(const Structure& structure, const Judged* like) const {
   const FosterProblem problem(records_, roles_, structure, rise_K_, blocks_, simulated_);
   std::vector<FosterProblem::Normal> normals;
   std::vector<FosterProblem::Part> parts;
@@ -176,18 +181,18 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
   }
   for (std::size_t c = 0; c < problem.channels().size(); ++c) floor.push_back(kFloor * deviation(problem.measured(c)));
   const std::size_t n_t = problem.n_thermometers(), n_c = problem.channels().size();
-  Judged result{
-      .structure = structure, .smoothness = std::vector<Smoothness>(n_c), .loss = {}, .n_bodies = problem.bodies().size()};
+  Judged result{.structure = structure, .members = {}, .scenario = {}, .loss = {}, .n_bodies = problem.bodies().size()};
+  result.members.resize(n_c);
   result.loss.log_rms.setConstant(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(n_c),
                                   std::numeric_limits<double>::quiet_NaN());
   result.loss.rms = result.loss.log_rms;
   struct Tried {
-    Smoothness smoothness;
+    std::vector<Smoothness> members;
     Eigen::MatrixXd log_rms, rms;
     Loss loss, simulated;  ///< with the terms of single records, and as the written scenario is simulated
   };
-  const auto tried = [&](std::size_t from, std::size_t to, const Smoothness& s) {
-    Tried t{.smoothness = s,
+  const auto tried = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& members) {
+    Tried t{.members = members,
             .log_rms = Eigen::MatrixXd(static_cast<Eigen::Index>(folds_.size()), static_cast<Eigen::Index>(to - from)),
             .rms = {},
             .loss = {},
@@ -197,7 +202,7 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
     for (std::size_t f = 0; f < folds_.size(); ++f) {
       for (std::size_t c = from; c < to; ++c) {
         const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c - from);
-        const ChannelFit fit = problem.fit(normals[f], c, s);
+        const ChannelFit fit = mean_fit(problem.fits(normals[f], c, members));
         t.rms(row, column) = problem.rms(parts[f], c, fit);
         t.log_rms(row, column) = std::log(std::hypot(t.rms(row, column), floor[c]));
         if (!problem.extends_scenario())
@@ -214,58 +219,57 @@ Judged Jury::judged(const Structure& structure, const std::vector<Smoothness>& o
     return t;
   };
   const auto best_of = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& list) {
-    Tried best = tried(from, to, list.front());
+    Tried best = tried(from, to, {list.front()});
     for (const Smoothness& s : std::span(list).subspan(1)) {
-      if (Tried t = tried(from, to, s); t.loss.mean < best.loss.mean) best = std::move(t);
+      if (Tried t = tried(from, to, {s}); t.loss.mean < best.loss.mean) best = std::move(t);
     }
     return best;
-  };
-  // A scenario knows how heat grows with the speed; folds show that something else knows it better only if they hide
-  // speeds. Less of it is kept only if it predicts hidden speeds, too, better than all of it. Of other drives scenario and
-  // extension are alike in proportion, and all folds count.
-  std::vector<bool> hides_speed;
-  for (const HiddenRows& f : folds_) hides_speed.push_back(f.kind == "speed");
-  const auto of_speeds = [&](const Tried& t) {
-    double sum = 0.0, n = 0.0;
-    for (std::size_t f = 0; f < folds_.size(); ++f) {
-      if (!hides_speed[f] || !std::isfinite(t.loss.of_fold[static_cast<Eigen::Index>(f)])) continue;
-      sum += t.loss.of_fold[static_cast<Eigen::Index>(f)];
-      n += 1.0;
-    }
-    return n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
-  };
-  const auto best_beside = [&](std::size_t from, std::size_t to, const std::vector<Smoothness>& list) {
-    std::vector<Smoothness> whole, less;
-    for (const Smoothness& s : list)
-      ((from < n_t ? s.scenario_of_thermometers : s.scenario_of_displacements) >= kScenarios[0] ? whole : less).push_back(s);
-    if (whole.empty() || less.empty()) return best_of(from, to, list);
-    Tried all_kept = best_of(from, to, whole), less_kept = best_of(from, to, less);
-    const bool is_borne_out =
-        less_kept.loss.mean < all_kept.loss.mean && (roles_.speed.empty() || of_speeds(less_kept) < of_speeds(all_kept));
-    return is_borne_out ? less_kept : all_kept;
   };
   // For a network alone, records begin in balance, unless the written scenario, which knows no other start, is better by
   // more than a standard error with free starts. For an extension they do so unless kept-out rows are better with free
   // starts: a heat must not explain a machine that was warm.
-  const auto try_all = [&](std::size_t from, std::size_t to, const std::array<std::vector<Smoothness>, 2>& lists) {
-    Tried best = best_beside(from, to, lists[0]);
-    if (!lists[1].empty()) {
-      Tried free = best_beside(from, to, lists[1]);
-      const bool is_extension = problem.extends_scenario();
-      if (!is_as_good(is_extension ? best.loss : best.simulated, is_extension ? free.loss : free.simulated))
-        best = std::move(free);
-    }
-    for (std::size_t c = from; c < to; ++c) result.smoothness[c] = best.smoothness;
+  const auto best_start = [&](std::size_t from, std::size_t to, const std::array<std::vector<Smoothness>, 2>& lists) {
+    Tried best = best_of(from, to, lists[0]), free = best_of(from, to, lists[1]);
+    const bool is_extension = problem.extends_scenario();
+    return is_as_good(is_extension ? best.loss : best.simulated, is_extension ? free.loss : free.simulated) ? best : free;
+  };
+  const auto use = [&](std::size_t from, std::size_t to, const Tried& best) {
+    for (std::size_t c = from; c < to; ++c) result.members[c] = best.members;
     result.loss.log_rms.middleCols(static_cast<Eigen::Index>(from), best.rms.cols()) = best.log_rms;
     result.loss.rms.middleCols(static_cast<Eigen::Index>(from), best.rms.cols()) = best.rms;
   };
-  if (!only.empty()) {
-    for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, {{{only[c]}, {}}});
+  if (like) {
+    result.scenario = like->scenario;
+    for (std::size_t c = 0; c < n_c; ++c) use(c, c + 1, tried(c, c + 1, like->members[c]));
   } else if (problem.extends_scenario()) {  // each channel lacks different terms
-    for (std::size_t c = 0; c < n_c; ++c) try_all(c, c + 1, beside_scenario(c < n_t));
+    const bool hides_speeds =
+        std::any_of(folds_.begin(), folds_.end(), [](const HiddenRows& f) { return f.kind == "speed"; });
+    const auto at_speeds = [&](const Tried& t) {
+      std::vector<double> errors;
+      for (std::size_t f = 0; f < folds_.size(); ++f) {
+        if (folds_[f].kind == "speed") errors.push_back(t.loss.of_fold[static_cast<Eigen::Index>(f)]);
+      }
+      return mean_error(errors).mean;
+    };
+    for (std::size_t c = 0; c < n_c; ++c) {
+      Smoothness still{.start_of_thermometers = kStarts[0], .start_of_displacements = kStarts[0], .is_scenario_alone = true},
+          free{.start_of_thermometers = kStarts[1], .start_of_displacements = kStarts[1], .is_scenario_alone = true};
+      const Tried as_it_is = best_start(c, c + 1, {{{still}, {free}}});
+      const Tried all = best_start(c, c + 1, beside_scenario(c < n_t, kAllKept));
+      const Tried less = best_start(c, c + 1, beside_scenario(c < n_t, kLessKept));
+      result.scenario.push_back(as_it_is.members.front());
+      const bool may_lose = !hides_speeds || at_speeds(less) < at_speeds(all);
+      const double most =
+          std::log(kEnters) + std::min({as_it_is.loss.mean, all.loss.mean, may_lose ? less.loss.mean : all.loss.mean});
+      std::vector<Smoothness> members;
+      if (as_it_is.loss.mean <= most) members.push_back(as_it_is.members.front());
+      if (all.loss.mean <= most || (!roles_.speed.empty() && !hides_speeds)) members.push_back(all.members.front());
+      if (may_lose && less.loss.mean <= most) members.push_back(less.members.front());
+      use(c, c + 1, tried(c, c + 1, members));
+    }
   } else {
-    if (n_t > 0) try_all(0, n_t, alone(true));
-    if (n_c > n_t) try_all(n_t, n_c, alone(false));
+    if (n_t > 0) use(0, n_t, best_start(0, n_t, alone(true)));
+    if (n_c > n_t) use(n_t, n_c, best_start(n_t, n_c, alone(false)));
   }
   weigh(result.loss, n_t, folds_);
   return result;
@@ -282,7 +286,7 @@ Loss Jury::of_scenario(const Judged& extension) const {
     const FosterProblem::Normal normal = problem.normal(folds_[f].hidden);
     const FosterProblem::Part part = problem.part(folds_[f].hidden);
     for (std::size_t c = 0; c < n_c; ++c) {
-      const double rms = problem.rms(part, c, problem.scenario_alone(normal, c, extension.smoothness[c]));
+      const double rms = problem.rms(part, c, problem.fit(normal, c, extension.scenario[c]));
       const auto row = static_cast<Eigen::Index>(f), column = static_cast<Eigen::Index>(c);
       loss.rms(row, column) = rms;
       loss.log_rms(row, column) = std::log(std::hypot(rms, kFloor * deviation(problem.measured(c))));

@@ -25,7 +25,10 @@ struct Loss {
 /// A structure with its errors.
 struct Judged {
   Structure structure;
-  std::vector<Smoothness> smoothness;  ///< of each channel
+  /// Of each channel: the fits whose mean predicts it. Of an extended scenario up to three: the scenario as it is, all of it
+  /// with what is learned beside it, less of it with what is learned.
+  std::vector<std::vector<Smoothness>> members;
+  std::vector<Smoothness> scenario;  ///< of each channel of an extended scenario: the scenario as it is
   Loss loss;
   std::size_t n_bodies = 0;
   bool has_default_exponent = true;
@@ -43,11 +46,15 @@ class Jury {
        std::span<const Record> simulated = {});
   [[nodiscard]] const std::vector<HiddenRows>& folds() const { return folds_; }
 
-  /// Uses the penalties with the smallest error: common ones for all thermometers and for all displacements; if a scenario
-  /// is extended, separate ones per channel.
-  /// @param only  one per channel: uses these penalties
-  [[nodiscard]] Judged judged(const Structure& structure, const std::vector<Smoothness>& only = {}) const;
-  /// Errors of the unchanged scenario, with the same initial states of records as in that extension.
+  /// Uses the penalties with the smallest error: common ones for all thermometers and for all displacements. If a scenario
+  /// is extended, each channel is the mean of the member (Judged::members) with the smallest error on kept-out rows and of
+  /// those with at most 1.5 times that error: in the mean this predicts new conditions better than one chosen member
+  /// (docs/theory/measured.md). Less of the scenario is a member only if it predicts hidden speeds better than all of it
+  /// does; if the records have a speed and no fold hides one, all of it is a member in any case, because nothing else knows
+  /// how heat grows with the speed.
+  /// @param like  uses the members of this one
+  [[nodiscard]] Judged judged(const Structure& structure, const Judged* like = nullptr) const;
+  /// Errors of the unchanged scenario.
   [[nodiscard]] Loss of_scenario(const Judged& extension) const;
 
  private:

@@ -306,10 +306,15 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
       if (law != ambient) e.set("error", rounded(sum_error(c, extension, law)));
       list.push_back(std::move(e));
     }
-    if (list.size() == before) list.push_back(make());
+    const double keeps = std::clamp(rounded(c.fit.kept), 0.0, 1.0);
+    const bool has_offset = is_sensor && std::abs(c.fit.offset) > 0.0;
+    if (list.size() == before) {
+      if (keeps == 1.0 && !has_offset) continue;  // what is left is too small to be written
+      list.push_back(make());
+    }
     effects::Effect& leading = list[before];
-    leading.set("keeps", std::clamp(rounded(c.fit.kept), 0.0, 1.0));
-    if (is_sensor && std::abs(c.fit.offset) > 0.0) leading.set("offset", rounded(c.fit.offset));
+    leading.set("keeps", keeps);
+    if (has_offset) leading.set("offset", rounded(c.fit.offset));
     if (const double sd = remaining_sd(c); sd > 0.0) leading.set("misses", std::stod(fmt::format("{:.3g}", sd)));
   }
   return list;

@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "base/random.hpp"
 #include "identification/identify.hpp"
+#include "identification/jury.hpp"
 #include "identification/network_scenario.hpp"
 #include "identification/non_negative.hpp"
 #include "tests/shared/refused.hpp"
@@ -306,6 +307,16 @@ std::vector<Record> without_noise() {
           measured("three.csv", {{100, 2500}, {100, 500}, {100, 0}, {100, 1750}, {100, 0}}, 3, 0.0)};
 }
 
+/// What a scenario says that has nothing to do with the machine.
+std::vector<Record> of_another_machine(const std::vector<Record>& records) {
+  return simulated(records, [](Record& r) {
+    for (std::size_t i = 0; i < r.n_samples(); ++i) {
+      for (std::size_t c : {2, 3}) r.channels[c].values[i] = 20.0 + 8.0 * std::sin(static_cast<double>(i) / 37.0);
+      r.channels[4].values[i] = 40.0 * std::sin(static_cast<double>(i) / 53.0);
+    }
+  });
+}
+
 TEST(ExtendedMachine, LearnsNothingWhereTheScenarioIsRight) {
   const Identified e = extend(three_days(), roles_of_machine(), without_noise());
   for (const IdentifiedChannel& c : e.channels) {
@@ -365,32 +376,65 @@ TEST(ExtendedMachine, LearnsTheHeatThatTheScenarioLacks) {
   }
 }
 
-// At one speed nothing shows how what is learned goes with the speed; the scenario knows it, however wrong it is.
-TEST(ExtendedMachine, KeepsTheScenarioWhereNoSpeedCanBeHidden) {
+// At one speed nothing shows how what is learned goes with the speed; the scenario knows it, however wrong it is. So one of
+// the two fits whose mean is taken keeps all of it.
+TEST(ExtendedMachine, KeepsHalfOfTheScenarioWhereNoSpeedCanBeHidden) {
   const std::vector<Record> records = {
       measured("one.csv", {{60, 0}, {120, 2000}, {60, 0}, {120, 2000}, {90, 0}, {120, 2000}}, 1, 0.03),
       measured("two.csv", {{30, 2000}, {90, 0}, {200, 2000}, {60, 0}, {60, 2000}}, 2, 0.03)};
-  const auto other = simulated(records, [](Record& r) {
-    for (std::size_t i = 0; i < r.n_samples(); ++i) {
-      for (std::size_t c : {2, 3}) r.channels[c].values[i] = 20.0 + 8.0 * std::sin(static_cast<double>(i) / 37.0);
-      r.channels[4].values[i] = 40.0 * std::sin(static_cast<double>(i) / 53.0);
+  const Identified e = extend(records, roles_of_machine(), of_another_machine(records));
+  for (const IdentifiedChannel& c : e.channels) EXPECT_GT(c.fit.kept, 0.499) << c.name;
+}
+
+// Two fits: 1 and 3 of one body, 3 and 1 of the other. Their mean is 2 and 2; one of them differs from it by 1 and -1.
+TEST(MeanFit, IsTheMeanOfEachTerm) {
+  ChannelFit one, other;
+  one.weight = Eigen::Vector2d(1.0, 3.0);
+  other.weight = Eigen::Vector2d(3.0, 1.0);
+  one.covariance = 0.5 * Eigen::Matrix2d::Identity();
+  one.kept = 1.0;
+  other.offset = 4.0;
+  one.of_records = other.of_records = Eigen::VectorXd::Constant(1, 7.0);
+  const ChannelFit mean = mean_fit(std::vector{one, other});
+  EXPECT_THAT(mean.weight, ElementsAre(2.0, 2.0));
+  EXPECT_EQ(mean.kept, 0.5);
+  EXPECT_EQ(mean.offset, 2.0);
+  EXPECT_EQ(mean.of_records[0], 7.0);
+  EXPECT_TRUE(mean.covariance.isApprox(0.25 * Eigen::Matrix2d::Identity())) << "a fit without a covariance is certain";
+  const Eigen::Matrix2d apart{{1.0, -1.0}, {-1.0, 1.0}};
+  EXPECT_TRUE(spread(std::vector{one, other}).isApprox(apart));
+  EXPECT_TRUE(spread(std::vector{one, one, one}).isZero());
+  EXPECT_THAT(mean_fit(std::vector{other, other}).weight, ElementsAre(3.0, 1.0));
+}
+
+// Fits whose errors are alike are averaged; one that errs by more than 1.5 times the best is left out.
+TEST(Members, AreTheFitsThatErrLittleMoreThanTheBest) {
+  const std::vector<Record> records = three_days();
+  const RecordRoles roles = roles_of_machine();
+  const std::vector<std::size_t> blocks(3, 1);
+  const Law turning{.kind = Law::Kind::kTurning, .channel = "speed", .top = 3000.0},
+      power{.kind = Law::Kind::kPower, .channel = "speed", .exponent = 5.0 / 3.0, .top = 3000.0};
+  const Structure structure{.laws = {turning, power}, .poles = {{2400.0, {0, 1}}, {7200.0, {0, 1}}}};
+  const auto is_alone = [](const Smoothness& s) { return s.is_scenario_alone; };
+  const std::vector<Record> right = without_noise(), other = of_another_machine(records);
+  for (bool is_right : {true, false}) {
+    const Jury jury(records, roles, 40.0, blocks, is_right ? right : other);
+    const Judged judged = jury.judged(structure);
+    ASSERT_EQ(judged.members.size(), 3u);
+    for (const auto& members : judged.members) {
+      EXPECT_EQ(std::count_if(members.begin(), members.end(), is_alone), is_right ? 1 : 0);
+      EXPECT_GE(members.size(), is_right ? 2u : 1u);
     }
-  });
-  const Identified e = extend(records, roles_of_machine(), other);
-  for (const IdentifiedChannel& c : e.channels) EXPECT_NEAR(c.fit.kept, 1.0, 1e-3) << c.name;
+    EXPECT_NEAR(jury.judged(structure, &judged).loss.mean, judged.loss.mean, 1e-12);
+    EXPECT_EQ(jury.of_scenario(judged).mean > judged.loss.mean + std::log(1.5), !is_right);
+  }
 }
 
 // A scenario of another machine is of no use: what is kept of it falls, and the network beside it predicts as if there
 // were none.
 TEST(ExtendedMachine, KeepsLittleOfAScenarioOfAnotherMachine) {
-  const auto other = simulated(three_days(), [](Record& r) {
-    for (std::size_t i = 0; i < r.n_samples(); ++i) {
-      for (std::size_t c : {2, 3}) r.channels[c].values[i] = 20.0 + 8.0 * std::sin(static_cast<double>(i) / 37.0);
-      r.channels[4].values[i] = 40.0 * std::sin(static_cast<double>(i) / 53.0);
-    }
-  });
   const std::vector<Record> records = three_days();
-  const Identified e = extend(records, roles_of_machine(), other);
+  const Identified e = extend(records, roles_of_machine(), of_another_machine(records));
   const Identified alone = identify(records, {.ambient = "hall", .drives = {}});
   for (std::size_t c = 0; c < e.channels.size(); ++c) {
     EXPECT_TRUE(e.channels[c].is_extended);

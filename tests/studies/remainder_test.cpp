@@ -78,6 +78,20 @@ TEST(RemainingSd, IsWhatFoldsMissWithoutTheNoise) {
   EXPECT_EQ(remaining_sd(channel), 0.0) << "no more than the noise";
 }
 
+// An entry that keeps all and adds nothing could not be read back.
+TEST(LearnedEffects, SayNothingOfAChannelThatKeepsAllAndAddsNothing) {
+  identification::Identified extension;
+  identification::IdentifiedChannel& c = extension.channels.emplace_back();
+  c.name = "nose";
+  c.unit = "um";
+  c.is_extended = true;
+  c.fit.kept = 1.0 - 1e-8;
+  EXPECT_TRUE(learned_effects(extension).empty());
+  c.fit.kept = 0.9;
+  ASSERT_EQ(learned_effects(extension).size(), 1u);
+  EXPECT_EQ(learned_effects(extension).front()["keeps"], 0.9);
+}
+
 // Beside what a diagnosis wrote, here the scenario as it was.
 TEST(LearnBeside, IsTheRemainderOfADiagnosis) {
   const std::string scenario = write_file("half.yaml", fixtures::replaced(kBody, "power: 100 W", "power: 50 W"));
