@@ -367,15 +367,15 @@ TEST(ExtendedScenario, KeepsCommentsAndSaysWhatItChanged) {
 TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
   const Twin twin(spindle().augmented, spindle().machine, kTight);
   const auto called = [&](const Change& change) { return own_effects(twin.as_written(), change); };
-  EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 15");
+  EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 14");
   EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}"})),
             "bearing_friction at shaft, line 11");
   EXPECT_EQ(called(added({"{type: changed_law, law: link housing - ambient, factor: 1.7}"})),
-            "link at housing,ambient, line 15");
+            "link at housing,ambient, line 14");
   EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}",
                           "{type: changed_law, law: motor_loss housing, factor: 1.6}"})),
             "bearing_friction at shaft, line 11 and motor_loss at housing, line 12");
-  EXPECT_EQ(called(added({"{type: heat_capacity, node: housing, factor: 1.5}"})), "node at housing, line 9");
+  EXPECT_EQ(called(added({"{type: heat_capacity, node: housing, factor: 1.5}"})), "node at housing, line 8");
   EXPECT_EQ(called(added({"{type: heat_source, node: shaft, power: 40 W}"})), "");
   EXPECT_EQ(called(added({"{type: expansion, node: shaft, factor: 1.4, displacement: nose}"})), "");
 }
