@@ -238,6 +238,7 @@ const std::vector<Case> kCases = {
     {"a_film_that_grows", true,
      added({"{type: forced_convection, surface: outside, growth: 20 W/(m^2 K), at_speed: 800 rpm, exponent: 0.8}"})},
     {"another_capacity", false, added({"{type: heat_capacity, node: housing, factor: 1.5}"})},
+    {"a_capacity_of_another_number", false, [](TwinState& t) { t[1].set("capacity", 3e4); }},
     {"another_sensitivity", false, added({"{type: expansion, node: shaft, factor: 1.4, displacement: nose}"})},
     {"another_conductivity", true, added({"{type: conductivity, region: column, factor: 0.6}"})},
     {"another_heat_capacity", true, added({"{type: heat_capacity, region: head, factor: 1.5}"})},
@@ -383,6 +384,13 @@ TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
 TEST(ExtendedScenario, KeepsTheUnitOfTheFileAndWritesTemperaturesWhole) {
   const ExtendedScenario e = extend(spindle(), [](TwinState& t) { t[0].values[0] *= 1.5; });  // 5 kJ/K, held in J/K
   EXPECT_THAT(e.text, HasSubstr("capacity: 7.5 kJ/K"));
+}
+
+TEST(ExtendedScenario, WritesAFactorOnTheCapacityOfANodeAsItsCapacity) {
+  const ExtendedScenario e = extend(spindle(), added({"{type: heat_capacity, node: housing, factor: 1.53}"}));
+  EXPECT_THAT(e.text,
+              AllOf(HasSubstr("    capacity: 30.6 kJ/K   # cast iron   # diagnosis: capacity was 20 kJ/K; because\n"),
+                    ::testing::Not(HasSubstr("heat_capacity"))));
 }
 
 TEST(ExtendedScenario, AppendsBehindTheLastEffectAndBeforeWhatFollows) {
