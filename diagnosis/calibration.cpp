@@ -14,7 +14,6 @@
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/output_error.hpp"
-#include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
 
@@ -153,15 +152,8 @@ std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd
 Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                     const DiagnosisOptions& options, const Listener& listener) {
   Diagnosis d;
-  d.data = data_findings(runs);
-  d.scatter = scatter(twin);
-  for (Knob& k : ambient_scatter(runs)) d.scatter.push_back(std::move(k));
-  listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
-  const Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
-                     listener);
+  const Fitter fresh = begun(d, twin, coarse, runs, options, listener);
   Twin::Workspace workspace(twin);
-  d.as_written = fresh.predict({}, Eigen::VectorXd::Zero(fresh.n_nuisance()), workspace);
-
   listener.begin("fitting");
   d.noise = estimate_noise(runs, d.as_written, options.floor);
   Attempt chosen = fitted_by(fresh, runs, d.noise);
@@ -191,7 +183,6 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
 
   const auto working = working_noise(own, d.noise);
   if (d.weighed_by_model_error) chosen = without_discrepancy(fresh, runs, chosen, working);
-  d.scatter_alone = chosen.fitted.fit.prediction;
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.calibrated = fitted_numbers(*chosen.fitter, chosen.fitted.fit.x, chosen.fitted.fit.covariance, known_to);

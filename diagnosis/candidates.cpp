@@ -95,8 +95,7 @@ constexpr double kSameTime_s = 60.0;
 
 /// Stops that a record does not contain are searched at some times of it; if a window was found, also at its time with
 /// its length.
-void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
-              std::vector<std::pair<std::size_t, std::size_t>>& added) {
+void add_stop(std::vector<Candidate>& list, const Event::Window& seen) {
   for (Candidate& c : list) {
     if (c.effect != "missing_stop") continue;
     const auto of_run =
@@ -109,17 +108,13 @@ void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
     const auto is_known = [&](const Variant& v) {  // found in another body already
       return v.in == stop.in && v.grid.size() == 1 && std::abs(v.grid[0][0] - stop.grid[0][0]) < kSameTime_s;
     };
-    if (std::any_of(c.variants.begin(), c.variants.end(), is_known)) continue;
-    c.variants.push_back(std::move(stop));
-    added.emplace_back(&c - list.data(), c.variants.size() - 1);
+    if (std::none_of(c.variants.begin(), c.variants.end(), is_known)) c.variants.push_back(std::move(stop));
   }
 }
 
 }  // namespace
 
-std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
-                                                            const std::set<std::string>& without) {
-  std::vector<std::pair<std::size_t, std::size_t>> added;
+void add_events(std::vector<Candidate>& list, const std::vector<Event>& events, const std::set<std::string>& without) {
   for (const Event& e : events) {
     if (without.contains(e.doubt.finding)) continue;
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
@@ -127,12 +122,9 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     v.happens = true;
     v.seen = true;
     v.in = e.doubt.added.front().in;
-    Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
-    of.variants.push_back(std::move(v));
-    added.emplace_back(&of - list.data(), of.variants.size() - 1);
-    if (e.once) add_stop(list, *e.once, added);
+    candidate(list, e.doubt.finding, e.doubt.where).variants.push_back(std::move(v));
+    if (e.once) add_stop(list, *e.once);
   }
-  return added;
 }
 
 double law_price(const Candidate& candidate) {

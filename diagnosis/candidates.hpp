@@ -48,9 +48,7 @@ struct Candidate {
 
 /// Adds windows that were found as further laws of temporary heat or exchange, and stops of the spindle at the same
 /// times.
-/// @returns candidate and law of each
-std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
-                                                            const std::set<std::string>& without);
+void add_events(std::vector<Candidate>& list, const std::vector<Event>& events, const std::set<std::string>& without);
 
 /// The candidates that the readings can show. One that exists or begins only in a run without readings looks, in the
 /// other runs, like one that is always there.

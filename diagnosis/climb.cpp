@@ -265,10 +265,7 @@ void Fitter::Climb::go_along(const Eigen::VectorXd& step) {
 }
 
 void Fitter::Climb::move_times() {
-  double row_s = 60.0;
-  for (const MeasuredRun& run : fitter_.runs_) {
-    row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
-  }
+  const double row_s = std::min(60.0, shortest_row_s(fitter_.runs_));
   TwinState here = fitter_.state(hypothesis_, f_.x);
   for (Eigen::Index k = 0; k < n_k_; ++k) {
     const Knob& knob = *knobs_[static_cast<std::size_t>(k)];

@@ -96,11 +96,7 @@ void Comparison::condense(std::size_t first_block, std::size_t n_blocks, const E
   const Eigen::Index at = blocks_[first_block].first, to = condensed_[first_block].first;
   for (std::size_t b = first_block; b < first_block + n_blocks; ++b) {
     const Condensed& c = condensed_[b];
-    for (Eigen::Index k = 0; k < c.n; ++k) {
-      const Eigen::Index from = k * c.together, n = std::min(c.together, blocks_[b].n - from);
-      few.row(c.first - to + k) =
-          whitened.middleRows(blocks_[b].first - at + from, n).colwise().sum() / std::sqrt(static_cast<double>(n));
-    }
+    gather(whitened.middleRows(blocks_[b].first - at, blocks_[b].n), c.together, few.middleRows(c.first - to, c.n));
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // Compares model and measurement in units of noise: all channels of all runs, whitened, one after the other.
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "diagnosis/measured_run.hpp"
@@ -15,6 +17,17 @@ using Prediction = std::vector<Eigen::MatrixXd>;
 /// readings of all channels then have the covariance of their noise plus R R'. For each run (n_channels n_times) x
 /// n_pieces, channel after channel; no columns: no shared noise.
 using SharedNoise = std::vector<Eigen::MatrixXd>;
+
+/// Sums `together` neighbouring rows and divides by the root of their number. @returns  how many rows that are
+template <class In, class Out>
+Eigen::Index gather(const In& rows, Eigen::Index together, Out&& few) {
+  Eigen::Index k = 0;
+  for (Eigen::Index from = 0; from < rows.rows(); from += together, ++k) {
+    const Eigen::Index n = std::min(together, rows.rows() - from);
+    few.row(k) = rows.middleRows(from, n).colwise().sum() / std::sqrt(static_cast<double>(n));
+  }
+  return k;
+}
 
 class Comparison {
  public:

@@ -15,7 +15,6 @@
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/own_effects.hpp"
-#include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
 
@@ -328,17 +327,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (!waiting.wants_end()) stage = work;
     waiting.begin(work);
   };
-  d.data = data_findings(runs);
   const Eigen::Index n_readings = readings_of(runs);
   const std::vector<Candidate> standing = candidates(twin, runs, options.without);
-
-  d.scatter = scatter(twin);
-  for (Knob& k : ambient_scatter(runs)) d.scatter.push_back(std::move(k));
-  listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
-  const Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
-                     listener);
+  const Fitter fresh = begun(d, twin, coarse, runs, options, listener);
   Twin::Workspace workspace(twin);
-  d.as_written = fresh.predict({}, Eigen::VectorXd::Zero(fresh.n_nuisance()), workspace);
   const InquiryGround ground{.twin = twin,
                              .coarse = coarse,
                              .options = options,
@@ -363,7 +355,6 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (!d.unexplained) d.unexplained = nameless;
     d.unexplained->statement = nameless->statement;
   }
-  d.scatter_alone = d.search.without.prediction;
   add_causes_found(d, fitter, listener);
   listener.begin("measuring the gain");
   SearchAgain search_again;

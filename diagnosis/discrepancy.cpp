@@ -1,7 +1,6 @@
 #include "diagnosis/discrepancy.hpp"
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "effects/reading_chain.hpp"
@@ -15,12 +14,9 @@ constexpr double kRowsOfShortest = 3.0, kShortest = 0.003, kLongest = 1.0 / 3.0;
 constexpr double kExponent = 5.0 / 3.0;
 
 std::vector<double> poles_s(const std::vector<MeasuredRun>& runs) {
-  double row_s = std::numeric_limits<double>::max(), longest_s = 0.0;
-  for (const MeasuredRun& r : runs) {
-    row_s = std::min(row_s, r.time_s.back() / static_cast<double>(r.time_s.size() - 1));
-    longest_s = std::max(longest_s, r.time_s.back());
-  }
-  const double from = std::log(std::max(kRowsOfShortest * row_s, kShortest * longest_s)),
+  double longest_s = 0.0;
+  for (const MeasuredRun& r : runs) longest_s = std::max(longest_s, r.time_s.back());
+  const double from = std::log(std::max(kRowsOfShortest * shortest_row_s(runs), kShortest * longest_s)),
                to = std::log(kLongest * longest_s);
   std::vector<double> tau_s;
   for (int k = 0; k < kPoles; ++k) tau_s.push_back(std::exp(from + (k + 0.5) / kPoles * (to - from)));

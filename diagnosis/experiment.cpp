@@ -11,6 +11,7 @@
 
 #include "diagnosis/experiment_check.hpp"
 #include "diagnosis/experiment_family.hpp"
+#include "diagnosis/foresight.hpp"
 #include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
@@ -246,16 +247,7 @@ double mean_ambient(const std::vector<MeasuredRun>& runs) {
 
 MeasuredRun run_of(const std::vector<MeasuredRun>& runs, const Cyclogram& cyclogram,
                    const std::vector<MeasuredChannel>& channels) {
-  MeasuredRun run;
-  run.name = cyclogram.name;
-  run.cyclogram = cyclogram;
-  run.ambient = {{0.0}, {mean_ambient(runs)}};
-  run.has_ambient = runs.front().has_ambient;
-  for (double t_s = 0.0; t_s <= cyclogram.duration_s() + 1e-6; t_s += kRows_s) run.time_s.push_back(t_s);
-  set_grid(run);
-  run.channels = channels;
-  for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
-  return run;
+  return planned_run(cyclogram, kRows_s, {{0.0}, {mean_ambient(runs)}}, runs.front().has_ambient, channels);
 }
 
 /// The largest difference of an explanation from the first one in an output [K].

@@ -144,7 +144,21 @@ class Writer {
   [[nodiscard]] const ConfigNode& entry(std::size_t i) const { return *effects_->items[i]; }
   [[nodiscard]] bool is_in_file(std::size_t i) const { return i < effects_->items.size() && !replaced_.contains(i); }
 
+  /// A factor on the capacity of a node that the scenario has becomes the node's own capacity. @returns whether it is one
+  bool take_up(const Effect& factor) {
+    const auto node = std::find_if(list_.begin(), list_.end(), [&](const Effect& e) {
+      return e.kind->key == "node" && e.place == factor.place && e.has("capacity");
+    });
+    if (factor.kind->key != "heat_capacity" || factor.place_kind != effects::Place::kNode || node == list_.end())
+      return false;
+    Effect next = *node;
+    next.set("capacity", factor["factor"] * next["capacity"]);
+    values(static_cast<std::size_t>(node - list_.begin()), next);
+    return true;
+  }
+
   void append(Effect e) {
+    if (take_up(e)) return;
     e = rounded(std::move(e));
     if (!e.in.empty()) add_cyclogram(e.in);
     const std::string text = effects::yaml_of(e);

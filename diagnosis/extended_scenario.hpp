@@ -28,10 +28,10 @@ struct ExtendedScenario {
 [[nodiscard]] std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::VectorXd& x);
 
 /// Makes all changes in order and edits the scenario's text: numbers in place, further effects after the others, as
-/// effects::yaml_of() writes them. Numbers have six digits at most. For a change that happened in one of
-/// several runs, a cyclogram with the run's name is added if there is none, from its record and by the scenario's
-/// `columns`. If the text cannot be edited in place (an alias, an entry that shares its line), the whole entry is
-/// replaced; if that is impossible, the file is written anew without its comments.
+/// effects::yaml_of() writes them; a factor on the capacity of a node becomes the node's capacity. Numbers have seven
+/// digits at most. For a change that happened in one of several runs, a cyclogram with the run's name is added if there is
+/// none, from its record and by the scenario's `columns`. If the text cannot be edited in place (an alias, an entry that
+/// shares its line), the whole entry is replaced; if that is impossible, the file is written anew without its comments.
 /// @param runs    runs in which the changes were found
 /// @param head    comment lines for the top
 /// @param folder  where the text will be written, which its paths become relative to; empty: they become absolute

@@ -166,10 +166,6 @@ std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::
   return window;
 }
 
-double row_s(const MeasuredRun& run) {
-  return run.time_s.back() / static_cast<double>(run.time_s.size() - 1);
-}
-
 bool is_unseen(const Happening& happening) {
   if (happening.every_s > 0.0) return false;
   double all_s = 0.0, unseen_s = 0.0;

@@ -57,9 +57,6 @@ inline constexpr double kUnknownSpeed = 0.7;
 /// Share of the records' time that the windows take; for repeating windows, share of a turn.
 [[nodiscard]] double share_of_time(const Happening& happening);
 
-/// Mean time between rows [s].
-[[nodiscard]] double row_s(const MeasuredRun& run);
-
 /// @returns  nothing if there is no window, or none with an allowed size
 [[nodiscard]] std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening);
 

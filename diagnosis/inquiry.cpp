@@ -1,10 +1,14 @@
 #include "diagnosis/inquiry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "diagnosis/ambient_doubt.hpp"
+#include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/scatter.hpp"
 #include "diagnosis/signatures.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/unseen_drive.hpp"
@@ -128,6 +132,19 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
     columns.push_back(std::move(column));
   }
   return columns;
+}
+
+Fitter begun(Diagnosis& d, const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
+             const DiagnosisOptions& options, const Listener& listener) {
+  d.data = data_findings(runs);
+  d.scatter = scatter(twin);
+  for (Knob& k : ambient_scatter(runs)) d.scatter.push_back(std::move(k));
+  listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
+  Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
+               listener);
+  Twin::Workspace workspace(twin);
+  d.as_written = fresh.predict({}, Eigen::VectorXd::Zero(fresh.n_nuisance()), workspace);
+  return fresh;
 }
 
 Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {

@@ -37,6 +37,11 @@ struct Inquiry {
 [[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all,
                               const Listener& listener);
 
+/// The beginning of a diagnosis: its data, its uncertain numbers and the scenario as written. @returns  a fitter of all
+/// rows, without noise
+[[nodiscard]] Fitter begun(Diagnosis& d, const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
+                           const DiagnosisOptions& options, const Listener& listener);
+
 /// What a warm start, the unseen drive of a hole and another mesh (one column a channel) change: the amplitude of each is
 /// unknown.
 [[nodiscard]] std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,

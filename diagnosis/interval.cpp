@@ -27,9 +27,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
   const double low = knob.scale == Knob::Scale::kLinear ? knob.low - knob.nominal : -1e300,
                high = knob.scale == Knob::Scale::kLinear ? knob.high - knob.nominal : 1e300;
   const bool is_jump = knob.is_jump();
-  double row_s = 60.0;
-  for (const MeasuredRun& run : fitter.runs())
-    row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
+  const double row_s = std::min(60.0, shortest_row_s(fitter.runs()));
   const double variance = best.covariance(at, at);
   const double sd = is_jump ? row_s : std::sqrt(std::max(0.0, variance));
   if (!(sd > 0.0)) return {middle, middle};

@@ -157,18 +157,19 @@ double LinearOperator::coefficient(std::size_t e) const {
   return coefficients_.row(static_cast<Eigen::Index>(e)).mean();
 }
 
-LinearOperator::Load LinearOperator::standing() const {
+LinearOperator::Load LinearOperator::of_sources(const Eigen::MatrixXd& courses_W) const {
   Eigen::MatrixXd load = Eigen::MatrixXd::Zero(system_.size(), n_rows() - 1);
   for (std::size_t s = 0; s < system_.sources.size(); ++s)
-    load += system_.sources[s].load * standing_.row(static_cast<Eigen::Index>(s));
+    load += system_.sources[s].load * courses_W.row(static_cast<Eigen::Index>(s));
   return in_modes(load);
 }
 
+LinearOperator::Load LinearOperator::standing() const {
+  return of_sources(standing_);
+}
+
 LinearOperator::Load LinearOperator::all_heat() const {
-  Eigen::MatrixXd load = Eigen::MatrixXd::Zero(system_.size(), n_rows() - 1);
-  for (std::size_t s = 0; s < system_.sources.size(); ++s)
-    load += system_.sources[s].load * heats_.row(static_cast<Eigen::Index>(s));
-  return in_modes(load);
+  return of_sources(heats_);
 }
 
 LinearOperator::Load LinearOperator::all_loss() const {

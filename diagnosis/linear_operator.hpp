@@ -70,6 +70,8 @@ class LinearOperator {
   template <class Of>
   void run_modes(const Load& load, const Eigen::RowVectorXd& course, double before, Of of) const;
   [[nodiscard]] Load in_modes(const Eigen::MatrixXd& load) const;
+  /// Courses of all sources [W], n_sources x n_rows - 1, as one load.
+  [[nodiscard]] Load of_sources(const Eigen::MatrixXd& courses_W) const;
   [[nodiscard]] const Eigen::VectorXd* load_of(const effects::Body& body) const;
 
   const Twin& twin_;

@@ -361,6 +361,16 @@ const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
   return nullptr;
 }
 
+double row_s(const MeasuredRun& run) {
+  return run.time_s.back() / static_cast<double>(run.time_s.size() - 1);
+}
+
+double shortest_row_s(const std::vector<MeasuredRun>& runs) {
+  double shortest_s = row_s(runs.front());
+  for (const MeasuredRun& run : runs) shortest_s = std::min(shortest_s, row_s(run));
+  return shortest_s;
+}
+
 void set_grid(MeasuredRun& run) {
   constexpr int kFiner = 4, kIntervals = 6;  // subdivision of this many intervals after a change
   run.grid_s.clear();
@@ -375,11 +385,6 @@ void set_grid(MeasuredRun& run) {
     if (since >= kIntervals) continue;
     for (int k = 1; k < kFiner; ++k) run.grid_s.push_back(run.time_s[i] + k * (run.time_s[i + 1] - run.time_s[i]) / kFiner);
   }
-}
-
-MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs,
-                          const std::optional<ColumnMap>& columns) {
-  return measured_run(read_record(path, columns), model, outputs);
 }
 
 MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model, const solver::Outputs& outputs) {

@@ -56,6 +56,10 @@ struct MeasuredRun {
   [[nodiscard]] const MeasuredChannel* find(const std::string& channel) const;
 };
 
+/// Mean time between the rows of a run [s]; and the shortest of several runs.
+[[nodiscard]] double row_s(const MeasuredRun& run);
+[[nodiscard]] double shortest_row_s(const std::vector<MeasuredRun>& runs);
+
 /// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known.
 void set_grid(MeasuredRun& run);
 
@@ -67,10 +71,6 @@ void set_grid(MeasuredRun& run);
 /// to compare
 [[nodiscard]] MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model,
                                        const solver::Outputs& outputs);
-/// The same from a file. @param columns  its format, if it is no record CSV
-[[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
-                                        const solver::Outputs& outputs,
-                                        const std::optional<ColumnMap>& columns = std::nullopt);
 
 /// The temperatures, displacements and tilts of a record that the scenario has no output for and no effect asks for, as
 /// channels without an output. Neither spikes nor stuck readings are removed. @param run  as measured_run() gives it

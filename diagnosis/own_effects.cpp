@@ -4,7 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/lists.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -12,8 +13,7 @@ namespace {
 using effects::Effect;
 
 bool has_same_values(const Effect& a, const Effect& b) {
-  return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
-                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+  return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(), same_number);
 }
 
 /// Whether an added effect changes a heat, an exchange or the capacity of an effect of the scenario.
@@ -31,6 +31,11 @@ bool changes_law_of(const Effect& added, const Effect& own) {
 
 }  // namespace
 
+int line_of(const Effect& effect) {
+  const auto first = effect.reference_where.find("type");
+  return first == effect.reference_where.end() ? 0 : first->second.line;
+}
+
 std::string own_effects(const TwinState& written, const std::function<void(TwinState&)>& change) {
   TwinState changed = written;
   change(changed);
@@ -42,7 +47,7 @@ std::string own_effects(const TwinState& written, const std::function<void(TwinS
                                         [&](const Effect& added) { return changes_law_of(added, own); });
     if (!is_changed) continue;
     names.push_back(fmt::format("{} at {}", own.kind->key, effects::where_of(own)));
-    if (own.where.line > 0) names.back() += fmt::format(", line {}", own.where.line);
+    if (const int line = line_of(own); line > 0) names.back() += fmt::format(", line {}", line);
   }
   return fmt::format("{}", fmt::join(names, " and "));
 }

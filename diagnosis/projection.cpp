@@ -7,7 +7,6 @@ Projection::Projection(Eigen::MatrixXd j, const Eigen::VectorXd& sd, const Eigen
   hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
   factor.compute(hessian);
   rest = without(y);
-  log_evidence = -0.5 * y.dot(rest) - factor.matrixLLT().diagonal().array().log().sum() - sd.array().log().sum();
 }
 
 Eigen::MatrixXd Projection::without(const Eigen::MatrixXd& columns) const {

@@ -11,7 +11,6 @@ struct Projection {
   Eigen::MatrixXd slopes;              ///< J [n_readings x n_free]
   Eigen::LLT<Eigen::MatrixXd> factor;  ///< of J'J + S⁻²
   Eigen::VectorXd rest;                ///< y minus the part that the free numbers explain
-  double log_evidence = 0.0;           ///< of y, without the constant -n/2 log 2π
 
   Projection(Eigen::MatrixXd j, const Eigen::VectorXd& sd, const Eigen::VectorXd& y);
   /// One or several columns minus the part that the free numbers explain.

@@ -8,8 +8,6 @@
 // Two claims of one kind at two bodies leave the place open, but not the kind. A claim with the same meaning in other
 // words, such as heat in a window that lasts to the end and heat from a time on, does not reduce the odds of either. Heat
 // for two minutes and a film that is weaker for two minutes are different claims, of which only one is true.
-// end and heat from a time on, takes nothing away from either; heat for two minutes and a film that is less for two
-// minutes are two things, of which one is true.
 
 #include <string>
 #include <vector>

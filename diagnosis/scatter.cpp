@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/own_effects.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -69,7 +71,7 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
                        .high = parameter.high,
                        .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; },
                        .own = e.kind->key,
-                       .line = e.where.line});
+                       .line = line_of(e)});
     }
   }
   const effects::DoubtScene scene = scene_of(twin, {});

@@ -145,15 +145,15 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
 LinearGain linear_gain(const Variant& law, double ss, double sr) {
   const Knob& size = law.knobs[0];
   const double sd = size.prior_sd;
-  LinearGain g{.x = law.all_or_nothing ? law.trial_x : sr / (ss + 1.0 / (sd * sd)), .fall = 0.0, .gain = 0.0};
+  LinearGain g{.x = law.all_or_nothing ? law.trial_x : sr / (ss + 1.0 / (sd * sd)), .gain = 0.0};
   double width = sd;
   for (int turn = 0; turn < kTurnsOfWidth && !law.all_or_nothing; ++turn) {
     width = heavy_tailed_width(sd, g.x);
     g.x = sr / (ss + 1.0 / (width * width));
   }
   if (size.scale == Knob::Scale::kLinear) g.x = size.x(size.value(g.x));  // out of range: at the bound
-  g.fall = sr * g.x - 0.5 * ss * g.x * g.x - (law.all_or_nothing ? 0.0 : heavy_tailed_cost(sd, g.x));
-  g.gain = g.fall - (law.all_or_nothing ? 0.0 : 0.5 * std::log(sd * sd * ss + sd * sd / (width * width))) - law.price_nats -
+  const double fall = sr * g.x - 0.5 * ss * g.x * g.x - (law.all_or_nothing ? 0.0 : heavy_tailed_cost(sd, g.x));
+  g.gain = fall - (law.all_or_nothing ? 0.0 : 0.5 * std::log(sd * sd * ss + sd * sd / (width * width))) - law.price_nats -
            std::log(static_cast<double>(law.grid.size()));
   return g;
 }
@@ -188,8 +188,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
       const Eigen::VectorXd most = kBeside * fitter.nuisance_sd();
       beside = (fit.x - g.x * answer).head(fitter.n_nuisance()).cwiseMin(most).cwiseMax(-most);
     }
-    of_each[i] = {signature.candidate, signature.variant, g.gain, g.fall, start_at(v, signature.shape, g.x),
-                  std::move(beside)};
+    of_each[i] = {signature.candidate, signature.variant, g.gain, start_at(v, signature.shape, g.x), std::move(beside)};
   }
   std::vector<Score> list;
   for (const Score& s : of_each) {  // those of one law are consecutive

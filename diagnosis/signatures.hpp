@@ -32,7 +32,6 @@ enum class Shapes { kOfGrid, kUpToTheBest };
 struct Score {
   std::size_t candidate = 0, variant = 0;
   double gain = -1e300;    ///< nats
-  double fall = 0.0;       ///< reduction of Φ [nats] by the better fit, without cost
   Eigen::VectorXd start;   ///< x of the claim's knobs
   Eigen::VectorXd beside;  ///< nuisance numbers beside it, at most 1 sigma from the scenario's
 };
@@ -51,7 +50,6 @@ struct Score {
 /// The result of linear theory for one shape of a law.
 struct LinearGain {
   double x = 0.0;     ///< its size
-  double fall = 0.0;  ///< of Φ [nats]
   double gain = 0.0;  ///< of evidence, after the cost of the law and its shapes [nats]
 };
 /// @param ss  squares of the rest of its signature after other numbers. @param sr  its product with the rest of the

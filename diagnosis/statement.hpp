@@ -39,6 +39,9 @@ struct Statement {
 /// "heat in spindle, while the spindle turns", "thermometer t_head, 84 % of the ambient from 95 min on": what, where, and
 /// its course.
 [[nodiscard]] std::string words(const Statement& statement);
+/// The two parts of it: "heat in spindle", and "while the spindle turns"; empty if the first one says all.
+[[nodiscard]] std::string subject_words(const Statement& statement);
+[[nodiscard]] std::string course_words(const Statement& statement);
 /// Its records: "all", "monday", "tuesday and friday".
 [[nodiscard]] std::string records_text(const Statement& statement);
 

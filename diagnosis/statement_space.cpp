@@ -9,18 +9,6 @@ namespace {
 constexpr Eigen::Index kCells = 48;       // per record, for windows and unknown courses
 constexpr Eigen::Index kMostRows = 4000;  // of all columns
 
-/// The rows of a block of the comparison's condensed ones; `together` of them are summed and divided by the root of their
-/// number.
-template <class In, class Out>
-Eigen::Index gather(const In& rows, Eigen::Index together, Out&& out) {
-  Eigen::Index k = 0;
-  for (Eigen::Index from = 0; from < rows.rows(); from += together, ++k) {
-    const Eigen::Index n = std::min(together, rows.rows() - from);
-    out.row(k) = rows.middleRows(from, n).colwise().sum() / std::sqrt(static_cast<double>(n));
-  }
-  return k;
-}
-
 }  // namespace
 
 StatementBuilder::StatementBuilder(StatementSpace& space, const Fitter& fitter, const TwinState& state)

@@ -4,9 +4,8 @@
 #include "diagnosis/statement.hpp"
 
 namespace driftwright::diagnosis {
-namespace {
 
-std::string what_and_where(const Statement& s) {
+std::string subject_words(const Statement& s) {
   const std::string place = fmt::format("{}", fmt::join(s.place, " and "));
   const bool all = s.place.front() == "all";
   switch (s.quantity) {
@@ -31,8 +30,7 @@ std::string what_and_where(const Statement& s) {
   return place;
 }
 
-/// Its course; empty if the other words contain it.
-std::string course_of(const Statement& s) {
+std::string course_words(const Statement& s) {
   if (s.follows == "expansion") return "";
   if (s.quantity == StatedQuantity::kClock && s.follows == "constant") return "";  // the size is enough
   if (s.follows == "lagged") return s.law;
@@ -51,11 +49,9 @@ std::string course_of(const Statement& s) {
   return s.law.empty() || s.law == s.follows ? s.follows : s.law;
 }
 
-}  // namespace
-
 std::string words(const Statement& s) {
-  const std::string course = course_of(s);
-  return what_and_where(s) + (course.empty() ? "" : ", " + course);
+  const std::string course = course_words(s);
+  return subject_words(s) + (course.empty() ? "" : ", " + course);
 }
 
 std::string records_text(const Statement& s) {

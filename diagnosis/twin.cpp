@@ -200,6 +200,18 @@ Eigen::MatrixXd Twin::warmer_bodies() const {
   return machine_.system.mass.llt().solve(heat);
 }
 
+namespace {
+
+/// The capacity that a list of effects gives a lumped node; 1 for another body.
+double capacity_of_node(const TwinState& state, const std::string& body) {
+  static const effects::EffectKind* const node = &effects::kind_of("node");
+  const auto found =
+      std::find_if(state.begin(), state.end(), [&](const effects::Effect& e) { return e.kind == node && e.place == body; });
+  return found == state.end() ? 1.0 : (*found)["capacity"];
+}
+
+}  // namespace
+
 solver::ModelFactors Twin::material_factors(const TwinState& state) const {
   const auto now = effects::material_factors(state), written = effects::material_factors(as_written_);
   solver::ModelFactors factors;
@@ -210,6 +222,7 @@ solver::ModelFactors Twin::material_factors(const TwinState& state) const {
     };
     factors.conductivity.push_back(of(&effects::MaterialFactor::conductivity));
     factors.heat_capacity.push_back(of(&effects::MaterialFactor::heat_capacity));
+    factors.heat_capacity.back() *= capacity_of_node(state, part.body) / capacity_of_node(as_written_, part.body);
   }
   return factors;
 }

@@ -107,7 +107,8 @@ class Twin {
   [[nodiscard]] std::vector<std::string> bodies_at(const std::string& surface_or_joint) const;
 
  private:
-  /// Factors of a state relative to the scenario, on conductivity and heat capacity of each part.
+  /// Factors of a state relative to the scenario, on conductivity and heat capacity of each part; the capacities of nodes
+  /// are among them.
   [[nodiscard]] solver::ModelFactors material_factors(const TwinState& state) const;
   /// The same on each part's contribution to the model's own outputs by expansion; 0 x 0 if all are one.
   [[nodiscard]] Eigen::MatrixXd expansion_factors(const TwinState& state) const;

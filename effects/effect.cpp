@@ -209,6 +209,7 @@ Effect read_entry(const ConfigMap& in, const std::optional<std::vector<std::stri
   const EffectKind& kind = declared_kind(kind_of(in.choice("type")), in, nodes);
   Effect effect;
   effect.kind = &kind;
+  effect.reference_where["type"] = in.where();  // the first key of the entry
   read_place(in, effect);
   for (const Parameter& p : kind.parameters)
     effect.values.push_back(in.has(p.name) ? in.quantity_in(p.name, p.unit) : p.fallback.value_or(kNotGiven));

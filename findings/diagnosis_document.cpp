@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "diagnosis/naming.hpp"
 #include "effects/where_in_files.hpp"
 #include "findings/cause_section.hpp"
 #include "findings/cause_words.hpp"
@@ -73,23 +74,36 @@ Section courses_section(const diagnosis::Diagnosis& d) {
   return section;
 }
 
+/// The cause that names a statement and is more than suspected; null if there is none.
+const diagnosis::Cause* name_of(const diagnosis::Stated& s, const std::vector<diagnosis::Cause>& causes) {
+  const auto named = std::find_if(causes.begin(), causes.end(), [&](const diagnosis::Cause& c) {
+    return c.standing != diagnosis::Standing::kSuspected && diagnosis::says(s.says, c.effect, c.where);
+  });
+  return named == causes.end() ? nullptr : &*named;
+}
+
 /// What the scenario lacks, in the words of the statements' grammar. @param least  probability of a row
 Table statements_table(const diagnosis::Diagnosis& d, double least) {
   Table table{
       .caption =
-          "Each row is a quantity that may be wrong at a place; its probability is the sum over all laws that it may "
-          "follow there, of which the likeliest is shown. It need not be in the catalogue. Sizes are of linear "
-          "theory.",
+          "Each row is a quantity that may be wrong at a place; its probability is the sum over all courses that it may "
+          "follow there. Course and size are those of the cause that names it; where none does, those of the likeliest "
+          "course by linear theory, with its share in brackets, which need not be in the catalogue.",
       .columns = {{.title = "what"},
+                  {.title = "course"},
                   {.title = "size (95 % interval)"},
                   {.title = "records"},
                   {.title = "probability", .digits = output::percent(0)}}};
   for (const diagnosis::Stated& s : d.statements.stated) {
     if (s.probability < least) continue;
-    table.rows.push_back({diagnosis::words(s.says), size_text(s), diagnosis::records_text(s.says), s.probability});
+    const diagnosis::Cause* name = name_of(s, d.causes);
+    std::string course = name ? name->law : diagnosis::course_words(s.says);
+    if (!name && !course.empty()) course += fmt::format(" ({:.0f} %)", 100.0 * s.p_follows);
+    table.rows.push_back({diagnosis::subject_words(s.says), course, name ? diagnosis::parameters_text(*name) : size_text(s),
+                          diagnosis::records_text(s.says), s.probability});
   }
   table.rows.push_back(
-      {"nothing is missing (judged on its own; the rows need not add to 100 %)", "", "", d.statements.nothing});
+      {"nothing is missing (judged on its own; the rows need not add to 100 %)", "", "", "", d.statements.nothing});
   return table;
 }
 

@@ -241,6 +241,7 @@ const std::vector<Case> kCases = {
     {"a_film_that_grows", true,
      added({"{type: forced_convection, surface: outside, growth: 20 W/(m^2 K), at_speed: 800 rpm, exponent: 0.8}"})},
     {"another_capacity", false, added({"{type: heat_capacity, node: housing, factor: 1.5}"})},
+    {"a_capacity_of_another_number", false, [](TwinState& t) { t[1].set("capacity", 3e4); }},
     {"another_sensitivity", false, added({"{type: expansion, node: shaft, factor: 1.4, displacement: nose}"})},
     {"another_conductivity", true, added({"{type: conductivity, region: column, factor: 0.6}"})},
     {"another_heat_capacity", true, added({"{type: heat_capacity, region: head, factor: 1.5}"})},
@@ -369,15 +370,15 @@ TEST(ExtendedScenario, KeepsCommentsAndSaysWhatItChanged) {
 TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
   const Twin& twin = *spindle().twin;
   const auto called = [&](const Change& change) { return own_effects(twin.as_written(), change); };
-  EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 15");
+  EXPECT_EQ(called([](TwinState& t) { t[5].set("conductance", 18.0); }), "link at housing,ambient, line 14");
   EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}"})),
             "bearing_friction at shaft, line 11");
   EXPECT_EQ(called(added({"{type: changed_law, law: link housing - ambient, factor: 1.7}"})),
-            "link at housing,ambient, line 15");
+            "link at housing,ambient, line 14");
   EXPECT_EQ(called(added({"{type: changed_law, law: bearing_friction shaft, factor: 1.6}",
                           "{type: changed_law, law: motor_loss housing, factor: 1.6}"})),
             "bearing_friction at shaft, line 11 and motor_loss at housing, line 12");
-  EXPECT_EQ(called(added({"{type: heat_capacity, node: housing, factor: 1.5}"})), "node at housing, line 9");
+  EXPECT_EQ(called(added({"{type: heat_capacity, node: housing, factor: 1.5}"})), "node at housing, line 8");
   EXPECT_EQ(called(added({"{type: heat_source, node: shaft, power: 40 W}"})), "");
   EXPECT_EQ(called(added({"{type: expansion, node: shaft, factor: 1.4, displacement: nose}"})), "");
 }
@@ -385,6 +386,13 @@ TEST(OwnEffects, AreCalledAsTheFileCallsThem) {
 TEST(ExtendedScenario, KeepsTheUnitOfTheFileAndWritesTemperaturesWhole) {
   const ExtendedScenario e = extend(spindle(), [](TwinState& t) { t[0].values[0] *= 1.5; });  // 5 kJ/K, held in J/K
   EXPECT_THAT(e.text, HasSubstr("capacity: 7.5 kJ/K"));
+}
+
+TEST(ExtendedScenario, WritesAFactorOnTheCapacityOfANodeAsItsCapacity) {
+  const ExtendedScenario e = extend(spindle(), added({"{type: heat_capacity, node: housing, factor: 1.53}"}));
+  EXPECT_THAT(e.text,
+              AllOf(HasSubstr("    capacity: 30.6 kJ/K   # cast iron   # diagnosis: capacity was 20 kJ/K; because\n"),
+                    ::testing::Not(HasSubstr("heat_capacity"))));
 }
 
 TEST(ExtendedScenario, AppendsBehindTheLastEffectAndBeforeWhatFollows) {

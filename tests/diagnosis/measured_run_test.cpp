@@ -31,7 +31,7 @@ class MeasuredRunTest : public testing::Test {
     scenarios::MachineModel model;
     model.reference_K = 293.15;
     model.ambient = {{0.0}, {0.0}};
-    return read_measured(path, model, outputs());
+    return measured_run(read_record(path, std::nullopt), model, outputs());
   }
   std::string refusal(const std::string& text) {
     try {

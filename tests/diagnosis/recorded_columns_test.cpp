@@ -207,8 +207,8 @@ TEST(RecordedColumns, ThatAreMissingAreRefused) {
       write_file("truth.yaml", scenario_with("{type: sensor_bias, sensor: t_bed, bias: 0.1 K}")), "columns_missing_");
   Record r = read_record_csv(files[0]);
   std::erase_if(r.channels, [](const Channel& c) { return c.name == "heater"; });
-  EXPECT_REFUSED(read_measured(write_file("no_heater.csv", record_csv(r)), *s.machine,
-                               scenarios::output_names(*s.machine, scenarios::place(*s.machine))),
+  EXPECT_REFUSED(measured_run(read_record(write_file("no_heater.csv", record_csv(r)), std::nullopt), *s.machine,
+                              scenarios::output_names(*s.machine, scenarios::place(*s.machine))),
                  "'heater_W'", "sun_W_m2");
   const std::string follows = "{type: displacement_path, displacement: nose, column: heater_W, sensitivity: 1 um/K}";
   const scenarios::Scenario f = scenarios::read_scenario(write_file("follows.yaml", scenario_with(follows)));

@@ -250,6 +250,23 @@ TEST(Reports, AnswerInWordsForSomebodyAtTheMachine) {
                           HasSubstr("All that might be missing: 2 possibilities")));
 }
 
+// A statement is shown with the law of the cause that names it; another one with the share of its course.
+TEST(Reports, GiveAStatementTheCourseOfTheCauseThatNamesIt) {
+  StepOfAnIndicator found;
+  for (diagnosis::Stated& s : found.d.statements.stated) {
+    s.says.follows = "unknown";
+    s.says.law = "any course";
+    s.p_follows = 0.75;
+  }
+  const auto page = [&] { return output::document_html(diagnosis_document(found.findings("extended.yaml"), {})).page; };
+  const char* unknown = "of a course that follows nothing recorded (75 %)";
+  const std::string named = page();
+  EXPECT_THAT(named, AllOf(HasSubstr("<td>displacement nose</td><td>step, in monday</td>"),
+                           HasSubstr(std::string("<td>displacement table</td><td>") + unknown)));
+  found.d.causes[0].standing = diagnosis::Standing::kSuspected;
+  EXPECT_THAT(page(), HasSubstr(std::string("<td>displacement nose</td><td>") + unknown));
+}
+
 // Two causes in one channel: a step of 5 um, and 2 um that another one adds. Each picture shows the machine without its cause
 // and with both, in the channel where that cause shows most.
 TEST(Reports, ShowOfEachCauseWhatTheMachineWouldDoWithoutIt) {

@@ -101,7 +101,8 @@ struct Beside {
   Beside(const std::string& path, const std::vector<std::string>& records) : scenario(scenarios::read_scenario(path)) {
     const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
     const solver::Outputs names = scenarios::output_names(*scenario.machine, placed);
-    for (const std::string& r : records) runs.push_back(read_measured(r, *scenario.machine, names));
+    for (const std::string& r : records)
+      runs.push_back(measured_run(read_record(r, std::nullopt), *scenario.machine, names));
     augmented = augment(scenario, placed.mesh, runs);
     machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
                                 augmented.plan);
