@@ -14,6 +14,7 @@ void run(const CommonOptions& options) {
   const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "run");
   if (scenario.table) return run_table(options, scenario);
+  if (scenario.volume) return run_volume(options, scenario);
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
   (void)scenarios::require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
