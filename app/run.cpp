@@ -17,6 +17,7 @@ void run(const CommonOptions& options) {
   if (scenario.volume) return run_volume(options, scenario);
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
   (void)scenarios::require_study(scenario, "run");
+  for (const Cyclogram& c : scenario.cyclograms) scenarios::require_resting(model.axes, c);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
