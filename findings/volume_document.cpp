@@ -123,19 +123,25 @@ output::Document document_of(const studies::WorkVolume& volume, const scenarios:
   const VolumeSettings& settings = *scenario.volume;
   const std::vector<MovingAxis>& axes = scenario.machine->axes;
   const studies::LargestError peak = studies::largest_error(volume);
-  const double own_um = 1e6 * studies::largest_error_m(volume.own), peak_um = 1e6 * peak.error_m;
+  const studies::LargestError left = studies::largest_left(volume);
+  const double own_um = 1e6 * studies::largest_error_m(volume.own), peak_um = 1e6 * peak.error_m,
+               left_um = 1e6 * left.error_m;
   output::Document document{.made_by = made_by,
                             .title = scenario.name + ": error over the work volume",
                             .subtitle = fmt::format("{} poses, {} times of cyclogram '{}'; {}", volume.points.size(),
                                                     volume.time_s.size(), settings.cyclogram, model.words())};
   Section& body = document.body;
-  add(body, output::Verdict{
-                .key = "verdict",
-                .kind = output::Verdict::Kind::kNeutral,
-                .title = fmt::format("{:.1f} µm at most in the volume, {:.1f} µm at the scenario's pose", peak_um, own_um),
-                .text = fmt::format("The largest error is at {}, after {:.0f} min; the scenario's pose is {}.",
-                                    scenarios::pose_words(axes, volume.points[peak.point].pose),
-                                    volume.time_s[peak.time] / 60.0, scenarios::pose_words(axes, volume.own.pose))});
+  add(body,
+      output::Verdict{.key = "verdict",
+                      .kind = output::Verdict::Kind::kNeutral,
+                      .title = fmt::format("{:.1f} µm at most in the volume, {:.1f} µm after a correction by one point",
+                                           peak_um, left_um),
+                      .text = fmt::format(
+                          "The largest error is at {}, after {:.0f} min. At the scenario's pose, {}, it is {:.1f} µm; "
+                          "a correction by the error there leaves most at {}, after {:.0f} min.",
+                          scenarios::pose_words(axes, volume.points[peak.point].pose), volume.time_s[peak.time] / 60.0,
+                          scenarios::pose_words(axes, volume.own.pose), own_um,
+                          scenarios::pose_words(axes, volume.points[left.point].pose), volume.time_s[left.time] / 60.0)});
   add_machine(body, *scenario.machine, model.mesh(), settings.cyclogram, {});
   add(body, named_value("peak_um", "largest error in the volume", peak_um, "um"));
   add(body, named_value("own_um", "largest error at the scenario's pose", own_um, "um"));

@@ -12,7 +12,6 @@
 #include "machine/found_in_mesh.hpp"
 #include "mesh/joint_sides.hpp"
 #include "mesh/overlapping_cells.hpp"
-#include "mesh/quality.hpp"
 #include "solver/joint.hpp"
 
 namespace driftwright::scenarios {
@@ -43,27 +42,21 @@ Carriers carriers_of_side(const std::vector<MovingAxis>& axes, const mesh::Mesh&
   return carriers.value_or(Carriers(axes.size(), false));
 }
 
-double facet_size_of_m(const mesh::Mesh& mesh, const std::string& surface) {
-  const int index = mesh.surface(surface);
-  return std::sqrt(mesh::area_m2(mesh, index) / static_cast<double>(mesh.facets_on(index).size()));
-}
-
+/// @throws InputError  if the sides of a joint have lost each other, or the axis does not move along them
 void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const MovingAxis& axis) {
+  constexpr double kMostRise = 0.1;  // 6 degrees, as faces of a guide (mesh/joint_sides.cpp)
   const std::string lost =
-      fmt::format("at {} = {:g} mm joint '{}' has lost its guide", axis.name, 1e3 * axis.at_m, joint.name);
-  constexpr double kMostGap = 0.1;  // of a facet, as mechanical joints allow (solver/springs.cpp)
-  const double most_m = kMostGap * std::max(facet_size_of_m(mesh, joint.side_a), facet_size_of_m(mesh, joint.side_b));
-  double gap_m = 0.0;
+      fmt::format("at {} = {:g} mm joint '{}' has lost its guide: ", axis.name, 1e3 * axis.at_m, joint.name);
+  std::vector<solver::JointPoint> points;
   try {
-    for (const solver::JointPoint& p : solver::joint_points(mesh, joint)) gap_m = std::max(gap_m, p.gap_m);
+    points = solver::joint_points(mesh, joint);
   } catch (const InputError&) {
-    throw InputError(axis.where,
-                     lost + ": its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
+    throw InputError(axis.where, lost + "its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
   }
-  if (gap_m > most_m)
-    throw InputError(axis.where, fmt::format("{}: its two sides are up to {:.2f} mm apart. The axis must slide along the "
-                                             "joint; correct `along` or `moves`",
-                                             lost, 1e3 * gap_m));
+  const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis.along);
+  if (std::any_of(points.begin(), points.end(), [&](const auto& p) { return std::abs(p.normal.dot(along)) > kMostRise; }))
+    throw InputError(axis.where,
+                     lost + "the axis moves its two sides apart, not along each other; correct `along` or `moves`");
 }
 
 void require_apart(const mesh::Mesh& mesh, const std::vector<MovingAxis>& axes) {

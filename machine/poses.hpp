@@ -11,7 +11,7 @@ namespace driftwright::scenarios {
 /// Numbers of nodes and cells stay. Without `axes` nothing is done.
 /// @throws InputError  at the axis: for a region that does not exist, that moves without another that shares nodes with it,
 ///                     and with a film from a file; for a pose at which bodies overlap, or a joint has lost its guide: its
-///                     sides face each other nowhere, or lie apart by more than a tenth of a facet
+///                     sides face each other nowhere, or the axis moves them apart
 void move_bodies(const MachineModel& model, mesh::Mesh& mesh);
 
 /// The same model at another pose.

@@ -33,6 +33,18 @@ VolumePoint errors_at(const MachineModel& model, const VolumeSettings& settings,
   return point;
 }
 
+/// The longest error vector less that of another point at the same time.
+LargestError largest_less(const WorkVolume& volume, const VolumePoint& other) {
+  LargestError largest;
+  for (std::size_t p = 0; p < volume.points.size(); ++p) {
+    for (std::size_t t = 0; t < volume.time_s.size(); ++t) {
+      const double error_m = (volume.points[p].error_m[t] - other.error_m[t]).norm();
+      if (error_m > largest.error_m) largest = {p, t, error_m};
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 double largest_error_m(const VolumePoint& point) {
@@ -42,14 +54,15 @@ double largest_error_m(const VolumePoint& point) {
 }
 
 LargestError largest_error(const WorkVolume& volume) {
-  LargestError largest;
-  for (std::size_t p = 0; p < volume.points.size(); ++p) {
-    for (std::size_t t = 0; t < volume.time_s.size(); ++t) {
-      const double error_m = volume.points[p].error_m[t].norm();
-      if (error_m > largest.error_m) largest = {p, t, error_m};
-    }
-  }
-  return largest;
+  return largest_less(volume,
+                      VolumePoint{.pose = {},
+                                  .place_m = {},
+                                  .error_m = std::vector<Eigen::Vector3d>(volume.time_s.size(), Eigen::Vector3d::Zero()),
+                                  .turn_rad = {}});
+}
+
+LargestError largest_left(const WorkVolume& volume) {
+  return largest_less(volume, volume.own);
 }
 
 WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& drawn, const scenarios::Model& model,

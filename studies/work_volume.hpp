@@ -30,6 +30,8 @@ struct LargestError {
   double error_m = -1.0;
 };
 [[nodiscard]] LargestError largest_error(const WorkVolume& volume);
+/// The same after the error at the scenario's pose has been taken from all points: what a correction by one point leaves.
+[[nodiscard]] LargestError largest_left(const WorkVolume& volume);
 /// The longest error vector of a point over the times [m].
 [[nodiscard]] double largest_error_m(const VolumePoint& point);
 

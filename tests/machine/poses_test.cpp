@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "machine/machine_key.hpp"
 #include "machine/moving_run.hpp"
 #include "machine/simulated_run.hpp"
 #include "solver/joint.hpp"
@@ -127,6 +128,11 @@ TEST(Pose, ByWholeElementsEqualsTheMeshBuiltThere) {
   EXPECT_GT((c.system.exchanges[0].matrix - b.system.exchanges[0].matrix).norm(), 0.1 * b.system.exchanges[0].matrix.norm());
 }
 
+TEST(Pose, HasAReducedMachineOfItsOwn) {
+  EXPECT_EQ(machine_text(at({}, 0.3)), machine_text(at({}, 0.3)));
+  EXPECT_NE(machine_text(at({}, 0.3)), machine_text(at({}, 0.2)));
+}
+
 TEST(Pose, PassesHeatInProportionToTheOverlap) {
   EXPECT_NEAR(overlap_m2(at({}, 0.0)), 0.04, 1e-9);
   EXPECT_NEAR(overlap_m2(at({}, 0.25)), 0.04, 1e-9);  // between elements: the finer side lies wholly on the other
@@ -214,8 +220,8 @@ TEST(Axes, RefusePosesThatTheMachineCannotHave) {
   EXPECT_REFUSED(with("along: x, range: [400 mm, 0 mm]").read(), "axes.x.range", "the lower one first");
   EXPECT_REFUSED(place(*with("along: x, range: [0 mm, 2 m], at: 1500 mm").read().machine), "slide.yaml:", "x = 1500 mm",
                  "lost its guide", "nowhere");
-  EXPECT_REFUSED(place(*with("along: z, range: [0 mm, 2 m], at: 50 mm").read().machine), "lost its guide", "mm apart",
-                 "`along`");
+  EXPECT_REFUSED(place(*with("along: z, range: [0 mm, 2 m], at: 50 mm").read().machine), "lost its guide",
+                 "apart, not along", "`along`");
   EXPECT_REFUSED(place(*Slide{.axes = "axes: {x: {moves: [tabel], along: x, range: [0 mm, 1 m]}}\n"}.read().machine),
                  "no region 'tabel'", "Did you mean 'table'");
   const std::string beyond = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 0 mm], [1 h, 0 rpm, 900 mm]]}";
