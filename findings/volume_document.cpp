@@ -28,7 +28,7 @@ Column urad_column(const std::string& key, const std::string& title) {
   return {.key = key, .title = title, .unit = "urad", .digits = output::decimals(1)};
 }
 
-Table points_table(const studies::WorkVolume& volume, const std::vector<MovingAxis>& axes) {
+Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAxis>& axes) {
   Table table{.key = "points",
               .title = "Error of the tool against the work at each pose and time",
               .caption = "Actual - commanded. The place is that of the tool in the frame of the work, as it was drawn.",
@@ -151,7 +151,7 @@ output::Document document_of(const studies::WorkVolume& volume, const scenarios:
                                       1e3 * volume.points[peak.point].place_m[2]},
                   "mm"));
   for (std::size_t i = 0; i < axes.size(); ++i) add_axis(body, volume, settings, axes, i);
-  add(body, points_table(volume, axes));
+  add(body, volume_table(volume, axes));
   const Cyclogram& cyclogram = scenario.cyclogram(settings.cyclogram);
   Section run{.key = "cyclogram", .title = "Cyclogram " + cyclogram.name, .detail = true};
   add_channel_plots(run, volume.run.record, cyclogram);

@@ -40,6 +40,17 @@ class FieldTimes {
   double end_s_, next_s_ = 0.0;
 };
 
+bool follows_moves(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
+  return model.full() && moves_axes(machine.axes, cyclogram);
+}
+
+/// felt_run(), of a full model also while axes move.
+MachineRun followed_run(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
+  if (!follows_moves(machine, model, cyclogram)) return felt_run(machine, cyclogram);
+  require_columns(machine, cyclogram);
+  return felt_run_as_far_as_known(machine, cyclogram);
+}
+
 /// The machine at the pose that a cyclogram has had until a time; nullptr: at the model's own.
 const PosedMachine* posed_before(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram,
                                  double time_s) {
@@ -53,7 +64,7 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   const ReducedMachine* reduced = model.reduced();
   const Eigen::VectorXd nodes =
       reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
-  const bool moves = model.full() && moves_axes(scenario.machine->axes, cyclogram);
+  const bool moves = follows_moves(*scenario.machine, model, cyclogram);
   const PosedMachine* posed = moves ? posed_before(*scenario.machine, model, cyclogram, time_s) : nullptr;
   const Eigen::Matrix3Xd displacement_m = reduced ? reduced->node_displacement_m(state)
                                           : posed ? posed->elasticity->displacement(nodes)
@@ -108,9 +119,8 @@ std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& f
 SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
                           const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
                           const solver::OutputCallback& at_output) {
-  const bool moves = model.full() && moves_axes(machine.axes, cyclogram);
-  if (moves) require_columns(machine, cyclogram);
-  const MachineRun felt = moves ? felt_run_as_far_as_known(machine, cyclogram) : felt_run(machine, cyclogram);
+  const bool moves = follows_moves(machine, model, cyclogram);
+  const MachineRun felt = followed_run(machine, model, cyclogram);
   const auto run = [&](const auto& system) {
     try {
       if (moves) return simulate_moving(machine, options, model, from, cyclogram, felt, times_s, at_output);
@@ -149,7 +159,7 @@ Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
 
 Eigen::VectorXd after_what_was_before(const MachineModel& machine, const solver::TransientOptions& options,
                                       const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram) {
-  const MachineRun felt = felt_run_as_far_as_known(machine, cyclogram);
+  const MachineRun felt = followed_run(machine, model, cyclogram);
   return model.reduced() ? after_what_was_before(model.reduced()->system, felt, options, from)
                          : after_what_was_before(model.full()->system, felt, options, from);
 }
