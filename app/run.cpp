@@ -14,8 +14,10 @@ void run(const CommonOptions& options) {
   const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "run");
   if (scenario.table) return run_table(options, scenario);
+  if (scenario.volume) return run_volume(options, scenario);
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
   (void)scenarios::require_study(scenario, "run");
+  for (const Cyclogram& c : scenario.cyclograms) scenarios::require_resting(model.axes, c);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;

@@ -87,6 +87,9 @@ void add_simulate(CLI::App& cli, SimulateOptions& options) {
                    "cyclogram to simulate: a name in the scenario, or a record CSV with the column speed_rpm; may be "
                    "repeated [all of the scenario]")
       ->allow_extra_args(false);
+  verb->add_option("--pose", options.pose,
+                   "position of an axis of the scenario, such as x=200mm; may be repeated [`at` of `axes`]")
+      ->allow_extra_args(false);
   verb->callback([&] { app::simulate(options); });
 }
 

@@ -33,8 +33,9 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
 }  // namespace
 
 void simulate(const SimulateOptions& options) {
-  const scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
+  scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "simulate");
+  for (const std::string& position : options.pose) scenarios::set_pose(scenario.machine->axes, position);
   const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
   std::vector<const Cyclogram*> cyclograms;
   for (const Cyclogram& c : asked) cyclograms.push_back(&c);

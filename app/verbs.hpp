@@ -48,6 +48,7 @@ void init(const InitOptions& options);
 
 struct SimulateOptions : CommonOptions {
   std::vector<std::string> cyclograms;  ///< names, or record CSVs; empty: all of the scenario
+  std::vector<std::string> pose;        ///< positions of axes, "x=200mm"; empty: those of the scenario
 };
 void simulate(const SimulateOptions& options);
 
@@ -156,6 +157,8 @@ void inject(const InjectOptions& options);
 
 /// `run` of a scenario with a table.
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
+/// `run` of a scenario with a volume.
+void run_volume(const CommonOptions& options, const scenarios::Scenario& scenario);
 
 struct RecordOptions : CommonOptions, studies::RecordPaths {
   std::string target;                  ///< displacement of the records; empty: that of the scenario's `study`

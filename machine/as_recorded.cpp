@@ -21,13 +21,15 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
     if (is_on_ambient(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = ambient;
   }
   if (const effects::ReadingChain chain = effects::reading_chain(model.effects, recorded.name); !chain.empty()) {
-    const MachineRun felt = felt_run(model, recorded);
+    const MachineRun felt = felt_run_as_far_as_known(model, recorded);
     told.outputs =
         chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.ambient, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
   std::vector<Channel> further;  // columns that drive the machine; the ambient
-  for (const std::string& name : wanted_columns(model, recorded.name)) {
+  std::vector<std::string> told_columns = wanted_columns(model, recorded.name);
+  for (const MovingAxis& axis : model.axes) told_columns.push_back(axis.column);
+  for (const std::string& name : told_columns) {
     const Cyclogram::Column* column = recorded.column(name);
     const auto is_it = [&](const Channel& c) { return c.name == column->name; };
     if (!column || std::any_of(record.channels.begin(), record.channels.end(), is_it) ||

@@ -12,6 +12,7 @@
 #include "base/shown_units.hpp"
 #include "machine/channel_sections.hpp"
 #include "machine/found_in_mesh.hpp"
+#include "machine/poses.hpp"
 #include "machine/runnable.hpp"
 #include "machine/ways_out.hpp"
 #include "mesh/locate.hpp"
@@ -28,18 +29,20 @@ using solver::DisplacementFunctional;
 
 constexpr double kSnap_m = 5e-3;  ///< largest distance by which a sensor is moved onto its region
 
-/// The point of a region nearest to the position given by the user.
-mesh::MeshPoint place_point(const Mesh& mesh, const PointOnRegion& point) {
+/// The point of a region nearest to the position given by the user, which is where the region was drawn.
+mesh::MeshPoint place_point(const MachineModel& model, const Mesh& mesh, const PointOnRegion& point) {
   must_be_one_of(point.where, "region", point.region, mesh.regions);
   const std::vector<int> cells = mesh.cells_in(mesh.region(point.region));
-  const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, point.at_m);
+  const Eigen::Vector3d moved_m = shift_m(model.axes, point.region);
+  const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, point.at_m + moved_m);
   if (!(found.distance_m <= kSnap_m)) {
+    const Eigen::Vector3d drawn_m = found.position_m - moved_m;
     throw InputError(
         point.where,
         fmt::format("the point lies {:.1f} mm outside region '{}' (at most {:.0f} mm is moved); its nearest point is "
                     "[{:.1f} mm, {:.1f} mm, {:.1f} mm]",
-                    1e3 * found.distance_m, point.region, 1e3 * kSnap_m, 1e3 * found.position_m[0],
-                    1e3 * found.position_m[1], 1e3 * found.position_m[2]));
+                    1e3 * found.distance_m, point.region, 1e3 * kSnap_m, 1e3 * drawn_m[0], 1e3 * drawn_m[1],
+                    1e3 * drawn_m[2]));
   }
   return found;
 }
@@ -60,23 +63,28 @@ void add_rotation(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshP
   for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], 0.5 * c.cross(inverse_t * s.dN.col(i))});
 }
 
-DisplacementFunctional tool_against_table(const Mesh& mesh, const ToolAgainstTable& output) {
-  const mesh::MeshPoint tool = place_point(mesh, output.tool);
+/// Adds -e·(u_foot + ω_foot × arm): what a stand on the foot takes with it.
+void add_stand(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshPoint& foot, const Eigen::Vector3d& arm_m,
+               const Eigen::Vector3d& direction) {
+  add_displacement(d, mesh, foot, -direction);
+  add_rotation(d, mesh, foot, -arm_m.cross(direction));
+}
+
+DisplacementFunctional tool_against_table(const MachineModel& model, const Mesh& mesh, const ToolAgainstTable& output) {
+  const mesh::MeshPoint tool = place_point(model, mesh, output.tool);
   const Eigen::Vector3d direction = Eigen::Vector3d::Unit(output.axis);
   DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
   add_displacement(d, mesh, tool, direction);
   if (!output.table) return d;
   PointOnRegion foot = *output.table;  // the point of the table that its travel has brought there
   foot.at_m -= output.travel_m;
-  const mesh::MeshPoint table = place_point(mesh, foot);
-  const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
-  add_displacement(d, mesh, table, -direction);
-  add_rotation(d, mesh, table, -arm.cross(direction));
+  const mesh::MeshPoint table = place_point(model, mesh, foot);
+  add_stand(d, mesh, table, tool.position_m - (table.position_m + output.travel_m), direction);
   return d;
 }
 
-DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& output) {
-  const mesh::MeshPoint from = place_point(mesh, output.from), to = place_point(mesh, output.to);
+DisplacementFunctional tilt_against_table(const MachineModel& model, const Mesh& mesh, const TiltOutput& output) {
+  const mesh::MeshPoint from = place_point(model, mesh, output.from), to = place_point(model, mesh, output.to);
   const Eigen::Vector3d line = to.position_m - from.position_m;
   // A rigid rotation ω turns the line by ω × line; the part about the axis is axis·(line × Δu)/|line_perpendicular|².
   const Eigen::Vector3d axis = Eigen::Vector3d::Unit(output.axis);
@@ -84,7 +92,7 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
   DisplacementFunctional d;
   add_displacement(d, mesh, to, across);
   add_displacement(d, mesh, from, -across);
-  add_rotation(d, mesh, place_point(mesh, output.table), -axis);
+  add_rotation(d, mesh, place_point(model, mesh, output.table), -axis);
   return d;
 }
 
@@ -171,6 +179,7 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
   PlacedMachine placed;
   placed.mesh = std::move(meshed);
   add_channel_sections(model, placed.mesh);
+  move_bodies(model, placed.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
@@ -192,7 +201,7 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
     if (const auto* point = std::get_if<PointOnRegion>(&sensor.place)) {
-      const mesh::MeshPoint at = place_point(mesh, *point);
+      const mesh::MeshPoint at = place_point(model, mesh, *point);
       const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
       for (int i = 0; i < s.n; ++i) weights.emplace_back(mesh.cells.nodes(at.cell)[i], s.N[i]);
     } else if (const std::string& node = std::get<std::string>(sensor.place); node != effects::kAmbientName) {
@@ -206,11 +215,27 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
     placed.sensor_weights.push_back(std::move(weights));
   }
   for (const DisplacementOutput& d : model.displacements) {
-    placed.functionals.push_back(d.points ? tool_against_table(mesh, *d.points) : DisplacementFunctional{});
+    placed.functionals.push_back(d.points ? tool_against_table(model, mesh, *d.points) : DisplacementFunctional{});
     if (d.by_sensitivity) check_bodies(*d.by_sensitivity, mesh, placed.balance);
   }
-  for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(mesh, t));
+  for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(model, mesh, t));
   return placed;
+}
+
+ToolAgainstWork tool_against_work(const MachineModel& model, const Mesh& mesh, const PointOnRegion& tool,
+                                  const std::string& work, const Where& where) {
+  must_be_one_of(where, "region", work, mesh.regions);
+  const mesh::MeshPoint at = place_point(model, mesh, tool);
+  const mesh::MeshPoint foot = mesh::nearest_point(mesh, mesh.cells, mesh.cells_in(mesh.region(work)), at.position_m);
+  ToolAgainstWork error{.place_m = at.position_m - shift_m(model.axes, work), .functionals = {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d direction = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i));
+    add_displacement(error.functionals[i], mesh, at, direction);
+    add_stand(error.functionals[i], mesh, foot, at.position_m - foot.position_m, direction);
+    add_rotation(error.functionals[3 + i], mesh, at, direction);
+    add_rotation(error.functionals[3 + i], mesh, foot, -direction);
+  }
+  return error;
 }
 
 bool needs_elasticity(const PlacedMachine& placed, bool with_fields) {

@@ -1,6 +1,7 @@
 #pragma once
 // From a scenario to a computable machine: mesh, matrices, influence vectors.
 
+#include <array>
 #include <memory>
 
 #include "base/record.hpp"
@@ -36,6 +37,18 @@ struct PlacedMachine {
 /// Materials by region of the mesh, with the factors of effects. @throws InputError for a region without material, or the
 /// reverse
 [[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);
+
+/// The error of a tool against the work, as linear functionals of displacements.
+struct ToolAgainstWork {
+  Eigen::Vector3d place_m;  ///< the tool's point in the frame of the work: where it is when the work is as drawn
+  /// u_tool - u_foot - ω_foot × arm along x, y, z [m], and ω_tool - ω_foot about x, y, z [rad]. The foot is the point of
+  /// the work's region nearest to the tool; what the work carries moves and turns with it as a rigid body.
+  std::array<solver::DisplacementFunctional, 6> functionals;
+};
+/// @param mesh  of place(), at the model's pose
+/// @throws InputError  for a region that does not exist, and a tool that is not on its region
+[[nodiscard]] ToolAgainstWork tool_against_work(const MachineModel& model, const mesh::Mesh& mesh, const PointOnRegion& tool,
+                                                const std::string& work, const Where& where);
 
 /// The full model, ready to run.
 struct Machine {

@@ -89,6 +89,7 @@ bool has_curves(const MachineModel& model) {
 std::string machine_text(const MachineModel& model) {
   const effects::HeatBalance balance = effects::heat_balance(model.effects);
   std::string text = model.written + structure(balance);
+  if (!model.axes.empty()) text += fmt::format("at {}\n", fmt::join(pose_of(model.axes), " "));
   for (const effects::MaterialFactor& f : effects::material_factors(model.effects)) {
     text += fmt::format("factors of {}: {} {} {} {}\n", words(f.body), f.conductivity, f.heat_capacity, f.expansion,
                         f.displacement);

@@ -7,6 +7,7 @@
 #include "base/version.hpp"
 #include "machine/machine_key.hpp"
 #include "machine/machine_store.hpp"
+#include "machine/moving_run.hpp"
 #include "machine/sources.hpp"
 #include "machine/ways_out.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -52,9 +53,10 @@ compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenar
                                              scenarios::felt_ambient_at_start_K(machine), typical);
 }
 
-scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields) {
+scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields,
+                                 const mesh::Mesh* drawn) {
   listener.begin("meshing");
-  scenarios::PlacedMachine placed = scenarios::place(model);
+  scenarios::PlacedMachine placed = drawn ? scenarios::place(model, *drawn) : scenarios::place(model);
   const bool is_elastic = scenarios::needs_elasticity(placed, n_fields > 0);
   listener.begin(is_elastic ? fmt::format("solving {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
   return scenarios::build(model, std::move(placed), is_elastic, n_fields);
@@ -82,12 +84,24 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
 }
 
 Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                 const Listener& listener, bool with_fields) {
+                 const Listener& listener, bool with_fields, const mesh::Mesh* drawn) {
   const scenarios::MachineModel& model = *scenario.machine;
   effects::HeatBalance balance = effects::heat_balance(model.effects);
   if (scenario.solver.model == scenarios::ModelKind::kFull) {
-    return {build_machine(model, listener, with_fields ? n_fields(scenario) : 0), std::move(balance), false};
+    const int fields = with_fields ? n_fields(scenario) : 0;
+    std::vector<const Cyclogram*> moving = cyclograms;
+    if (moving.empty()) {
+      for (const Cyclogram& c : scenario.cyclograms) moving.push_back(&c);
+    }
+    std::erase_if(moving, [&](const Cyclogram* c) { return !moves_axes(model.axes, *c); });
+    if (moving.empty()) return {build_machine(model, listener, fields, drawn), std::move(balance), false};
+    const mesh::Mesh own = drawn ? mesh::Mesh{} : build_mesh(model.mesh);
+    if (!drawn) drawn = &own;
+    Model opened{build_machine(model, listener, fields, drawn), std::move(balance), false};
+    opened.poses = posed_machines(model, moving, *drawn, listener, with_fields);
+    return opened;
   }
+  for (const Cyclogram* c : cyclograms) require_resting(model.axes, *c);
   std::vector<const Cyclogram*> asked = cyclograms;
   for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
   bool was_known = false;

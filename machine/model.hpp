@@ -9,11 +9,19 @@
 
 namespace driftwright::scenarios {
 
+/// The full machine at another pose of its axes.
+struct PosedMachine {
+  Pose pose;
+  solver::FullSystem system;
+  std::optional<solver::Elasticity> elasticity;  ///< with fields
+};
+
 /// A full or reduced machine with its heat balance.
 struct Model {
   std::variant<scenarios::Machine, scenarios::ReducedMachine> machine;
   effects::HeatBalance balance;
-  bool was_known = false;  ///< the reduced model came from disk
+  bool was_known = false;                ///< the reduced model came from disk
+  std::vector<PosedMachine> poses = {};  ///< of a full machine: the other poses of its cyclograms
 
   [[nodiscard]] const scenarios::Machine* full() const { return std::get_if<scenarios::Machine>(&machine); }
   [[nodiscard]] const scenarios::ReducedMachine* reduced() const { return std::get_if<scenarios::ReducedMachine>(&machine); }
@@ -40,7 +48,9 @@ inline constexpr int kStates = 50;
 
 /// Meshes, places and factorises the machine, and reports each step to the listener.
 /// @param n_fields  approximate number of whole fields to be written; each needs displacements of all nodes
-[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields);
+/// @param drawn     mesh of build_mesh(); null: it is made
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields,
+                                               const mesh::Mesh* drawn = nullptr);
 
 /// The reduced machine of a plan: read from disk if it is stored there, else made and stored. @param was_known receives
 /// which, unless null
@@ -50,8 +60,11 @@ inline constexpr int kStates = 50;
 
 /// The model that the scenario asks for. A reduced one is read from disk if the machine is stored for such cyclograms, else
 /// it is made and stored.
-/// @param cyclograms  that it will run; those of the scenario are always included
+/// @param cyclograms  that it will run; those of the scenario are always included in a reduced model, and in a full one if
+///                    there are none here. A full one follows those that move axes
+/// @param drawn       mesh of build_mesh(); null: it is made
+/// @throws InputError  for a reduced model and a cyclogram that moves axes
 [[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                               const Listener& listener, bool with_fields);
+                               const Listener& listener, bool with_fields, const mesh::Mesh* drawn = nullptr);
 
 }  // namespace driftwright::scenarios

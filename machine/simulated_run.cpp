@@ -9,6 +9,7 @@
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
+#include "machine/moving_run.hpp"
 #include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/unusual.hpp"
@@ -39,13 +40,35 @@ class FieldTimes {
   double end_s_, next_s_ = 0.0;
 };
 
-void write_fields(const Scenario& scenario, const Model& model, const solver::RegionMaterials& materials, double time_s,
-                  const Eigen::VectorXd& state, const FieldSink& fields) {
+bool follows_moves(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
+  return model.full() && moves_axes(machine.axes, cyclogram);
+}
+
+/// felt_run(), of a full model also while axes move.
+MachineRun followed_run(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
+  if (!follows_moves(machine, model, cyclogram)) return felt_run(machine, cyclogram);
+  require_columns(machine, cyclogram);
+  return felt_run_as_far_as_known(machine, cyclogram);
+}
+
+/// The machine at the pose that a cyclogram has had until a time; nullptr: at the model's own.
+const PosedMachine* posed_before(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram,
+                                 double time_s) {
+  const std::vector<PoseStretch> stretches = pose_stretches(machine.axes, cyclogram);
+  const auto at = std::find_if(stretches.begin(), stretches.end(), [&](const auto& s) { return time_s <= s.end_s; });
+  return posed_at(machine, model, (at == stretches.end() ? stretches.back() : *at).pose);
+}
+
+void write_fields(const Scenario& scenario, const Model& model, const solver::RegionMaterials& materials,
+                  const Cyclogram& cyclogram, double time_s, const Eigen::VectorXd& state, const FieldSink& fields) {
   const ReducedMachine* reduced = model.reduced();
   const Eigen::VectorXd nodes =
       reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
-  const Eigen::Matrix3Xd displacement_m =
-      reduced ? reduced->node_displacement_m(state) : model.full()->elasticity->displacement(nodes);
+  const bool moves = follows_moves(*scenario.machine, model, cyclogram);
+  const PosedMachine* posed = moves ? posed_before(*scenario.machine, model, cyclogram, time_s) : nullptr;
+  const Eigen::Matrix3Xd displacement_m = reduced ? reduced->node_displacement_m(state)
+                                          : posed ? posed->elasticity->displacement(nodes)
+                                                  : model.full()->elasticity->displacement(nodes);
   WholeFields whole{.time_s = time_s,
                     .temperature_degC = (nodes.array() + (scenario.machine->reference_K - kZeroCelsius_K)).matrix(),
                     .displacement_um = 1e6 * displacement_m};
@@ -96,9 +119,11 @@ std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& f
 SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
                           const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
                           const solver::OutputCallback& at_output) {
-  const MachineRun felt = felt_run(machine, cyclogram);
+  const bool moves = follows_moves(machine, model, cyclogram);
+  const MachineRun felt = followed_run(machine, model, cyclogram);
   const auto run = [&](const auto& system) {
     try {
+      if (moves) return simulate_moving(machine, options, model, from, cyclogram, felt, times_s, at_output);
       return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, options, from, at_output);
     } catch (const solver::TemperatureOutOfBounds& e) {
       throw SolveError(fmt::format("cyclogram '{}': {}{}", cyclogram.name,
@@ -134,7 +159,7 @@ Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
 
 Eigen::VectorXd after_what_was_before(const MachineModel& machine, const solver::TransientOptions& options,
                                       const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram) {
-  const MachineRun felt = felt_run(machine, cyclogram);
+  const MachineRun felt = followed_run(machine, model, cyclogram);
   return model.reduced() ? after_what_was_before(model.reduced()->system, felt, options, from)
                          : after_what_was_before(model.full()->system, felt, options, from);
 }
@@ -178,7 +203,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
       if (failure) std::rethrow_exception(failure);
       last_s = time_s;
       if (fields.take && i == fields.cyclogram && field_times.is_due(time_s)) {
-        write_fields(scenario, model, materials, time_s, state, fields);
+        write_fields(scenario, model, materials, cyclogram, time_s, state, fields);
       }
     };
     const Eigen::VectorXd from = after_what_was_before(

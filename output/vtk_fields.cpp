@@ -119,11 +119,9 @@ class VtuWriter : public FieldWriter {
   }
 
   void finish(const std::vector<double>& times_s) override {
-    std::string pvd = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
-    for (std::size_t i = 0; i < times_s.size(); ++i) {
-      pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n", times_s[i], i);
-    }
-    folder_.write_text("fields.pvd", pvd + "  </Collection>\n</VTKFile>\n");
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < times_s.size(); ++i) files.push_back(fmt::format("fields/fields_{:04}.vtu", i));
+    folder_.write_text("fields.pvd", pvd_text(times_s, files));
   }
 
  private:
@@ -197,6 +195,53 @@ void write_region_fields(const mesh::Mesh& mesh, std::span<const RegionField> fi
       array->SetValue(c, static_cast<float>(f.value[static_cast<std::size_t>(mesh.cells.group[c])]));
   }
   write_grid(grid, file);
+}
+
+void write_point_grid(const std::vector<int>& n, const Eigen::Matrix3Xd& place_m, std::span<const PointVectors> vectors,
+                      double time_s, const std::filesystem::path& file) {
+  std::vector<std::pair<int, int>> directions;  // number of points, and distance of neighbours in their list
+  int n_points = 1;
+  for (const int of_direction : n) {
+    if (of_direction > 1) directions.emplace_back(of_direction, n_points);
+    n_points *= of_direction;
+  }
+  if (place_m.cols() != n_points)
+    throw std::logic_error(fmt::format("{} points for a grid of {}", place_m.cols(), n_points));
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(n_points);
+  for (int i = 0; i < n_points; ++i) points->SetPoint(i, place_m.col(i).data());
+  grid->SetPoints(points);
+  const std::size_t dimension = directions.size() > 3 ? 0 : directions.size();
+  constexpr int kTypes[] = {VTK_VERTEX, VTK_LINE, VTK_QUAD, VTK_HEXAHEDRON};
+  for (int i = 0; i < n_points; ++i) {
+    std::vector<vtkIdType> corners = {i};
+    bool is_inside = true;  // a cell begins here
+    for (std::size_t d = 0; d < dimension; ++d) {
+      const auto& [of_direction, step] = directions[d];
+      is_inside = is_inside && (i / step) % of_direction + 1 < of_direction;
+      const std::size_t n_corners = corners.size();
+      for (std::size_t c = 0; c < n_corners; ++c) corners.push_back(corners[c] + step);
+    }
+    for (std::size_t c = 2; dimension >= 2 && c < corners.size(); c += 4)
+      std::swap(corners[c], corners[c + 1]);  // around a face
+    if (is_inside) grid->InsertNextCell(kTypes[dimension], static_cast<vtkIdType>(corners.size()), corners.data());
+  }
+  for (const PointVectors& v : vectors) {
+    if (v.value.cols() != n_points) throw std::logic_error(fmt::format("{}: {} vectors", v.name, v.value.cols()));
+    auto* array = add_array<vtkFloatArray>(grid->GetPointData(), v.name.c_str(), 3, n_points);
+    for (int i = 0; i < n_points; ++i) array->SetTuple(i, v.value.col(i).data());
+  }
+  add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
+  write_grid(grid, file);
+}
+
+std::string pvd_text(const std::vector<double>& times_s, const std::vector<std::string>& files) {
+  std::string pvd = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+  for (std::size_t i = 0; i < times_s.size(); ++i)
+    pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", times_s[i], files[i]);
+  return pvd + "  </Collection>\n</VTKFile>\n";
 }
 
 }  // namespace driftwright::output

@@ -47,4 +47,21 @@ struct RegionField {
 /// @throws InputError  when the file cannot be written
 void write_region_fields(const mesh::Mesh& mesh, std::span<const RegionField> fields, const std::filesystem::path& file);
 
+/// A vector at each point.
+struct PointVectors {
+  std::string name;  ///< of the point array, with its unit
+  Eigen::Matrix3Xd value;
+};
+/// Writes the points of a grid with vectors: hexahedra, quadrilaterals or lines between neighbours where at most three of the
+/// counts are above one, single points otherwise.
+/// @param n       number of points along each direction of the grid; the first changes fastest
+/// @param place_m 3 x n_points
+/// @param file    a path from ResultsFolder::path()
+/// @throws std::logic_error  when the counts do not fit @throws InputError  when the file cannot be written
+void write_point_grid(const std::vector<int>& n, const Eigen::Matrix3Xd& place_m, std::span<const PointVectors> vectors,
+                      double time_s, const std::filesystem::path& file);
+
+/// Text of a .pvd file that lists files with their times [s].
+[[nodiscard]] std::string pvd_text(const std::vector<double>& times_s, const std::vector<std::string>& files);
+
 }  // namespace driftwright::output

@@ -108,6 +108,7 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
   const MachineModel& machine = *scenario.machine;
   if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: the mass matrix must be the unit matrix");
   for (const Cyclogram& c : scenario.cyclograms) {
+    scenarios::require_resting(machine.axes, c);
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
       throw InputError(machine.where,
                        fmt::format("an effect follows the recorded column '{}', which is no input of the page "

@@ -116,6 +116,7 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
 
 MachineRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
   require_columns(model, recorded);
+  require_resting(model.axes, recorded);
   return felt_run_as_far_as_known(model, recorded);
 }
 

@@ -12,7 +12,8 @@ inline constexpr const char* kAmbient = "ambient";
 
 /// The run that the machine really has while the record says `recorded` and the scenario's ambient: drive, ambient and what
 /// drove the machine before, as its effects change them. It has no readings.
-/// @throws InputError  if an effect requires a column that the cyclogram does not have
+/// @throws InputError  if an effect requires a column that the cyclogram does not have, and if the cyclogram moves an axis
+/// away from the model's pose (simulate_run() follows such cyclograms)
 [[nodiscard]] MachineRun felt_run(const MachineModel& model, const Cyclogram& recorded);
 /// The same for a cyclogram that is only examined: a missing column counts as 0.
 [[nodiscard]] MachineRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded);

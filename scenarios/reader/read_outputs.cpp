@@ -17,19 +17,6 @@ Value axis() {
   return choice({"x", "y", "z"});
 }
 
-Value point() {
-  return schema::map({.name = "points",
-                      .keys = {compulsory("region", text(), "that the point moves with"),
-                               compulsory("at", schema::vector3("m"), "moved onto the region by at most 5 mm")},
-                      .about = "A point on or in a region of the mesh."});
-}
-
-PointOnRegion read_point(const ConfigMap& in) {
-  PointOnRegion point{in.text("region"), in.vector3("at"), in.where("at")};
-  in.reject_unknown_keys();
-  return point;
-}
-
 BySensitivity read_sensitivities(const ConfigMap& in) {
   BySensitivity by{.terms = {}, .where = in.where("sensitivities")};
   for (const ConfigMap& term : in.maps("sensitivities")) {
@@ -87,6 +74,19 @@ std::vector<DisplacementOutput> on_screw(const ConfigMap& in, DisplacementOutput
 
 }  // namespace
 
+schema::Value point_schema() {
+  return schema::map({.name = "points",
+                      .keys = {compulsory("region", text(), "that the point moves with"),
+                               compulsory("at", schema::vector3("m"), "moved onto the region by at most 5 mm")},
+                      .about = "A point on or in a region of the mesh."});
+}
+
+PointOnRegion read_point(const ConfigMap& in) {
+  PointOnRegion point{in.text("region"), in.vector3("at"), in.where("at")};
+  in.reject_unknown_keys();
+  return point;
+}
+
 schema::Map sensor_schema() {
   return {.name = "sensors",
           .keys = {compulsory("name", schema::name(), "of its channel"),
@@ -113,8 +113,9 @@ schema::Map displacement_schema() {
       .keys =
           {compulsory("name", schema::name(), "of its channel"),
            schema::optional("along", axis(), "the axis that it is measured along"),
-           schema::optional("tool", point(), "point of the tool"),
-           schema::optional("table", point(), Said{"the ground"}, "point that the indicator's stand moves and turns with"),
+           schema::optional("tool", point_schema(), "point of the tool"),
+           schema::optional("table", point_schema(), Said{"the ground"},
+                            "point that the indicator's stand moves and turns with"),
            schema::optional(
                "positions", schema::map(positions),
                "one output for each place that the table has travelled to: the indicator then rests on another spot of it"),
@@ -135,8 +136,9 @@ schema::Map tilt_schema() {
   return {.name = "tilts",
           .keys = {compulsory("name", schema::name(), "of its channel"),
                    compulsory("about", axis(), "the axis that the line tilts about"),
-                   compulsory("from", point(), "where the line begins"), compulsory("to", point(), "where it ends"),
-                   compulsory("table", point(), "what it tilts against")},
+                   compulsory("from", point_schema(), "where the line begins"),
+                   compulsory("to", point_schema(), "where it ends"),
+                   compulsory("table", point_schema(), "what it tilts against")},
           .about = "Changes of the angle of a line against the table (ISO 230-3)."};
 }
 

@@ -77,7 +77,10 @@ struct TiltOutput {
 [[nodiscard]] schema::Map sensor_schema();
 [[nodiscard]] schema::Map displacement_schema();
 [[nodiscard]] schema::Map tilt_schema();
+/// The schema of a point on or in a region.
+[[nodiscard]] schema::Value point_schema();
 
+[[nodiscard]] PointOnRegion read_point(const ConfigMap& in);
 [[nodiscard]] Sensor read_sensor(const ConfigMap& in);
 /// One output; or with `positions` one per position of the table, named <name>_<axis><position in mm>; or with `at` one per
 /// place of the screw, named <name>_<position in mm>.

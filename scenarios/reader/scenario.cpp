@@ -42,9 +42,10 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
 
-/// Drops the places of an NC program's axes that no effect asks for.
+/// Drops the places of an NC program's axes that neither an effect nor a moving body asks for.
 void keep_wanted_columns(const MachineModel& machine, Cyclogram& cyclogram) {
-  const std::vector<std::string> wanted = wanted_columns(machine, cyclogram.name);
+  std::vector<std::string> wanted = wanted_columns(machine, cyclogram.name);
+  for (const MovingAxis& axis : machine.axes) wanted.push_back(axis.column);
   std::erase_if(cyclogram.columns, [&](const Cyclogram::Column& c) {
     return std::none_of(wanted.begin(), wanted.end(),
                         [&](const auto& name) { return name == c.name || name == c.header(); });
@@ -96,6 +97,24 @@ void read_start(const ConfigMap& in, MachineModel& m) {
   }
 }
 
+/// `axes`, which need a mesh with bodies to move, and points on them that stay.
+void read_moving_bodies(const ConfigMap& in, MachineModel& m) {
+  const auto axes = in.optional_map("axes");
+  if (!axes) return;
+  m.axes = read_axes(*axes);
+  m.written += fmt::format("axes: {}\n", in.written("axes"));
+  if (std::holds_alternative<LumpedMachine>(m.mesh))
+    in.fail("axes", "a machine of lumped nodes has no bodies that slide; `feed_axis` is a screw without a mesh");
+  for (const DisplacementOutput& d : m.displacements) {
+    if (d.points && d.points->travel_m != Eigen::Vector3d::Zero())
+      throw InputError(d.points->table->where,
+                       fmt::format("displacement '{}' has `positions`, which move the indicator over a "
+                                   "mesh that stays; with `axes` the bodies move, and `positions` "
+                                   "must be left out",
+                                   d.name));
+  }
+}
+
 MachineModel read_machine(const ConfigMap& in) {
   MachineModel m;
   m.reference_K = in.quantity("reference_temperature");
@@ -118,6 +137,7 @@ MachineModel read_machine(const ConfigMap& in) {
     m.written += fmt::format("{}: {}\n", key, in.written(key));
   }
   find_screws(m);
+  read_moving_bodies(in, m);
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
   if (has_mesh && m.supports.empty()) in.fail("supports", "there is no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
@@ -312,6 +332,7 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
   }
   for (const Cyclogram::Section& section : cyclogram.sections)
     require_speed_within_limits(scenario, section.drive.speed_rpm, fmt::format("cyclogram '{}'", cyclogram.name));
+  require_within_range(scenario.machine->axes, cyclogram);
   const Cyclogram felt = felt_run_as_far_as_known(*scenario.machine, cyclogram).cyclogram;
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
@@ -417,6 +438,8 @@ Scenario read_scenario(const ConfigMap& top) {
   if (const auto table = in.optional_map("table")) {
     scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
   }
+  if (const auto volume = in.optional_map("volume"))
+    scenario.volume = read_volume(*volume, scenario.machine->axes, scenario.cyclograms);
   check_instruments(*scenario.machine, scenario.cyclograms);  // displacements include the points of a table
   in.reject_unknown_keys();
   return scenario;

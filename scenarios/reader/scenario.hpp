@@ -17,12 +17,14 @@
 #include "compensation/sensors/grey_relational.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/reader/programme.hpp"
+#include "scenarios/reader/read_axes.hpp"
 #include "scenarios/reader/read_axis_loop.hpp"
 #include "scenarios/reader/read_mechanics.hpp"
 #include "scenarios/reader/read_mesh.hpp"
 #include "scenarios/reader/read_outputs.hpp"
 #include "scenarios/reader/read_schedule.hpp"
 #include "scenarios/reader/read_table.hpp"
+#include "scenarios/reader/read_volume.hpp"
 #include "scenarios/reader/validation.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
@@ -52,6 +54,7 @@ struct MachineModel {
   std::vector<MaterialEntry> materials;
   std::vector<SupportEntry> supports;
   std::vector<JointEntry> joints;  ///< mechanics of joints that are not tied
+  std::vector<MovingAxis> axes;    ///< and their positions; bodies of the mesh are moved there by place()
   std::vector<effects::Effect> effects;
   std::vector<Sensor> sensors;
   std::vector<DisplacementOutput> displacements;
@@ -118,6 +121,7 @@ struct Scenario {
   std::optional<ScheduleSettings> schedule;
   std::optional<AxisLoopSettings> axis_loop;
   std::optional<TableSettings> table;  ///< its points follow the machine's own displacements
+  std::optional<VolumeSettings> volume;
 
   /// @throws InputError  listing the existing cyclograms
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;

@@ -112,7 +112,7 @@ std::string expansion_factors(const SweepPlan& plan, std::size_t member) {
 
 std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what) {
   static const std::set<std::string> of_run = {"cyclograms", "ambient", "solver", "start"};
-  static const std::set<std::string> of_structure = {"machine", "materials", "supports", "joints", "displacements", "tilts"};
+  static const std::set<std::string> of_structure = {"machine", "materials", "supports", "joints", "axes", "displacements", "tilts"};
   std::string key;
   for (std::size_t i = 0; i < plan.variations.size(); ++i) {
     const std::vector<std::string>& tops = plan.variations[i].tops;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/record.hpp"
+#include "tests/app/csv_table.hpp"
 #include "tests/shared/command_line.hpp"
 
 namespace driftwright::shipped_scenarios_test {
@@ -113,6 +114,52 @@ TEST(CFrame, FromADrawingToFieldsWithStresses) {
   EXPECT_EQ(draught[20], 0.0);
   EXPECT_NE(draught[25], 0.0);
   EXPECT_EQ(draught[31], 0.0);
+}
+
+TEST(MovingMill, TheVolumeHoldsTheErrorsOfTheRecordWhereBothAreAtOnePose) {
+  const std::filesystem::path folder = fresh_folder("moving_mill") / "results";
+  const CommandOutcome outcome = run_program("run scenarios/moving_mill.yaml -o " + folder.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const fixtures::Table table = fixtures::read_table(folder / "volume.csv");
+  ASSERT_EQ(table.size(), 1u + 2 * 27);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(table[0].begin(), table[0].end(), name) - table[0].begin());
+  };
+  const auto is_at = [&](const std::vector<std::string>& row, double x_mm, double y_mm, double z_mm) {
+    return std::stod(row[column("time_min")]) == 180.0 && std::stod(row[column("position_x_mm")]) == x_mm &&
+           std::stod(row[column("position_y_mm")]) == y_mm && std::stod(row[column("position_z_mm")]) == z_mm;
+  };
+  // The cyclogram ends at the drawn pose, where the foot of the volume is the point `table` of the displacements.
+  const Record record = read_record_csv((folder / "record.csv").string());
+  EXPECT_EQ(record.at("position_x").values[5], -150.0);
+  int n_met = 0;
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    if (is_at(table[i], 0.0, 0.0, 0.0)) {
+      ++n_met;
+      EXPECT_NEAR(std::stod(table[i][column("EY_um")]), record.at("nose_y").values.back(), 1e-3);
+      EXPECT_NEAR(std::stod(table[i][column("EZ_um")]), record.at("nose_z").values.back(), 1e-3);
+    }
+    if (is_at(table[i], 200.0, -50.0, 100.0)) {
+      ++n_met;
+      EXPECT_NEAR(std::stod(table[i][column("place_x_mm")]), -200.0, 1e-6);  // the work has moved the other way
+      EXPECT_NEAR(std::stod(table[i][column("place_y_mm")]), -60.0 + 50.0, 1e-6);
+      EXPECT_NEAR(std::stod(table[i][column("place_z_mm")]), 740.0, 1e-6);
+    }
+  }
+  EXPECT_EQ(n_met, 2);
+  for (const char* name :
+       {"report.html", "volume.pvd", "volume/volume_0000.vtu", "volume/volume_0001.vtu", "heat_flows.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+}
+
+TEST(MovingMill, EndsWithTwoWhereAnAxisLeavesItsRange) {
+  const std::filesystem::path folder = fresh_folder("moving_mill_refused") / "results";
+  const CommandOutcome outcome =
+      run_program("simulate scenarios/moving_mill.yaml --cyclogram still --pose x=300mm -o " + folder.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("scenarios/moving_mill.yaml:"));
+  EXPECT_THAT(outcome.output, HasSubstr("outside the `range` of axis 'x', -200 mm to 200 mm"));
+  EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
 TEST(Mesh, OfALumpedMachineIsRefused) {

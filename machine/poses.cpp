@@ -1,0 +1,120 @@
+#include "machine/poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "base/lists.hpp"
+#include "machine/found_in_mesh.hpp"
+#include "mesh/joint_sides.hpp"
+#include "mesh/overlapping_cells.hpp"
+#include "solver/joint.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+/// Which axes move a region.
+using Carriers = std::vector<bool>;
+
+Carriers carriers_of(const std::vector<MovingAxis>& axes, const std::string& region) {
+  Carriers carriers;
+  for (const MovingAxis& axis : axes) carriers.push_back(is_in(axis.moves, region));
+  return carriers;
+}
+
+/// @throws InputError  if the regions of a joint's side are moved by different axes
+Carriers carriers_of_side(const std::vector<MovingAxis>& axes, const mesh::Mesh& mesh, const std::string& side,
+                          std::span<const mesh::DescribedFacet> outer) {
+  std::optional<Carriers> carriers;
+  for (const int region : mesh::regions_of_surface(mesh, side, outer)) {
+    const Carriers here = carriers_of(axes, mesh.regions[static_cast<std::size_t>(region)]);
+    if (carriers && *carriers != here)
+      throw InputError(axes.front().where,
+                       fmt::format("surface '{}' is one side of a joint and has faces of several regions, "
+                                   "of which `axes` moves only some; pick its faces by `region`",
+                                   side));
+    carriers = here;
+  }
+  return carriers.value_or(Carriers(axes.size(), false));
+}
+
+/// @throws InputError  if the sides of a joint have lost each other, or the axis does not move along them
+void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const MovingAxis& axis) {
+  constexpr double kMostRise = 0.1;  // 6 degrees, as faces of a guide (mesh/joint_sides.cpp)
+  const std::string lost =
+      fmt::format("at {} = {:g} mm joint '{}' has lost its guide: ", axis.name, 1e3 * axis.at_m, joint.name);
+  std::vector<solver::JointPoint> points;
+  try {
+    points = solver::joint_points(mesh, joint);
+  } catch (const InputError&) {
+    throw InputError(axis.where, lost + "its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
+  }
+  const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis.along);
+  if (std::any_of(points.begin(), points.end(), [&](const auto& p) { return std::abs(p.normal.dot(along)) > kMostRise; }))
+    throw InputError(axis.where,
+                     lost + "the axis moves its two sides apart, not along each other; correct `along` or `moves`");
+}
+
+void require_apart(const mesh::Mesh& mesh, const std::vector<MovingAxis>& axes) {
+  const std::optional<mesh::CellOverlap> overlap = mesh::find_overlap(mesh);
+  if (!overlap) return;
+  const auto region = [&](int cell) { return mesh.regions[static_cast<std::size_t>(mesh.cells.group[cell])]; };
+  const Eigen::Vector3d at_mm = 1e3 * overlap->point_m;
+  throw InputError(axes.front().where,
+                   fmt::format("at {} the regions '{}' and '{}' overlap at [{:.1f} mm, {:.1f} mm, {:.1f} mm]; narrow the "
+                               "`range`, or add the other region to `moves`",
+                               pose_words(axes, pose_of(axes)), region(overlap->cell), region(overlap->other), at_mm[0],
+                               at_mm[1], at_mm[2]));
+}
+
+}  // namespace
+
+MachineModel at_pose(MachineModel model, const Pose& pose) {
+  for (std::size_t i = 0; i < model.axes.size(); ++i) model.axes[i].at_m = pose[i];
+  return model;
+}
+
+void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
+  const std::vector<MovingAxis>& axes = model.axes;
+  if (axes.empty()) return;
+  for (const MovingAxis& axis : axes) {
+    for (const std::string& region : axis.moves) must_be_one_of(axis.where, "region", region, mesh.regions);
+  }
+  for (const effects::Exchange& e : effects::heat_balance(model.effects).exchanges) {
+    if (!e.part.is_even())
+      throw InputError(axes.front().where,
+                       fmt::format("{} takes its film from a file, whose places do not move with bodies; "
+                                   "leave out `axes`, or take another film",
+                                   e.name));
+  }
+  const std::vector<mesh::DescribedFacet> outer = mesh::described_outer_faces(mesh);
+  std::vector<std::pair<std::size_t, std::size_t>> sliding;  // joint and axis
+  for (std::size_t j = 0; j < mesh.joints.size(); ++j) {
+    const mesh::Joint joint = mesh.joints[j];
+    const Carriers a = carriers_of_side(axes, mesh, joint.side_a, outer),
+                   b = carriers_of_side(axes, mesh, joint.side_b, outer);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (a[i] == b[i]) continue;
+      mesh::continue_sides(mesh, joint, outer, Eigen::Vector3d::Unit(axes[i].along));
+      sliding.emplace_back(j, i);
+    }
+  }
+  std::vector<Eigen::Vector3d> shift(mesh.regions.size());
+  std::transform(mesh.regions.begin(), mesh.regions.end(), shift.begin(),
+                 [&](const std::string& region) { return shift_m(axes, region); });
+  if (const auto torn = mesh::move_regions(mesh, shift))
+    throw InputError(axes.front().where,
+                     fmt::format("the regions '{}' and '{}' share nodes and are one body; an axis must move both or neither",
+                                 mesh.regions[static_cast<std::size_t>(torn->first)],
+                                 mesh.regions[static_cast<std::size_t>(torn->second)]));
+  const bool is_drawn = std::all_of(shift.begin(), shift.end(), [](const auto& s) { return s == Eigen::Vector3d::Zero(); });
+  if (is_drawn) return;
+  for (const auto& [joint, axis] : sliding) require_guided(mesh, mesh.joints[joint], axes[axis]);
+  require_apart(mesh, axes);
+}
+
+}  // namespace driftwright::scenarios
