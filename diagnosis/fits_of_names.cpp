@@ -11,6 +11,8 @@ namespace {
 constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostRounds = 6;
 constexpr double kSettled = 0.05;  // of Φ
+constexpr int kMostTurnsOfRival = 3;
+constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
 // something explains what is stated.
@@ -303,8 +305,9 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   }
 }
 
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
-  for (int turn = 0; turn < kMostRounds; ++turn) {
+void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
+  Twin::Workspace workspace(fitter.twin());
+  for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
     Fit again;
     if (!has_solution([&] { again = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); })) return;
     const double gained = fit.misfit - again.misfit;

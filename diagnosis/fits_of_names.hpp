@@ -11,9 +11,8 @@
 
 namespace driftwright::diagnosis {
 
-inline constexpr double kBetter = 0.5;            // nats for which one explanation is exchanged for another
-inline constexpr double kEvenOdds = 0.5;          // that nothing is wrong
-inline constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
+inline constexpr double kBetter = 0.5;    // nats for which one explanation is exchanged for another
+inline constexpr double kEvenOdds = 0.5;  // that nothing is wrong
 
 /// Inputs of a search; the list of names grows during the search.
 struct Ground {
@@ -143,9 +142,9 @@ struct Worth {
 /// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be
 /// credited to the next claim.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
-/// Continues a fit from its end until this gains nothing, as settle_well() does: hypotheses are compared where each has
-/// converged, and slopes computed elsewhere must be no disadvantage.
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace);
+/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes
+/// computed elsewhere must be no disadvantage.
+void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
 /// The odds of one statement in addition to some claims.
 [[nodiscard]] StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_claims, double explained);
 

@@ -6,24 +6,38 @@
 
 #include "base/parallel.hpp"
 #include "base/shown_units.hpp"
-#include "diagnosis/fits_of_names.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/unseen_drive.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNoSolution = -1e6;  // nats of a fold without a fit
+constexpr Eigen::Index kAllFitted = -1;  // index for the fit to all rows
+constexpr double kNoSolution = -1e6;     // nats of a fold without a fit
 // Features of a kept-out record alone, such as its ambient, contribute to errors and say nothing about a claim: errors
 // decide only if the likelihood is not clear.
 constexpr double kSurelyLikelierKeptOut = 10.0;  // nats
 constexpr double kWorseKeptOut = 1.1;            // ratio of the squares
 constexpr double kMuchWorse = 1.25;              // ratio of the squares: evidence against a claim itself
+constexpr int kMostAgain = 6;                    // largest number of further climbs from the end of the last one
+constexpr double kStoppedShort = 0.3;            // nats; a climb that gains less is converged
 
 /// The kind of a cause, regardless of whether it lasts or comes in windows, or of a path that the scenario has or lacks:
 /// with fewer rows these may look alike.
 std::string_view lasting_kind(std::string_view effect) {
   return effect == "heat_window" ? "heat_source" : effect == "exchange_window" || effect == "link" ? "contact" : effect;
+}
+
+/// Climbs until convergence: a premature stop in one fold would give a false difference of evidence.
+void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
+  for (int again = 0; again < kMostAgain; ++again) {
+    Fit next;
+    const bool is_solved = has_solution([&] { next = fitter.fit_others(hypothesis, fit.x, kAllFitted, workspace); });
+    if (!is_solved || !(next.misfit < fit.misfit)) return;
+    const double gained = fit.misfit - next.misfit;
+    fit = std::move(next);
+    if (gained < kStoppedShort) return;
+  }
 }
 
 }  // namespace
@@ -58,7 +72,7 @@ const Judge::Judged& Judge::judged(Subset claims) {
           fits[f] = Fit{};
           return;
         }
-        fit_on(fitter, rest.hypothesis, fits[f], workspace);  // a premature stop would give a false difference of evidence
+        go_on(fitter, rest.hypothesis, fits[f], workspace);
       });
   // A fit to fewer readings cannot have a larger misfit than the fit to all: if it has, it stopped early, and continues
   // from the end of the fit to all.
@@ -68,8 +82,8 @@ const Judge::Judged& Judge::judged(Subset claims) {
     Twin::Workspace workspace(whole_.twin());
     Fit again;
     const bool is_solved =
-        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kNothingHeld, workspace); });
-    if (is_solved) fit_on(*fitters_[f], rest.hypothesis, again, workspace);
+        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kAllFitted, workspace); });
+    if (is_solved) go_on(*fitters_[f], rest.hypothesis, again, workspace);
     if (is_solved && (fits[f].prediction.empty() || again.misfit < fits[f].misfit)) fits[f] = std::move(again);
   }
   Judged j;

@@ -59,6 +59,15 @@ const std::map<std::string, std::vector<StatedQuantity>>& quantities() {
   return map;
 }
 
+Words words_of(const std::string& where) {
+  Words words;
+  std::istringstream list(where);
+  for (std::string name; std::getline(list, name, ',');) {
+    if (name != effects::kAmbientName) words.insert(name);
+  }
+  return words;
+}
+
 bool has_common(const Words& a, const Words& b) {
   return std::any_of(a.begin(), a.end(), [&](const std::string& w) { return b.contains(w); });
 }
@@ -179,18 +188,9 @@ void try_size(const Stated& stated, Candidate& candidate) {
 
 }  // namespace
 
-Words names_in(const std::string& where) {
-  Words names;
-  std::istringstream list(where);
-  for (std::string name; std::getline(list, name, ',');) {
-    if (name != effects::kAmbientName) names.insert(name);
-  }
-  return names;
-}
-
 bool says(const Statement& s, const std::string& effect, const std::string& where) {
   const auto of = quantities().find(effect);
-  const Words claimed = names_in(where);
+  const Words claimed = words_of(where);
   Words stated(s.place.begin(), s.place.end());
   stated.erase(effects::kAmbientName);
   if (!s.at.empty()) stated.insert(s.at);

@@ -9,9 +9,6 @@ namespace driftwright::diagnosis {
 /// The subject of a statement; each becomes one claim.
 using StatedPlace = std::pair<StatedQuantity, std::vector<std::string>>;
 
-/// The names in a place, without the ambient.
-[[nodiscard]] std::set<std::string> names_in(const std::string& where);
-
 /// Whether an effect at a place does what a statement says. For a key that is not part of the shipped catalogue only the
 /// place is compared.
 /// @param where  names of bodies, channels or the ambient, separated by commas

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "diagnosis/fits_of_names.hpp"
 
@@ -14,10 +15,20 @@ constexpr double kNearBest = 12.0;    // nats: what fits on may make up for
 constexpr double kSame = 6.0;         // squares of whitened readings: what noise makes of two numbers more, at 95 %
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 
+/// The bodies named by a place.
+std::set<std::string> bodies_in(const std::string& where) {
+  std::set<std::string> names;
+  std::istringstream list(where);
+  for (std::string name; std::getline(list, name, ',');) {
+    if (name != effects::kAmbientName) names.insert(name);
+  }
+  return names;
+}
+
 /// Whether two claims about the same bodies mean the same, so that no reading could distinguish them, such as a window that
 /// lasts to the end and heat from a time on.
 bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
-  if (names_in(a.where) != names_in(b.where) || are_apart(a.effect, b.effect)) return false;
+  if (bodies_in(a.where) != bodies_in(b.where) || are_apart(a.effect, b.effect)) return false;
   const Comparison& c = fitter.comparison();
   return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
 }
@@ -97,12 +108,10 @@ InItsPlace find_rivals(const Ground& ground, const Worth& worth, const SearchRes
   InItsPlace in{.rivals = {rival(claim, best_value)},
                 .fitted = {{.claim = claim, .fit = {}, .log_evidence_gain = result.findings[i].log_evidence_gain}},
                 .full = {{claim.candidate, result.fit.log_evidence - fit.log_evidence}}};
-  Twin::Workspace workspace(ground.fitter.twin());
   for (FittedClaim& f : fit_instead(ground, others, fit, worth.options.refits, nullptr, listener)) {
     if (f.claim.candidate == claim.candidate) continue;
     const Hypothesis instead = with(others, f.claim);
-    if (worth.evidence(candidates, f.fit, instead) > best_value - kNearBest)
-      fit_on(ground.fitter, instead, f.fit, workspace);
+    if (worth.evidence(candidates, f.fit, instead) > best_value - kNearBest) fit_on(ground.fitter, instead, f.fit);
     if (f.fit.prediction.empty()) continue;  // no solution near it
     in.full[f.claim.candidate] = f.fit.log_evidence - fit.log_evidence;
     const double value = worth.evidence(candidates, f.fit, instead);
