@@ -218,7 +218,8 @@ TEST(ControlFiles, AreTheFilesThatAreCompiledInToTheByte) {
     EXPECT_EQ(file.text, source) << file.name;
   }
   EXPECT_THAT(names, ::testing::ElementsAre("drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c",
-                                            "probe_feedback.h", "probe_feedback.c", "probe_members.h", "probe_members.c"));
+                                            "axis_travel.h", "axis_travel.c", "probe_feedback.h", "probe_feedback.c",
+                                            "probe_members.h", "probe_members.c"));
 }
 
 TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
@@ -372,7 +373,7 @@ TEST(CFunction, MovesTheWeightsOfABlendAsTheProgramDoes) {
     least_first = std::min(least_first, y[4]);
     most_first = std::max(most_first, y[4]);
   }
-  EXPECT_GE(n_refused, 1);  // the chip
+  EXPECT_GE(n_refused, 1);      // the chip
   EXPECT_GT(most_first, 0.36);  // it begins at a third: the weights have moved there and back
   EXPECT_LT(least_first, 0.25);
 }
