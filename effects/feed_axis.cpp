@@ -67,8 +67,9 @@ std::function<std::vector<Expression::Step>()> share_steps(const Effect& e, cons
                                 " + " + square(" - " + outer);
       return "if(" + b + " > 1e-6*" + a + ", " + within("(" + parts + ")/(2*" + a + "*" + b + ")") + ", " + box + ")";
     };
-    const std::string share = "(" + (i + 1 == rod.n_sections ? std::string("1") : below((i + 1) * rod.section_m())) + " - " +
-                              (i == 0 ? std::string("0") : below(i * rod.section_m())) + ")";
+    const std::string share = "max(" + (i + 1 == rod.n_sections ? std::string("1") : below((i + 1) * rod.section_m())) +
+                              " - " + (i == 0 ? std::string("0") : below(i * rod.section_m())) +
+                              ", 0)";  // below 0 by rounding
     std::vector<Expression::Step> steps =
         with_constants_folded(parse_expression("(" + factor + ")*" + share, {"v", "p", "s"}).steps);
     const std::size_t names[] = {1 + axis, kFirstPlace + place, kFirstPlace + way};  // v_x, v_y, v_z after n
