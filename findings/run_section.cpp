@@ -122,7 +122,7 @@ Table heat_table(const solver::Trajectory& run) {
       const double heat_J = run.heat_J(static_cast<Eigen::Index>(j), last), mean_W = heat_J / duration_s;
       (mean_W > 0.0 ? in_W : lost_W) += std::abs(mean_W);
       table.rows.push_back({run.flows[j].name, words(kind), mean_W > 0.0 ? Datum(mean_W) : Datum(),
-                            mean_W > 0.0 ? Datum() : Datum(-mean_W), 1e-3 * heat_J});
+                            mean_W > 0.0 ? Datum() : Datum(std::abs(mean_W)), 1e-3 * heat_J});
     }
   }
   table.rows.push_back({"sum", "", in_W, lost_W, {}});

@@ -598,6 +598,7 @@ ControlProgram control_program_over_travel(std::span<const PlacedModel> places, 
         "a program that {} calls sets one shift for the whole travel, so it cannot follow the position of the axis; take "
         "--as siemens, linuxcnc, st or c, or one --model of the place where the parts are",
         language == ControlLanguage::kFanuc ? "Fanuc's control" : "Heidenhain's control"));
+  require_of_one_run(places);
   const FailSafe& first = places.front().model.safe;
   std::vector<FailSafe::Guard> guards;
   std::vector<FormulaPart> parts;
@@ -608,12 +609,6 @@ ControlProgram control_program_over_travel(std::span<const PlacedModel> places, 
   for (const PlacedModel& p : places) {
     const FailSafe& safe = p.model.safe;
     require_one_start(p.model);
-    if (safe.period_s != first.period_s || safe.from_start != first.from_start)
-      throw InputError(fmt::format("'{}' and '{}' cannot run in one program: {}; take models of one run of `validate`",
-                                   places.front().model.model.target, p.model.model.target,
-                                   safe.period_s != first.period_s
-                                       ? fmt::format("their rows are {:g} s and {:g} s apart", first.period_s, safe.period_s)
-                                       : "one of them counts temperatures from the first row"));
     FormulaPart part{p.model.model, safe, {}, fmt::format("p{}_", parts.size())};
     for (const FailSafe::Guard& g : safe.guards) part.readings.push_back(reading_among(guards, g));
     parts.push_back(std::move(part));

@@ -419,16 +419,29 @@ DeployedModel without_probings(DeployedModel d) {
   return d;
 }
 
+/// The places' names in C. "x_-400" and "x_400" give the same name, and so do names that differ in case alone, in macros.
+std::vector<std::string> place_names(std::span<const PlacedModel> places, const std::string& of) {
+  std::vector<std::string> names, taken = {upper_case(target_name(of))};
+  for (const PlacedModel& p : places) {
+    const std::string plain = target_name(p.model.model.target);
+    std::string name = plain;
+    for (int k = 2; std::find(taken.begin(), taken.end(), upper_case(name)) != taken.end(); ++k)
+      name = fmt::format("{}_{}", plain, k);
+    names.push_back(name);
+    taken.push_back(upper_case(name));
+  }
+  return names;
+}
+
 std::vector<double> positions_mm(std::span<const PlacedModel> places) {
   std::vector<double> mm;
   for (const PlacedModel& p : places) mm.push_back(p.at_mm);
   return mm;
 }
 
-}  // namespace
-
-std::string c_function(const DeployedModel& d, const std::string& made_by) {
-  const std::string name = target_name(d.model.target), capitals = upper_case(name);
+/// c_function() whose names in C begin with `name`.
+std::string c_function_called(const std::string& name, const DeployedModel& d, const std::string& made_by) {
+  const std::string capitals = upper_case(name);
   const std::vector<std::string> readings = reading_names(d.safe.guards);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;
@@ -520,11 +533,19 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   return text + probed_function(d, name, arguments, readings);
 }
 
+}  // namespace
+
+std::string c_function(const DeployedModel& d, const std::string& made_by) {
+  return c_function_called(target_name(d.model.target), d, made_by);
+}
+
 std::string c_over_travel(std::span<const PlacedModel> places, const std::string& of, const std::string& made_by) {
   if (places.size() > AXIS_TRAVEL_PLACES)
     throw InputError(fmt::format("a correction over the travel takes at most {} places, and there are {}",
                                  AXIS_TRAVEL_PLACES, places.size()));
+  require_of_one_run(places);
   const std::string name = target_name(of);
+  const std::vector<std::string> names = place_names(places, of);
   const PlacedReadings readings = readings_of(places);
   std::string text =
       fmt::format("/* One correction over the travel of {}, straight between its places and held beyond them. {}\n",
@@ -535,14 +556,13 @@ std::string c_over_travel(std::span<const PlacedModel> places, const std::string
   std::vector<std::string> at, states, steps, trusts, arguments;
   for (const std::string& r : readings.names) arguments.push_back(fmt::format("double {}, ", r));
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const std::string target = target_name(places[k].model.model.target);
     std::string given;
     for (std::size_t r : readings.of_place[k]) given += readings.names[r] + ", ";
-    text += c_function(without_probings(places[k].model), made_by) + "\n";
+    text += c_function_called(names[k], without_probings(places[k].model), made_by) + "\n";
     at.push_back(c_number(places[k].at_mm));
-    states.push_back(fmt::format("  {}_state place_{};\n", target, k));
+    states.push_back(fmt::format("  {}_state place_{};\n", names[k], k));
     steps.push_back(
-        fmt::format("  s->corrections_um[{0}] = {1}_correction_um(&s->place_{0}, {2}dt_s);\n", k, target, given));
+        fmt::format("  s->corrections_um[{0}] = {1}_correction_um(&s->place_{0}, {2}dt_s);\n", k, names[k], given));
     trusts.push_back(fmt::format("  if (s->place_{0}.run.trust < s->trust) s->trust = s->place_{0}.run.trust;\n", k));
   }
   text += fmt::format(

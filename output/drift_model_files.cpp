@@ -57,6 +57,20 @@ std::size_t reading_among(std::vector<FailSafe::Guard>& guards, const FailSafe::
   return k;
 }
 
+void require_of_one_run(std::span<const PlacedModel> places) {
+  const DeployedModel& first = places.front().model;
+  for (const PlacedModel& p : places) {
+    const FailSafe& safe = p.model.safe;
+    if (safe.period_s == first.safe.period_s && safe.from_start == first.safe.from_start) continue;
+    throw InputError(
+        fmt::format("'{}' and '{}' cannot run in one program: {}; take models of one run of `validate`", first.model.target,
+                    p.model.model.target,
+                    safe.period_s != first.safe.period_s
+                        ? fmt::format("their rows are {:g} s and {:g} s apart", first.safe.period_s, safe.period_s)
+                        : "one of them counts temperatures from the first row"));
+  }
+}
+
 std::string formula_text(const DeployedModel& d) {
   const DriftModel& m = d.model;
   std::string text = fmt::format("{} [{}] =  {:.4g}\n", m.target, unit_word(m.target_unit), m.intercept);

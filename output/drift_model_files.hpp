@@ -1,6 +1,7 @@
 #pragma once
 // A formula for the drift and its fail-safe as text for people. (predictor_file writes it as JSON, drift_model_c as C.)
 
+#include <span>
 #include <string>
 
 #include "compensation/predictors/deployed_predictor.hpp"
@@ -31,6 +32,10 @@ struct PlacedModel {
 /// Where a guard's reading is among those of several formulas: each input once. One that is not there is added.
 [[nodiscard]] std::size_t reading_among(std::vector<compensation::FailSafe::Guard>& guards,
                                         const compensation::FailSafe::Guard& guard);
+
+/// @throws InputError  for places whose models one program cannot run: their rows are not equally far apart, or not all of them
+///                     count temperatures from the first row
+void require_of_one_run(std::span<const PlacedModel> places);
 
 /// What a control can run of a predictor: its formula with its fail-safe.
 /// @throws std::logic_error  for a predictor that gives no formula, and for one without a fail-safe

@@ -211,10 +211,10 @@ static int probe_accept(probe_state* state, int verdict) {
 }
 
 /* Whether a good probe would read the same number so often. */
-static int probe_is_stuck(probe_state* state, double read_um, double residual_um) {
+static int probe_is_stuck(const probe_process* process, probe_state* state, double read_um, double residual_um) {
   const double moved_um = fmin(fabs(state->off_um), fabs(residual_um - state->residual_um));
   const double apart_um = fabs(read_um - state->read_um), chance = state->step_um * PROBE_DENSEST / moved_um;
-  if (!state->has_read || apart_um > 0.0) {
+  if (!state->has_read || apart_um > PROBE_ROUNDING * process->noise_um) {
     if (state->has_read && (state->step_um == 0.0 || apart_um < state->step_um)) state->step_um = apart_um;
     state->ln_chance = 0.0;
   } else if (state->step_um > 0.0 && chance < 1.0) {
@@ -236,7 +236,7 @@ static int probe_hear(const probe_process* process, probe_state* state, double r
   if (!state->has_begun || state->time_s < process->lag_s) return probe_refuse(state, PROBE_TOO_EARLY);
   state->off_um = probe_off_um(process, state->now, residual_um, &state->bound_um);
   state->loss = probe_loss(process, state->now, residual_um, state->bound_um);
-  if (probe_is_stuck(state, read_um, residual_um)) return probe_refuse(state, PROBE_STUCK);
+  if (probe_is_stuck(process, state, read_um, residual_um)) return probe_refuse(state, PROBE_STUCK);
   if (fabs(state->off_um) <= state->bound_um) {
     probe_learn(process, state->now, residual_um);
     return probe_accept(state, PROBE_TAKEN);

@@ -57,6 +57,7 @@ extern "C" {
 #define PROBE_IN_ROW 3    /* refused probings of which the last one is taken */
 #define PROBE_CHANCE 6.334e-5        /* of a normal value to be further than PROBE_REFUSED deviations from its mean */
 #define PROBE_DENSEST 0.24197072451914337 /* exp(-1/2) / sqrt(2 pi): a normal density at x is at most this / |x| */
+#define PROBE_ROUNDING 1e-9  /* of the noise: readings that are nearer are equal but for the rounding of their computation */
 #define PROBE_PASTS 32    /* past rows that are kept, over lag_s */
 #define PROBE_SIZES 4     /* factors of s: 3^-1 to 3^2 */
 #define PROBE_TIMES 4     /* factors of T: 4^-1 to 4^2 */

@@ -14,13 +14,15 @@ namespace {
 constexpr double kRounding = 1e-9;  // of a time: row times are sums of intervals
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Speed and feeds of a record.
+/// Speed and feeds of a record, without those that have no value: a machine of which nothing is known is not at rest.
 std::vector<const Channel*> drives_of(const Record& record) {
   std::vector<const Channel*> drives;
   for (const auto& [name, unit] :
        {std::pair{"speed", "rpm"}, {"feed_x", "mm_min"}, {"feed_y", "mm_min"}, {"feed_z", "mm_min"}}) {
     const Channel* channel = record.find(name);
-    if (channel && channel->unit == unit) drives.push_back(channel);
+    if (!channel || channel->unit != unit) continue;
+    if (std::any_of(channel->values.begin(), channel->values.end(), [](double v) { return !std::isnan(v); }))
+      drives.push_back(channel);
   }
   return drives;
 }
@@ -137,7 +139,8 @@ Iso230Figures test_of(const Record& record, const std::vector<const Channel*>& d
 
 Iso230Figures iso230_3_figures(const Record& record) {
   const std::vector<const Channel*> drives = drives_of(record);
-  const bool has_axes = std::any_of(drives.begin(), drives.end(), [](const Channel* d) { return d->unit != "rpm"; });
+  const bool has_axes =
+      std::any_of(record.channels.begin(), record.channels.end(), [](const Channel& c) { return c.unit == "mm_min"; });
   const std::vector<const Channel*> distortions = distortions_of(record, has_axes);
   if (distortions.empty() || record.n_samples() < 2)
     return {.channels = {}, .not_available = "the record has no displacement and no tilt"};

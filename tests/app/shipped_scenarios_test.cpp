@@ -85,6 +85,11 @@ TEST(WorkshopDay, IsTestedAsIso230_3TestsTheAmbientAndASpindle) {
   EXPECT_NEAR(spindle.at("channels").at(0).at("range_running_period"), 47.62, 0.02);
 }
 
+TEST(WorkshopDay, HasNoNegativeZeroForAMotorAtRest) {
+  EXPECT_THAT(read_text(simulate("workshop_day", "etve") / "summary.json"),
+              ::testing::Not(HasSubstr("\"out_of_machine_W\": -0.0,")));
+}
+
 TEST(BallScrew, IsTestedAsIso230_3TestsMovingAxes) {
   const auto axis = iso230_3("ball_screw", "iso_230_3");
   EXPECT_EQ(axis.at("test"), "linear_axes");

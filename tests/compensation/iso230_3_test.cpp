@@ -128,6 +128,9 @@ TEST(Iso230Figures, SayWhatARecordLacks) {
   Record no_speed = test_of(240, 1, 240, warming_um);
   no_speed.channels.erase(no_speed.channels.begin());
   EXPECT_THAT(iso230_3_figures(no_speed).not_available, HasSubstr("neither a spindle speed"));
+  Record unread = test_of(240, 1, 0, warming_um);
+  for (double& rpm : unread.channels[0].values) rpm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(iso230_3_figures(unread).not_available, HasSubstr("neither a spindle speed"));
   Record no_drift = test_of(240, 1, 240, warming_um);
   no_drift.channels.resize(1);
   EXPECT_THAT(iso230_3_figures(no_drift).not_available, HasSubstr("no displacement"));

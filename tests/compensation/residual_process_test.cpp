@@ -446,6 +446,10 @@ TEST(ProbeFeedback, DoesNotCallACalmAxisAStuckProbe) {
   for (const int verdict : verdicts({0.0, 0.0, 0.0, 0.0}, 2.0)) EXPECT_NE(verdict, PROBE_STUCK);
 }
 
+TEST(ProbeFeedback, TakesNoRoundingOfReadingsForAStepOfTheProbe) {
+  for (const int verdict : verdicts({0.1 + 0.2, 0.3, 0.3, 0.3}, 0.05)) EXPECT_EQ(verdict, PROBE_TAKEN);
+}
+
 TEST(ProbeFeedback, RefusesWhatIsNoProbingAndWrongSettings) {
   ProbeFeedback feedback({2.0, 7200.0}, {.noise_um = 0.5, .lag_s = 30.0}, true);
   EXPECT_FALSE(feedback.probe_drift_um(1.0));

@@ -451,6 +451,27 @@ TEST(LinuxcncComponent, FollowsThePositionOfTheAxis) {
   EXPECT_LT(out.back().at("model_trust"), 1.0);
 }
 
+// C knows no minus in names.
+TEST(LinuxcncComponent, OverATravelOnBothSidesOfZeroEachPlaceHasFunctionsOfItsOwn) {
+  std::vector<PlacedModel> places = three_places();
+  places[0].at_mm = -100.0;
+  places[0].model.model.target = "x_-100";
+  const std::filesystem::path folder = fresh_folder("both_sides");
+  std::ofstream(folder / "screw.c") << c_over_travel(places, "screw", "a test");
+  for (const compensation::ControlFile& file : compensation::control_files())
+    std::ofstream(folder / file.name, std::ios::binary) << file.text;
+  EXPECT_EQ(
+      std::system(fmt::format("gcc -std=c99 -pedantic -Wall -Wextra -Werror -c -o {0}/screw.o {0}/screw.c", folder.string())
+                      .c_str()),
+      0);
+}
+
+TEST(LinuxcncComponent, OverTheTravelTakesModelsOfOneRunOfValidate) {
+  std::vector<PlacedModel> places = three_places();
+  places[2].model.safe.period_s = 60.0;
+  EXPECT_THROW((void)c_over_travel(places, "screw", "a test"), InputError);
+}
+
 TEST(LinuxcncComponent, OverTheTravelTakesAsManyPlacesAsTheCodeHasRoomFor) {
   std::vector<PlacedModel> places;
   for (int k = 0; k < 17; ++k) places.push_back({two_um_per_K(), 10.0 * k});
