@@ -23,8 +23,12 @@ std::string range_words(const MovingAxis& axis) {
 }
 
 MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
-  MovingAxis axis{.name = name, .moves = in.texts("moves"), .column = {}, .where = in.where()};
-  axis.along = in.choice("along")[0] - 'x';
+  const std::string along = in.choice("along");
+  MovingAxis axis{.name = name,
+                  .moves = in.texts("moves"),
+                  .along = (along[0] == '-' ? -1.0 : 1.0) * Eigen::Vector3d::Unit(along.back() - 'x'),
+                  .column = {},
+                  .where = in.where()};
   const std::vector<double> range_m = in.quantities("range");
   if (range_m.size() != 2 || !(range_m[0] < range_m[1]))
     in.fail("range", "two positions are required, the lower one first, such as [0 mm, 400 mm]");
@@ -68,7 +72,9 @@ schema::Map axes_schema() {
       .name = "axes, entries",
       .keys = {
           compulsory("moves", list(text(), 1), "regions of the mesh that slide as one rigid unit"),
-          compulsory("along", choice({"x", "y", "z"}), "the direction in which they slide"),
+          compulsory("along", choice({"x", "y", "z", "-x", "-y", "-z"}),
+                     "the direction in which they slide while the position rises; of a body that carries the work the "
+                     "opposite of the axis (ISO 841)"),
           compulsory("range", list(quantity("m"), 2), "lowest and highest position"),
           schema::optional("drawn_at", quantity("m"), 0.0, "position of the axis in the mesh or drawing"),
           schema::optional("at", quantity("m"), Said{"`drawn_at`"}, "position of the axis: the pose that is computed"),
@@ -98,7 +104,7 @@ std::vector<MovingAxis> read_axes(const ConfigMap& in) {
 Eigen::Vector3d shift_m(const std::vector<MovingAxis>& axes, const std::string& region) {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   for (const MovingAxis& axis : axes) {
-    if (is_in(axis.moves, region)) shift[axis.along] += axis.at_m - axis.drawn_at_m;
+    if (is_in(axis.moves, region)) shift += (axis.at_m - axis.drawn_at_m) * axis.along;
   }
   return shift;
 }

@@ -14,7 +14,7 @@ namespace driftwright::scenarios {
 struct MovingAxis {
   std::string name;
   std::vector<std::string> moves;    ///< regions that slide as one rigid unit
-  int along = 0;                     ///< 0, 1, 2 = x, y, z
+  Eigen::Vector3d along;             ///< direction of length 1 in which they slide while the position rises
   double low_m = 0.0, high_m = 0.0;  ///< allowed positions
   double drawn_at_m = 0.0;           ///< position of the axis in the mesh as it was drawn
   double at_m = 0.0;                 ///< position of the axis in this machine

@@ -159,6 +159,16 @@ TEST(Pose, AUniformRiseGrowsBedAndTableFreely) {
   }
 }
 
+TEST(Pose, OfABodyThatCarriesTheWorkTakesTheToolAlongTheAxis) {
+  // ISO 841: while X rises, the tool goes along +x in the work, so the table goes along -x.
+  const MachineModel model =
+      at({.drawn_m = 0.3, .axes = "axes: {x: {moves: [table], along: -x, range: [-300 mm, 300 mm]}}\n"}, 0.1);
+  const PlacedMachine placed = place(model);
+  const ToolAgainstWork error = tool_against_work(model, placed.mesh, {"bed", {0.4, 0.0, 0.1}, {}}, "table", {});
+  EXPECT_LT((error.place_m - Eigen::Vector3d(0.4 + 0.1, 0.0, 0.1)).norm(), 1e-9);
+  EXPECT_LT((shift_m(model.axes, "table") - Eigen::Vector3d(-0.1, 0.0, 0.0)).norm(), 1e-12);
+}
+
 SimulatedRun simulate(const Scenario& scenario) {
   const Cyclogram& work = scenario.cyclogram("work");
   const Model model = open_model(scenario, {&work}, {}, false);
