@@ -312,6 +312,24 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   }
 }
 
+TEST(Placement, OfAMachineAtAPoseIsWrittenAsDrawn) {
+  const auto first_spots = [](const std::string& more) {
+    fixtures::ColumnAndHead machine;
+    machine.more = more;
+    const scenarios::Scenario scenario =
+        scenarios::read_scenario(fixtures::write_column_and_head(fresh_folder("placed_at_a_pose"), machine));
+    return model_of(scenario, {.n_points = 30}).spots;
+  };
+  const std::vector<Spot> drawn = first_spots(""),
+                          moved = first_spots("axes: {y: {moves: [head], along: y, range: [0 mm, 50 mm], at: 50 mm}}\n");
+  ASSERT_EQ(drawn.size(), moved.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (drawn[i].region != "head" || drawn[i].node < 0) continue;
+    EXPECT_GE(moved[i].at_m.y(), -1e-9);
+    EXPECT_LE(moved[i].at_m.y(), 0.2 + 1e-9) << "the head was drawn over 200 mm";
+  }
+}
+
 TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {
   const auto folder = fresh_folder("placed_quoted");
   const std::string text =
