@@ -59,9 +59,10 @@ const Cyclogram::Column* column_of(const MovingAxis& axis, const Cyclogram& cycl
 }
 
 double position_m(const MovingAxis& axis, const Cyclogram::Column& column, double time_s) {
-  const double read_m = 1e-3 * column.at(time_s);
-  if (axis.step_m == 0.0) return read_m;
-  return std::min(axis.high_m, axis.low_m + axis.step_m * std::round((read_m - axis.low_m) / axis.step_m));
+  double at_m = 1e-3 * column.at(time_s);
+  if (axis.step_m > 0.0)
+    at_m = std::min(axis.high_m, axis.low_m + axis.step_m * std::round((at_m - axis.low_m) / axis.step_m));
+  return std::abs(at_m - axis.at_m) <= kRounding_m ? axis.at_m : at_m;  // else it would be another pose
 }
 
 }  // namespace

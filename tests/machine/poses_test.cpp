@@ -255,6 +255,19 @@ TEST(Axes, ArePlacedFromTheCommandLine) {
   EXPECT_REFUSED(set_pose(axes, "x=far"), "--pose x=far");
 }
 
+TEST(Axes, RestWhereAPositionIsThatOfTheAxisButForRounding) {
+  // -0.3 + 3 x 0.1 is not 0, and 1e-3 x 9 is not 0.009.
+  const auto moves = [](const std::string& axis, const std::string& position) {
+    const Scenario s = Slide{.axes = "axes: {x: {moves: [table], along: x, range: [-300 mm, 800 mm], " + axis + "}}\n",
+                             .rows = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, " + position + "]]}"}
+                           .read();
+    return moves_axes(s.machine->axes, s.cyclograms[0]);
+  };
+  EXPECT_FALSE(moves("step: 100 mm", "0.02 mm"));
+  EXPECT_FALSE(moves("at: 0.009 m", "9 mm"));
+  EXPECT_TRUE(moves("at: 0.009 m", "9.001 mm"));
+}
+
 TEST(Axes, RoundPositionsToTheirStep) {
   const std::string rows =
       "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 104 mm], [1 h, 0 rpm, 96 mm], [1 h, 0 rpm, 151 mm]]}";
