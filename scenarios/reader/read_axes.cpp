@@ -8,6 +8,7 @@
 
 #include "base/lists.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -37,6 +38,7 @@ MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
   axis.drawn_at_m = in.quantity("drawn_at");
   axis.at_m = in.has("at") ? in.quantity("at") : axis.drawn_at_m;
   axis.column = in.text("column", "position_" + name);
+  if (!is_of_column(axis.column, "mm")) in.fail("column", "its name must begin with `position_`, such as position_x");
   axis.step_m = in.quantity("step");
   for (const char* key : {"drawn_at", "at"}) {
     const double position_m = std::string(key) == "at" ? axis.at_m : axis.drawn_at_m;
@@ -80,7 +82,7 @@ schema::Map axes_schema() {
           schema::optional("drawn_at", quantity("m"), 0.0, "position of the axis in the mesh or drawing"),
           schema::optional("at", quantity("m"), Said{"`drawn_at`"}, "position of the axis: the pose that is computed"),
           schema::optional("column", text(), Said{"`position_<name>`"},
-                           "column in mm of cyclograms and records that moves the axis"),
+                           "column in mm of cyclograms and records that moves the axis; begins with `position_`"),
           schema::optional("step", quantity("m", 0.0, 10.0), 0.0,
                            "positions of columns are rounded to multiples of it, from the lowest one on; each pose takes "
                            "memory and one factorisation")}};

@@ -255,6 +255,18 @@ TEST(Axes, ArePlacedFromTheCommandLine) {
   EXPECT_REFUSED(set_pose(axes, "x=far"), "--pose x=far");
 }
 
+TEST(Axes, OfAnyNameFollowTheirColumn) {
+  write_file("quill.csv", "time_min,speed_rpm,position_quill_mm\n0,0,0\n10,0,400\n20,0,400\n");
+  for (const char* rows :
+       {"{csv: quill.csv}", "{columns: [duration, speed, position_quill_mm], rows: [[1 h, 0 rpm, 400 mm]]}"}) {
+    const Scenario s =
+        Slide{.axes = "axes: {quill: {moves: [table], along: x, range: [0 mm, 800 mm]}}\n", .rows = rows}.read();
+    EXPECT_TRUE(moves_axes(s.machine->axes, s.cyclograms[0])) << rows;
+  }
+  EXPECT_REFUSED(Slide{.axes = "axes: {x: {moves: [table], along: x, range: [0 mm, 1 m], column: gap}}\n"}.read(),
+                 "axes.x.column", "must begin with `position_`");
+}
+
 TEST(Axes, RestWhereAPositionIsThatOfTheAxisButForRounding) {
   // -0.3 + 3 x 0.1 is not 0, and 1e-3 x 9 is not 0.009.
   const auto moves = [](const std::string& axis, const std::string& position) {
