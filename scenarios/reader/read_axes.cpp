@@ -124,7 +124,7 @@ std::string pose_words(const std::vector<MovingAxis>& axes, const Pose& pose) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-void set_pose(std::vector<MovingAxis>& axes, const std::string& text) {
+void set_pose(std::vector<MovingAxis>& axes, const std::string& text, const std::vector<Cyclogram>& cyclograms) {
   const std::vector<std::string> known = names_of(axes);
   if (known.empty()) throw InputError(fmt::format("--pose {}: the scenario has no `axes` that could move", text));
   const std::size_t equals = text.find('=');
@@ -141,6 +141,13 @@ void set_pose(std::vector<MovingAxis>& axes, const std::string& text) {
   if (!is_within(moved, moved.at_m))
     throw InputError(moved.where, fmt::format("--pose {}: the position is outside the `range` of axis '{}', {}", text,
                                               moved.name, range_words(moved)));
+  for (const Cyclogram& c : cyclograms) {
+    if (c.column(moved.column))
+      throw InputError(
+          fmt::format("--pose {}: cyclogram '{}' moves axis '{}' by its column '{}'; leave out --pose, or "
+                      "choose a cyclogram without this column by --cyclogram",
+                      text, c.name, moved.name, moved.column));
+  }
 }
 
 std::vector<PoseStretch> pose_stretches(const std::vector<MovingAxis>& axes, const Cyclogram& cyclogram) {

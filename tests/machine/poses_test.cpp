@@ -248,11 +248,13 @@ TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
 
 TEST(Axes, ArePlacedFromTheCommandLine) {
   std::vector<MovingAxis> axes = Slide{}.read().machine->axes;
-  set_pose(axes, "x=250mm");
+  set_pose(axes, "x=250mm", {});
   EXPECT_NEAR(axes[0].at_m, 0.25, 1e-12);
-  EXPECT_REFUSED(set_pose(axes, "y=1mm"), "there are x");
-  EXPECT_REFUSED(set_pose(axes, "x=1000mm"), "outside the `range`");
-  EXPECT_REFUSED(set_pose(axes, "x=far"), "--pose x=far");
+  EXPECT_REFUSED(set_pose(axes, "y=1mm", {}), "there are x");
+  EXPECT_REFUSED(set_pose(axes, "x=1000mm", {}), "outside the `range`");
+  EXPECT_REFUSED(set_pose(axes, "x=far", {}), "--pose x=far");
+  const Scenario moving = Slide{.rows = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 100 mm]]}"}.read();
+  EXPECT_REFUSED(set_pose(axes, "x=250mm", moving.cyclograms), "'work' moves axis 'x'", "by --cyclogram");
 }
 
 TEST(Axes, OfAnyNameFollowTheirColumn) {
