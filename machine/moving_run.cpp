@@ -108,9 +108,11 @@ const PosedMachine* posed_at(const MachineModel& machine, const Model& model, co
   for (const PosedMachine& posed : model.poses) {
     if (posed.pose == pose) return &posed;
   }
-  throw InputError(machine.axes.front().where,
-                   fmt::format("this command holds the machine at {}; it does not follow a cyclogram to {}",
-                               pose_words(machine.axes, pose_of(machine.axes)), pose_words(machine.axes, pose)));
+  throw InputError(
+      machine.axes.front().where,
+      fmt::format("this command holds the machine at {}; it does not follow a cyclogram to {}. Use `simulate`, or leave "
+                  "out the columns of its axes",
+                  pose_words(machine.axes, pose_of(machine.axes)), pose_words(machine.axes, pose)));
 }
 
 solver::Trajectory simulate_moving(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,

@@ -204,10 +204,11 @@ void require_resting(const std::vector<MovingAxis>& axes, const Cyclogram& cyclo
       if (stretch.pose[i] == axes[i].at_m) continue;
       throw InputError(
           axes[i].where,
-          fmt::format("cyclogram '{}' moves axis '{}' to {:g} mm, but this model holds it at {:g} mm. Only "
-                      "`simulate`, and `run` with `volume`, of the full model (`solver: {{model: full}}`) follow "
-                      "moves; otherwise leave out the column '{}'",
-                      cyclogram.name, axes[i].name, 1e3 * stretch.pose[i], 1e3 * axes[i].at_m, axes[i].column));
+          fmt::format("cyclogram '{}' moves axis '{}' to {:g} mm, but this model holds it at {:g} mm. If it stays "
+                      "there, write `at: {:g} mm`. Only `simulate`, and `run` with `volume`, of the full model "
+                      "(`solver: {{model: full}}`) follow moves; otherwise leave out the column '{}'",
+                      cyclogram.name, axes[i].name, 1e3 * stretch.pose[i], 1e3 * axes[i].at_m, 1e3 * stretch.pose[i],
+                      axes[i].column));
     }
   }
 }

@@ -243,7 +243,7 @@ TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
   Scenario scenario = Slide{.rows = rows}.read();
   scenario.solver.model = ModelKind::kReduced;
   EXPECT_REFUSED(open_model(scenario, {&scenario.cyclograms[0]}, {}, false), "moves axis 'x' to 400 mm", "model: full");
-  EXPECT_REFUSED(require_resting(scenario.machine->axes, scenario.cyclograms[0]), "position_x");
+  EXPECT_REFUSED(require_resting(scenario.machine->axes, scenario.cyclograms[0]), "`at: 400 mm`", "position_x");
 }
 
 TEST(Axes, ArePlacedFromTheCommandLine) {
