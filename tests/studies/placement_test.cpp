@@ -313,21 +313,18 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
 }
 
 TEST(Placement, OfAMachineAtAPoseIsWrittenAsDrawn) {
-  const auto first_spots = [](const std::string& more) {
-    fixtures::ColumnAndHead machine;
-    machine.more = more;
-    const scenarios::Scenario scenario =
-        scenarios::read_scenario(fixtures::write_column_and_head(fresh_folder("placed_at_a_pose"), machine));
-    return model_of(scenario, {.n_points = 30}).spots;
-  };
-  const std::vector<Spot> drawn = first_spots(""),
-                          moved = first_spots("axes: {y: {moves: [head], along: y, range: [0 mm, 50 mm], at: 50 mm}}\n");
-  ASSERT_EQ(drawn.size(), moved.size());
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    if (drawn[i].region != "head" || drawn[i].node < 0) continue;
-    EXPECT_GE(moved[i].at_m.y(), -1e-9);
-    EXPECT_LE(moved[i].at_m.y(), 0.2 + 1e-9) << "the head was drawn over 200 mm";
+  fixtures::ColumnAndHead machine;
+  machine.more = "axes: {y: {moves: [head], along: y, range: [0 mm, 50 mm], at: 50 mm}}\n";
+  const scenarios::Scenario scenario =
+      scenarios::read_scenario(fixtures::write_column_and_head(fresh_folder("placed_at_a_pose"), machine));
+  int n_of_head = 0;
+  for (const Spot& spot : model_of(scenario, {.n_points = 30}).spots) {
+    if (spot.region != "head") continue;
+    ++n_of_head;
+    EXPECT_GE(spot.at_m.y(), -1e-9);
+    EXPECT_LE(spot.at_m.y(), 0.2 + 1e-9) << "the head was drawn over 200 mm";
   }
+  EXPECT_GE(n_of_head, 12);
 }
 
 TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {

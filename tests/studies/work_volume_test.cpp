@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,12 @@ namespace {
 
 using ::testing::Contains, ::testing::HasSubstr, ::testing::Not;
 
-scenarios::Scenario scenario_of(const std::string& work, const std::string& positions) {
+scenarios::Scenario scenario_of(const std::string& work, const std::string& positions,
+                                const std::string& rows = "[[10 min, 0 rpm]]") {
   fixtures::ColumnAndHead machine;
   machine.start = "30 degC";
   machine.ambient = "30 degC";
-  machine.cyclograms = "{cycle: [[10 min, 0 rpm]]}";
+  machine.cyclograms = "{cycle: " + rows + "}";
   machine.solver = "{output_interval: 5 min, fields_format: none, model: full}";
   machine.more = "axes: {y: {moves: [head], along: y, range: [-50 mm, 400 mm]}}\nvolume: {cyclogram: cycle, work: " + work +
                  ", tool: {region: head, at: [50 mm, 200 mm, 350 mm]}, positions: {y: " + positions + "}}\n";
@@ -61,6 +63,21 @@ TEST(WorkVolume, PlacesTheToolInTheFrameOfTheWork) {
                        (volume.points[2].error_m[0] - volume.own.error_m[0]).norm()),
               1e-15);
   EXPECT_GT(volume.points[2].error_m[0].y(), volume.points[0].error_m[0].y());  // a longer arm grows more
+}
+
+// 10 K of even warming turn the clamped foot, so `z` depends on the pose alone.
+TEST(MovingRun, ReadsARowAtThePoseThatItNames) {
+  const scenarios::Scenario scenario =
+      scenario_of("column", "[0 mm]",
+                  "{columns: [duration, speed, position_y_mm], rows: [[5 min, 0 rpm, 0 mm], [5 min, 0 rpm, 50 mm]]}");
+  const Cyclogram& cycle = scenario.cyclograms[0];
+  const scenarios::Model model = scenarios::open_model(scenario, {&cycle}, {}, false);
+  const Record record = scenarios::simulate_cyclograms(scenario, model, {&cycle}, {}).front().record;
+  const std::vector<double>&z = record.at("z").values, &y_mm = record.at("position_y").values;
+  ASSERT_EQ(z.size(), 3u);
+  EXPECT_EQ(y_mm[1], 50.0);
+  EXPECT_NEAR(z[1], z[2], 1e-6);
+  EXPECT_GT(std::abs(z[0] - z[1]), 1e-3);
 }
 
 }  // namespace
