@@ -35,8 +35,8 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
 void simulate(const SimulateOptions& options) {
   scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "simulate");
-  for (const std::string& position : options.pose) scenarios::set_pose(scenario.machine->axes, position);
   const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
+  for (const std::string& position : options.pose) scenarios::set_pose(scenario.machine->axes, position, asked);
   std::vector<const Cyclogram*> cyclograms;
   for (const Cyclogram& c : asked) cyclograms.push_back(&c);
   output::ResultsFolder folder = open_results(options, scenario.name);

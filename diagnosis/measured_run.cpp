@@ -412,6 +412,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   if (run.has_ambient) take_ambient(run, record.at(recorded_run.ambient_channel).values, model.reference_K);
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   scenarios::require_columns(model, run.cyclogram);
+  scenarios::require_resting(model.axes, run.cyclogram);
   keep_columns(run, model);
   set_grid(run);
   const double reference_C = model.reference_K - kZeroCelsius_K;

@@ -67,8 +67,8 @@ void set_grid(MeasuredRun& run);
 /// ambient are left out if the record has an ambient temperature. Readings of a sensor that was stuck are removed
 /// (stuck_sensor.hpp).
 /// @throws InputError  for a record without speed or with fewer than three rows; for a channel with the name of an output
-/// but a unit of another kind; for an ambient temperature in another unit than its header says; and if there is nothing
-/// to compare
+/// but a unit of another kind; for an ambient temperature in another unit than its header says; for an axis that
+/// is not at the model's pose; and if there is nothing to compare
 [[nodiscard]] MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model,
                                        const solver::Outputs& outputs);
 

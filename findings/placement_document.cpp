@@ -273,12 +273,13 @@ output::Picture told_picture(const Placement& p, const scenarios::MachineModel& 
   for (const output::PictureMark& mark : marks_of(machine)) {
     if (mark.is_indicator) marks.push_back(mark);
   }
-  const std::vector<int> set = bought(p);
-  for (std::size_t i = 0; i < set.size(); ++i) marks.push_back({p.names[i], p.spots[static_cast<std::size_t>(set[i])].at_m});
-  for (int spot : p.mounted) {
+  const auto add_mark = [&](const std::string& name, int spot) {
     const studies::Spot& s = p.spots[static_cast<std::size_t>(spot)];
-    marks.push_back({s.sensor, s.at_m});
-  }
+    marks.push_back({name, s.at_m + scenarios::shift_m(machine.axes, s.region)});
+  };
+  const std::vector<int> set = bought(p);
+  for (std::size_t i = 0; i < set.size(); ++i) add_mark(p.names[i], set[i]);
+  for (int spot : p.mounted) add_mark(p.spots[static_cast<std::size_t>(spot)].sensor, spot);
   return {.title = fmt::format(
               "Error of the drift in µm that a single thermometer at each point would leave, estimated by the search "
               "criterion for {}; {:.2f} µm without a thermometer. "

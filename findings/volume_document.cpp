@@ -144,12 +144,13 @@ output::Document document_of(const studies::WorkVolume& volume, const scenarios:
                           scenarios::pose_words(axes, volume.points[left.point].pose), volume.time_s[left.time] / 60.0)});
   add_machine(body, *scenario.machine, model.mesh(), settings.cyclogram, {});
   add(body, named_value("peak_um", "largest error in the volume", peak_um, "um"));
-  add(body, named_value("own_um", "largest error at the scenario's pose", own_um, "um"));
   add(body,
       named_value("peak_place_mm", "its place in the frame of the work",
                   std::vector<double>{1e3 * volume.points[peak.point].place_m[0], 1e3 * volume.points[peak.point].place_m[1],
                                       1e3 * volume.points[peak.point].place_m[2]},
                   "mm"));
+  add(body, named_value("own_um", "largest error at the scenario's pose", own_um, "um"));
+  add(body, named_value("left_um", "largest error left by a correction by that pose", left_um, "um"));
   for (std::size_t i = 0; i < axes.size(); ++i) add_axis(body, volume, settings, axes, i);
   add(body, volume_table(volume, axes));
   const Cyclogram& cyclogram = scenario.cyclogram(settings.cyclogram);

@@ -108,9 +108,11 @@ const PosedMachine* posed_at(const MachineModel& machine, const Model& model, co
   for (const PosedMachine& posed : model.poses) {
     if (posed.pose == pose) return &posed;
   }
-  throw InputError(machine.axes.front().where,
-                   fmt::format("this command holds the machine at {}; it does not follow a cyclogram to {}",
-                               pose_words(machine.axes, pose_of(machine.axes)), pose_words(machine.axes, pose)));
+  throw InputError(
+      machine.axes.front().where,
+      fmt::format("this command holds the machine at {}; it does not follow a cyclogram to {}. Use `simulate`, or leave "
+                  "out the columns of its axes",
+                  pose_words(machine.axes, pose_of(machine.axes)), pose_words(machine.axes, pose)));
 }
 
 solver::Trajectory simulate_moving(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
@@ -119,6 +121,7 @@ solver::Trajectory simulate_moving(const MachineModel& machine, const solver::Tr
   const std::vector<PoseStretch> stretches = pose_stretches(machine.axes, recorded);
   for (const PoseStretch& stretch : stretches) (void)posed_at(machine, model, stretch.pose);
   solver::Trajectory run;
+  constexpr double kSameTime = 1e-12;  // rounding of sums of durations
   Eigen::VectorXd state = from, heat_J;
   double stored_J = 0.0, begin_s = 0.0;
   auto next = times_s.begin();
@@ -128,7 +131,7 @@ solver::Trajectory simulate_moving(const MachineModel& machine, const solver::Tr
     const bool is_last = i + 1 == stretches.size();
     const Cyclogram driven = is_last ? felt.cyclogram : until(felt.cyclogram, stretches[i].end_s);
     const double end_s = driven.duration_s();
-    const auto last = is_last ? times_s.end() : std::upper_bound(next, times_s.end(), end_s);
+    const auto last = is_last ? times_s.end() : std::lower_bound(next, times_s.end(), end_s * (1.0 - kSameTime));
     std::vector<double> own_s(next, last);
     const auto n_own = static_cast<Eigen::Index>(own_s.size());
     if (!is_last && (own_s.empty() || own_s.back() < end_s)) own_s.push_back(end_s);  // where the next one begins

@@ -20,7 +20,7 @@ namespace driftwright::scenarios {
 [[nodiscard]] const PosedMachine* posed_at(const MachineModel& machine, const Model& model, const Pose& pose);
 
 /// Simulates a cyclogram that moves axes: the run of each stretch of one pose goes on from the state of the one before. The
-/// time at which an axis moves belongs to the pose before. Heat is counted from the start.
+/// time at which an axis moves belongs to the pose after, as the record's row does. Heat is counted from the start.
 /// @param recorded  whose columns move the axes @param felt  drive and ambient of felt_run_as_far_as_known()
 /// @throws InputError  as posed_at() @throws SolveError  as solver::simulate()
 [[nodiscard]] solver::Trajectory simulate_moving(const MachineModel& machine, const solver::TransientOptions& options,

@@ -53,8 +53,8 @@ void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const Movi
   } catch (const InputError&) {
     throw InputError(axis.where, lost + "its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
   }
-  const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis.along);
-  if (std::any_of(points.begin(), points.end(), [&](const auto& p) { return std::abs(p.normal.dot(along)) > kMostRise; }))
+  if (std::any_of(points.begin(), points.end(),
+                  [&](const auto& p) { return std::abs(p.normal.dot(axis.along)) > kMostRise; }))
     throw InputError(axis.where,
                      lost + "the axis moves its two sides apart, not along each other; correct `along` or `moves`");
 }
@@ -99,7 +99,7 @@ void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
                    b = carriers_of_side(axes, mesh, joint.side_b, outer);
     for (std::size_t i = 0; i < axes.size(); ++i) {
       if (a[i] == b[i]) continue;
-      mesh::continue_sides(mesh, joint, outer, Eigen::Vector3d::Unit(axes[i].along));
+      mesh::continue_sides(mesh, joint, outer, axes[i].along);
       sliding.emplace_back(j, i);
     }
   }

@@ -24,6 +24,7 @@ void require_runnable(const Scenario& scenario, const PlacedMachine& placed) {
   const bool wants_ways_out =
       scenario.solver.model == ModelKind::kReduced || model.start == Start::kSteady || scenario.study;
   if (wants_ways_out) require_ways_out(placed.mesh, placed.balance, model.where);
+  if (const auto& v = scenario.volume) (void)tool_against_work(model, placed.mesh, v->tool, v->work, v->where);
 }
 
 }  // namespace driftwright::scenarios

@@ -51,11 +51,11 @@ MachineRun followed_run(const MachineModel& machine, const Model& model, const C
   return felt_run_as_far_as_known(machine, cyclogram);
 }
 
-/// The machine at the pose that a cyclogram has had until a time; nullptr: at the model's own.
-const PosedMachine* posed_before(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram,
-                                 double time_s) {
+/// The machine at the pose that a cyclogram has from a time on, as simulate_moving(); nullptr: at the model's own.
+const PosedMachine* posed_from(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram, double time_s) {
   const std::vector<PoseStretch> stretches = pose_stretches(machine.axes, cyclogram);
-  const auto at = std::find_if(stretches.begin(), stretches.end(), [&](const auto& s) { return time_s <= s.end_s; });
+  const auto at =
+      std::find_if(stretches.begin(), stretches.end(), [&](const auto& s) { return time_s < s.end_s * (1.0 - 1e-12); });
   return posed_at(machine, model, (at == stretches.end() ? stretches.back() : *at).pose);
 }
 
@@ -65,7 +65,7 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   const Eigen::VectorXd nodes =
       reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
   const bool moves = follows_moves(*scenario.machine, model, cyclogram);
-  const PosedMachine* posed = moves ? posed_before(*scenario.machine, model, cyclogram, time_s) : nullptr;
+  const PosedMachine* posed = moves ? posed_from(*scenario.machine, model, cyclogram, time_s) : nullptr;
   const Eigen::Matrix3Xd displacement_m = reduced ? reduced->node_displacement_m(state)
                                           : posed ? posed->elasticity->displacement(nodes)
                                                   : model.full()->elasticity->displacement(nodes);

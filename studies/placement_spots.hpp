@@ -11,7 +11,7 @@ namespace driftwright::studies {
 
 struct Spot {
   std::string region = {};  ///< region of the mesh, or lumped node
-  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< where the region is; in a PlacementModel where it was drawn
   int node = -1;            ///< of the mesh; -1: a lumped node
   std::string sensor = {};  ///< the scenario's own sensor, if there is one
 };

@@ -14,18 +14,31 @@ namespace {
 
 using scenarios::MachineModel, scenarios::Pose, scenarios::VolumeSettings;
 
-/// @param theta_K  temperatures of the nodes above the reference, one column of each time
-VolumePoint errors_at(const MachineModel& model, const VolumeSettings& settings, const mesh::Mesh& drawn, const Pose& pose,
-                      const Eigen::MatrixXd& theta_K) {
+/// The machine at a pose with the six errors as its functionals.
+struct PlacedAtPose {
+  MachineModel model;
+  scenarios::PlacedMachine placed;
+  Eigen::Vector3d place_m;  ///< of the tool in the frame of the work
+};
+
+PlacedAtPose placed_at(const MachineModel& model, const VolumeSettings& settings, const mesh::Mesh& drawn,
+                       const Pose& pose) {
   MachineModel here = scenarios::at_pose(model, pose);
   here.displacements.clear();  // only the six errors are solved for
   here.tilts.clear();
   scenarios::PlacedMachine placed = scenarios::place(here, drawn);
-  scenarios::ToolAgainstWork error =
+  const scenarios::ToolAgainstWork error =
       scenarios::tool_against_work(here, placed.mesh, settings.tool, settings.work, settings.where);
   placed.functionals.assign(error.functionals.begin(), error.functionals.end());
-  const Eigen::MatrixXd values = scenarios::influences(here, placed).transpose() * theta_K;  // 6 x n_times
-  VolumePoint point{.pose = pose, .place_m = error.place_m, .error_m = {}, .turn_rad = {}};
+  return {std::move(here), std::move(placed), error.place_m};
+}
+
+/// @param theta_K  temperatures of the nodes above the reference, one column of each time
+VolumePoint errors_at(const MachineModel& model, const VolumeSettings& settings, const mesh::Mesh& drawn, const Pose& pose,
+                      const Eigen::MatrixXd& theta_K) {
+  const PlacedAtPose at = placed_at(model, settings, drawn, pose);
+  const Eigen::MatrixXd values = scenarios::influences(at.model, at.placed).transpose() * theta_K;  // 6 x n_times
+  VolumePoint point{.pose = pose, .place_m = at.place_m, .error_m = {}, .turn_rad = {}};
   for (Eigen::Index t = 0; t < values.cols(); ++t) {
     point.error_m.emplace_back(values.col(t).head<3>());
     point.turn_rad.emplace_back(values.col(t).tail<3>());
@@ -73,6 +86,8 @@ WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& d
   WorkVolume volume{.time_s = settings.times_s, .points = {}, .own = {}, .run = {}};
   const auto n_times = static_cast<Eigen::Index>(volume.time_s.size());
   Eigen::MatrixXd theta_K(drawn.n_nodes(), n_times);
+  listener.begin(fmt::format("placing the machine at {} poses", settings.n_poses()));  // before a long run that none needs
+  for (std::size_t i = 0; i < settings.n_poses(); ++i) (void)placed_at(machine, settings, drawn, settings.pose(i));
   listener.begin(fmt::format("simulating {:.0f} min", cyclogram.duration_s() / 60.0));
   const std::vector<double> rows_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s, volume.time_s);
   Eigen::Index next = 0;

@@ -39,7 +39,7 @@ struct LargestError {
 /// pose: an axis is taken to visit all poses in a time in which no temperature changes.
 /// @param drawn  mesh of build_mesh()
 /// @param model  of this mesh, full, made for the cyclogram
-/// @throws InputError  as place(), at each pose
+/// @throws InputError  as place() and tool_against_work() at each pose, before the simulation
 [[nodiscard]] WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& drawn,
                                       const scenarios::Model& model, const Listener& listener);
 

@@ -36,7 +36,10 @@ std::vector<const Channel*> distortions_of(const Record& record, bool has_axes) 
     all.push_back(&c);
     has_um = has_um || c.unit == "um";
   }
-  if (has_axes && has_um) std::erase_if(all, [](const Channel* c) { return c->unit == "mm"; });
+  std::erase_if(all, [&](const Channel* c) {
+    const bool is_place = c->name.starts_with("position_") || c->name.starts_with("stroke_");
+    return c->unit == "mm" && (is_place || (has_axes && has_um));
+  });
   return all;
 }
 

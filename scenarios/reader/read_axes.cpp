@@ -8,6 +8,7 @@
 
 #include "base/lists.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -23,8 +24,12 @@ std::string range_words(const MovingAxis& axis) {
 }
 
 MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
-  MovingAxis axis{.name = name, .moves = in.texts("moves"), .column = {}, .where = in.where()};
-  axis.along = in.choice("along")[0] - 'x';
+  const std::string along = in.choice("along");
+  MovingAxis axis{.name = name,
+                  .moves = in.texts("moves"),
+                  .along = (along[0] == '-' ? -1.0 : 1.0) * Eigen::Vector3d::Unit(along.back() - 'x'),
+                  .column = {},
+                  .where = in.where()};
   const std::vector<double> range_m = in.quantities("range");
   if (range_m.size() != 2 || !(range_m[0] < range_m[1]))
     in.fail("range", "two positions are required, the lower one first, such as [0 mm, 400 mm]");
@@ -33,6 +38,7 @@ MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
   axis.drawn_at_m = in.quantity("drawn_at");
   axis.at_m = in.has("at") ? in.quantity("at") : axis.drawn_at_m;
   axis.column = in.text("column", "position_" + name);
+  if (!is_of_column(axis.column, "mm")) in.fail("column", "its name must begin with `position_`, such as position_x");
   axis.step_m = in.quantity("step");
   for (const char* key : {"drawn_at", "at"}) {
     const double position_m = std::string(key) == "at" ? axis.at_m : axis.drawn_at_m;
@@ -55,9 +61,10 @@ const Cyclogram::Column* column_of(const MovingAxis& axis, const Cyclogram& cycl
 }
 
 double position_m(const MovingAxis& axis, const Cyclogram::Column& column, double time_s) {
-  const double read_m = 1e-3 * column.at(time_s);
-  if (axis.step_m == 0.0) return read_m;
-  return std::min(axis.high_m, axis.low_m + axis.step_m * std::round((read_m - axis.low_m) / axis.step_m));
+  double at_m = 1e-3 * column.at(time_s);
+  if (axis.step_m > 0.0)
+    at_m = std::min(axis.high_m, axis.low_m + axis.step_m * std::round((at_m - axis.low_m) / axis.step_m));
+  return std::abs(at_m - axis.at_m) <= kRounding_m ? axis.at_m : at_m;  // else it would be another pose
 }
 
 }  // namespace
@@ -68,12 +75,14 @@ schema::Map axes_schema() {
       .name = "axes, entries",
       .keys = {
           compulsory("moves", list(text(), 1), "regions of the mesh that slide as one rigid unit"),
-          compulsory("along", choice({"x", "y", "z"}), "the direction in which they slide"),
+          compulsory("along", choice({"x", "y", "z", "-x", "-y", "-z"}),
+                     "the direction in which they slide while the position rises; of a body that carries the work the "
+                     "opposite of the axis (ISO 841)"),
           compulsory("range", list(quantity("m"), 2), "lowest and highest position"),
           schema::optional("drawn_at", quantity("m"), 0.0, "position of the axis in the mesh or drawing"),
           schema::optional("at", quantity("m"), Said{"`drawn_at`"}, "position of the axis: the pose that is computed"),
           schema::optional("column", text(), Said{"`position_<name>`"},
-                           "column in mm of cyclograms and records that moves the axis"),
+                           "column in mm of cyclograms and records that moves the axis; begins with `position_`"),
           schema::optional("step", quantity("m", 0.0, 10.0), 0.0,
                            "positions of columns are rounded to multiples of it, from the lowest one on; each pose takes "
                            "memory and one factorisation")}};
@@ -98,7 +107,7 @@ std::vector<MovingAxis> read_axes(const ConfigMap& in) {
 Eigen::Vector3d shift_m(const std::vector<MovingAxis>& axes, const std::string& region) {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   for (const MovingAxis& axis : axes) {
-    if (is_in(axis.moves, region)) shift[axis.along] += axis.at_m - axis.drawn_at_m;
+    if (is_in(axis.moves, region)) shift += (axis.at_m - axis.drawn_at_m) * axis.along;
   }
   return shift;
 }
@@ -115,7 +124,7 @@ std::string pose_words(const std::vector<MovingAxis>& axes, const Pose& pose) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-void set_pose(std::vector<MovingAxis>& axes, const std::string& text) {
+void set_pose(std::vector<MovingAxis>& axes, const std::string& text, const std::vector<Cyclogram>& cyclograms) {
   const std::vector<std::string> known = names_of(axes);
   if (known.empty()) throw InputError(fmt::format("--pose {}: the scenario has no `axes` that could move", text));
   const std::size_t equals = text.find('=');
@@ -132,6 +141,13 @@ void set_pose(std::vector<MovingAxis>& axes, const std::string& text) {
   if (!is_within(moved, moved.at_m))
     throw InputError(moved.where, fmt::format("--pose {}: the position is outside the `range` of axis '{}', {}", text,
                                               moved.name, range_words(moved)));
+  for (const Cyclogram& c : cyclograms) {
+    if (c.column(moved.column))
+      throw InputError(
+          fmt::format("--pose {}: cyclogram '{}' moves axis '{}' by its column '{}'; leave out --pose, or "
+                      "choose a cyclogram without this column by --cyclogram",
+                      text, c.name, moved.name, moved.column));
+  }
 }
 
 std::vector<PoseStretch> pose_stretches(const std::vector<MovingAxis>& axes, const Cyclogram& cyclogram) {
@@ -188,10 +204,11 @@ void require_resting(const std::vector<MovingAxis>& axes, const Cyclogram& cyclo
       if (stretch.pose[i] == axes[i].at_m) continue;
       throw InputError(
           axes[i].where,
-          fmt::format("cyclogram '{}' moves axis '{}' to {:g} mm, but this model holds it at {:g} mm. Only "
-                      "`simulate`, and `run` with `volume`, of the full model (`solver: {{model: full}}`) follow "
-                      "moves; otherwise leave out the column '{}'",
-                      cyclogram.name, axes[i].name, 1e3 * stretch.pose[i], 1e3 * axes[i].at_m, axes[i].column));
+          fmt::format("cyclogram '{}' moves axis '{}' to {:g} mm, but this model holds it at {:g} mm. If it stays "
+                      "there, write `at: {:g} mm`. Only `simulate`, and `run` with `volume`, of the full model "
+                      "(`solver: {{model: full}}`) follow moves; otherwise leave out the column '{}'",
+                      cyclogram.name, axes[i].name, 1e3 * stretch.pose[i], 1e3 * axes[i].at_m, 1e3 * stretch.pose[i],
+                      axes[i].column));
     }
   }
 }

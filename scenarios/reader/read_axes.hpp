@@ -14,7 +14,7 @@ namespace driftwright::scenarios {
 struct MovingAxis {
   std::string name;
   std::vector<std::string> moves;    ///< regions that slide as one rigid unit
-  int along = 0;                     ///< 0, 1, 2 = x, y, z
+  Eigen::Vector3d along;             ///< direction of length 1 in which they slide while the position rises
   double low_m = 0.0, high_m = 0.0;  ///< allowed positions
   double drawn_at_m = 0.0;           ///< position of the axis in the mesh as it was drawn
   double at_m = 0.0;                 ///< position of the axis in this machine
@@ -38,8 +38,8 @@ using Pose = std::vector<double>;
 /// "x = 200 mm, z = -50 mm"
 [[nodiscard]] std::string pose_words(const std::vector<MovingAxis>& axes, const Pose& pose);
 /// Moves an axis as the user writes it: "x=200mm". @throws InputError  for an unknown axis, a position that is no length or
-/// is outside the range
-void set_pose(std::vector<MovingAxis>& axes, const std::string& text);
+/// is outside the range, and a cyclogram whose column moves this axis
+void set_pose(std::vector<MovingAxis>& axes, const std::string& text, const std::vector<Cyclogram>& cyclograms);
 
 /// A time in which no axis moves.
 struct PoseStretch {

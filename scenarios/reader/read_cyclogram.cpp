@@ -123,8 +123,8 @@ RowColumns row_columns(const ConfigMap& in) {
     const auto further = column == columns().end() ? further_column(names[i]) : std::nullopt;
     if (column == columns().end() && !further) {
       in.fail("columns",
-              fmt::format("'{}' is no column; duration, then any of {}, or one that effects ask for, with its unit "
-                          "(heater_W)",
+              fmt::format("'{}' is no column; duration, then any of {}, or one that effects or `axes` ask for, with "
+                          "its unit (heater_W, position_x_mm)",
                           names[i], fmt::join(known, ", ")));
     }
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=

@@ -187,8 +187,7 @@ std::string name_of(const std::string& source) {
 }  // namespace
 
 bool is_of_column(const std::string& name, const std::string& unit) {
-  constexpr const char* kPlaces[] = {"position_x", "position_y", "position_z", "stroke_x", "stroke_y", "stroke_z"};
-  if (unit == "mm" && std::find(std::begin(kPlaces), std::end(kPlaces), name) != std::end(kPlaces)) return true;
+  if (unit == "mm" && (name.starts_with("position_") || name.starts_with("stroke_"))) return true;
   constexpr const char* kOther[] = {"um", "mm", "urad", "s", "min", "h"};
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }

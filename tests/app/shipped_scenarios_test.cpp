@@ -136,7 +136,7 @@ TEST(MovingMill, TheVolumeHoldsTheErrorsOfTheRecordWhereBothAreAtOnePose) {
   };
   // The cyclogram ends at the drawn pose, where the foot of the volume is the point `table` of the displacements.
   const Record record = read_record_csv((folder / "record.csv").string());
-  EXPECT_EQ(record.at("position_x").values[5], -150.0);
+  EXPECT_EQ(record.at("position_x").values[5], 150.0);
   int n_met = 0;
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (is_at(table[i], 0.0, 0.0, 0.0)) {
@@ -144,9 +144,9 @@ TEST(MovingMill, TheVolumeHoldsTheErrorsOfTheRecordWhereBothAreAtOnePose) {
       EXPECT_NEAR(std::stod(table[i][column("EY_um")]), record.at("nose_y").values.back(), 1e-3);
       EXPECT_NEAR(std::stod(table[i][column("EZ_um")]), record.at("nose_z").values.back(), 1e-3);
     }
-    if (is_at(table[i], 200.0, -50.0, 100.0)) {
+    if (is_at(table[i], 200.0, 50.0, 100.0)) {
       ++n_met;
-      EXPECT_NEAR(std::stod(table[i][column("place_x_mm")]), -200.0, 1e-6);  // the work has moved the other way
+      EXPECT_NEAR(std::stod(table[i][column("place_x_mm")]), 200.0, 1e-6);  // +X of the tool in the work, as ISO 841
       EXPECT_NEAR(std::stod(table[i][column("place_y_mm")]), -60.0 + 50.0, 1e-6);
       EXPECT_NEAR(std::stod(table[i][column("place_z_mm")]), 740.0, 1e-6);
     }

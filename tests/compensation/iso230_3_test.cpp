@@ -50,6 +50,15 @@ TEST(Iso230Figures, OfAnExponentialRiseAreItsClosedForm) {
 }
 
 // d rises to a at 30 min and falls to -a at 90 min as a sine does: a range is no end value.
+TEST(Iso230Figures, TakeNoPositionOfAnAxisForADistortion) {
+  Record record = test_of(240, 1, 240, warming_um);  // the spindle turns; no feed is recorded
+  for (const char* name : {"position_x", "stroke_x", "nose"})
+    record.channels.push_back({name, "mm", record.channels[1].values});
+  const Iso230Figures f = iso230_3_figures(record);
+  ASSERT_EQ(f.channels.size(), 3U);
+  EXPECT_EQ(f.channels[2].name, "nose");
+}
+
 TEST(Iso230Figures, RangesAreOfTheCourseAndNotOfItsEnds) {
   const auto wave_um = [](double t_min) { return 10.0 * std::sin(2.0 * M_PI * t_min / 120.0); };
   const Iso230Channel z = iso230_3_figures(test_of(120, 1, 120, wave_um)).channels.front();

@@ -394,6 +394,27 @@ TEST_F(MeasuredRunTest, LeavesOutAReadingThatLeapsAwayAndBack) {
   EXPECT_THAT(run.findings.front().what, HasSubstr("reads -999 degC at 50 min"));
 }
 
+TEST_F(MeasuredRunTest, RefusesARecordOfAnotherPose) {
+  // Also one that rests there: a column that does not change is otherwise dropped.
+  scenarios::MachineModel model;
+  model.reference_K = 293.15;
+  model.ambient = {{0.0}, {0.0}};
+  model.axes.push_back({.name = "x",
+                        .moves = {"table"},
+                        .along = Eigen::Vector3d::UnitX(),
+                        .high_m = 1.0,
+                        .column = "position_x",
+                        .where = {}});
+  const auto read_at = [&](double position_mm) {
+    std::string text = "time_s,speed_rpm,position_x_mm,nose_z_um\n";
+    for (int i = 0; i < 6; ++i) text += fmt::format("{},500,{},{}\n", 60 * i, position_mm, 0.1 * i * i);
+    return measured_run(read_record(write_file("at_a_pose.csv", text), std::nullopt), model, outputs());
+  };
+  EXPECT_EQ(read_at(0.0).time_s.size(), 6u);
+  EXPECT_THAT([&] { (void)read_at(100.0); },
+              testing::ThrowsMessage<InputError>(AllOf(HasSubstr("axis 'x' to 100 mm"), HasSubstr("0 mm"))));
+}
+
 TEST_F(MeasuredRunTest, SaysWhyTheOnlyChannelIsLeftOut) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500,23.4\n";

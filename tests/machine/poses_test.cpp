@@ -159,6 +159,16 @@ TEST(Pose, AUniformRiseGrowsBedAndTableFreely) {
   }
 }
 
+TEST(Pose, OfABodyThatCarriesTheWorkTakesTheToolAlongTheAxis) {
+  // ISO 841: while X rises, the tool goes along +x in the work, so the table goes along -x.
+  const MachineModel model =
+      at({.drawn_m = 0.3, .axes = "axes: {x: {moves: [table], along: -x, range: [-300 mm, 300 mm]}}\n"}, 0.1);
+  const PlacedMachine placed = place(model);
+  const ToolAgainstWork error = tool_against_work(model, placed.mesh, {"bed", {0.4, 0.0, 0.1}, {}}, "table", {});
+  EXPECT_LT((error.place_m - Eigen::Vector3d(0.4 + 0.1, 0.0, 0.1)).norm(), 1e-9);
+  EXPECT_LT((shift_m(model.axes, "table") - Eigen::Vector3d(-0.1, 0.0, 0.0)).norm(), 1e-12);
+}
+
 SimulatedRun simulate(const Scenario& scenario) {
   const Cyclogram& work = scenario.cyclogram("work");
   const Model model = open_model(scenario, {&work}, {}, false);
@@ -233,16 +243,43 @@ TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
   Scenario scenario = Slide{.rows = rows}.read();
   scenario.solver.model = ModelKind::kReduced;
   EXPECT_REFUSED(open_model(scenario, {&scenario.cyclograms[0]}, {}, false), "moves axis 'x' to 400 mm", "model: full");
-  EXPECT_REFUSED(require_resting(scenario.machine->axes, scenario.cyclograms[0]), "position_x");
+  EXPECT_REFUSED(require_resting(scenario.machine->axes, scenario.cyclograms[0]), "`at: 400 mm`", "position_x");
 }
 
 TEST(Axes, ArePlacedFromTheCommandLine) {
   std::vector<MovingAxis> axes = Slide{}.read().machine->axes;
-  set_pose(axes, "x=250mm");
+  set_pose(axes, "x=250mm", {});
   EXPECT_NEAR(axes[0].at_m, 0.25, 1e-12);
-  EXPECT_REFUSED(set_pose(axes, "y=1mm"), "there are x");
-  EXPECT_REFUSED(set_pose(axes, "x=1000mm"), "outside the `range`");
-  EXPECT_REFUSED(set_pose(axes, "x=far"), "--pose x=far");
+  EXPECT_REFUSED(set_pose(axes, "y=1mm", {}), "there are x");
+  EXPECT_REFUSED(set_pose(axes, "x=1000mm", {}), "outside the `range`");
+  EXPECT_REFUSED(set_pose(axes, "x=far", {}), "--pose x=far");
+  const Scenario moving = Slide{.rows = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 100 mm]]}"}.read();
+  EXPECT_REFUSED(set_pose(axes, "x=250mm", moving.cyclograms), "'work' moves axis 'x'", "by --cyclogram");
+}
+
+TEST(Axes, OfAnyNameFollowTheirColumn) {
+  write_file("quill.csv", "time_min,speed_rpm,position_quill_mm\n0,0,0\n10,0,400\n20,0,400\n");
+  for (const char* rows :
+       {"{csv: quill.csv}", "{columns: [duration, speed, position_quill_mm], rows: [[1 h, 0 rpm, 400 mm]]}"}) {
+    const Scenario s =
+        Slide{.axes = "axes: {quill: {moves: [table], along: x, range: [0 mm, 800 mm]}}\n", .rows = rows}.read();
+    EXPECT_TRUE(moves_axes(s.machine->axes, s.cyclograms[0])) << rows;
+  }
+  EXPECT_REFUSED(Slide{.axes = "axes: {x: {moves: [table], along: x, range: [0 mm, 1 m], column: gap}}\n"}.read(),
+                 "axes.x.column", "must begin with `position_`");
+}
+
+TEST(Axes, RestWhereAPositionIsThatOfTheAxisButForRounding) {
+  // -0.3 + 3 x 0.1 is not 0, and 1e-3 x 9 is not 0.009.
+  const auto moves = [](const std::string& axis, const std::string& position) {
+    const Scenario s = Slide{.axes = "axes: {x: {moves: [table], along: x, range: [-300 mm, 800 mm], " + axis + "}}\n",
+                             .rows = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, " + position + "]]}"}
+                           .read();
+    return moves_axes(s.machine->axes, s.cyclograms[0]);
+  };
+  EXPECT_FALSE(moves("step: 100 mm", "0.02 mm"));
+  EXPECT_FALSE(moves("at: 0.009 m", "9 mm"));
+  EXPECT_TRUE(moves("at: 0.009 m", "9.001 mm"));
 }
 
 TEST(Axes, RoundPositionsToTheirStep) {

@@ -312,6 +312,21 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   }
 }
 
+TEST(Placement, OfAMachineAtAPoseIsWrittenAsDrawn) {
+  fixtures::ColumnAndHead machine;
+  machine.more = "axes: {y: {moves: [head], along: y, range: [0 mm, 50 mm], at: 50 mm}}\n";
+  const scenarios::Scenario scenario =
+      scenarios::read_scenario(fixtures::write_column_and_head(fresh_folder("placed_at_a_pose"), machine));
+  int n_of_head = 0;
+  for (const Spot& spot : model_of(scenario, {.n_points = 30}).spots) {
+    if (spot.region != "head") continue;
+    ++n_of_head;
+    EXPECT_GE(spot.at_m.y(), -1e-9);
+    EXPECT_LE(spot.at_m.y(), 0.2 + 1e-9) << "the head was drawn over 200 mm";
+  }
+  EXPECT_GE(n_of_head, 12);
+}
+
 TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {
   const auto folder = fresh_folder("placed_quoted");
   const std::string text =
