@@ -1,19 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
+#include "app/film_fields.hpp"
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
 #include "base/file_name.hpp"
-#include "base/quantity.hpp"
 #include "findings/mesh_convergence_document.hpp"
 #include "findings/scenario_document.hpp"
-#include "machine/mapped_films.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/unnamed_geometry.hpp"
-#include "output/vtk_fields.hpp"
 #include "scenarios/reader/geometry.hpp"
 #include "studies/prediction.hpp"
 
@@ -58,34 +54,6 @@ void show_convergence(const MeshOptions& options) {
   const studies::MeshConvergence found =
       studies::mesh_convergence(scenario, cyclogram, options.most_elements, progress.listener());
   finish(findings::document_of(found, scenario, folder.made_by()), folder, progress, options);
-}
-
-/// Films and air temperatures of files as arrays for mesh.vtu, one a state.
-std::vector<output::FacetField> facet_fields(const std::vector<scenarios::MappedFilm>& films) {
-  std::vector<output::FacetField> fields;
-  const auto add = [&](const std::string& name, const std::vector<double>& value) {
-    const auto same = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; });
-    if (same == fields.end()) {
-      fields.push_back({name, value});
-      return;
-    }
-    for (std::size_t f = 0; f < value.size(); ++f) {  // another surface
-      if (!std::isnan(value[f])) same->value[f] = value[f];
-    }
-  };
-  for (const scenarios::MappedFilm& film : films) {
-    for (const scenarios::MappedState& state : film.states) {
-      const std::string at = film.over == effects::FieldOver::kSpeed  ? fmt::format("_at_{:g}_rpm", state.at)
-                             : film.over == effects::FieldOver::kTime ? fmt::format("_at_{:g}_min", state.at / 60.0)
-                                                                      : "";
-      add("h_W_m2K" + at, state.facet_film_W_m2K);
-      if (state.facet_air_K.empty()) continue;
-      std::vector<double> air_C = state.facet_air_K;
-      for (double& value : air_C) value -= kZeroCelsius_K;
-      add("T_air_degC" + at, air_C);
-    }
-  }
-  return fields;
 }
 
 }  // namespace

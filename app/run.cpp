@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/film_fields.hpp"
 #include "app/results.hpp"
 #include "base/file_name.hpp"
 #include "findings/machine_study_document.hpp"
@@ -31,7 +32,10 @@ void run(const CommonOptions& options) {
   if (machine.mesh().n_nodes() > 0 && wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const studies::MachineStudy study =
       studies::study_machine(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
-  if (fields) fields->finish();
+  if (fields) {
+    fields->finish();
+    write_films(model, machine, folder);
+  }
   progress.begin("writing results");
   folder.write_text(
       "record.csv",

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/film_fields.hpp"
 #include "app/results.hpp"
 #include "base/quantity.hpp"
 #include "compensation/frames/frame_programs.hpp"
@@ -45,7 +46,10 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   if (wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const studies::TableStudy study =
       studies::study_table(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
-  if (fields) fields->finish();
+  if (fields) {
+    fields->finish();
+    write_films(*scenario.machine, machine, folder);
+  }
   progress.begin("writing results");
   const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };
   folder.write_text("record.csv", record_csv(study.course.record, comments("cyclogram " + scenario.table->cyclogram)));

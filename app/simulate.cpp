@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/film_fields.hpp"
 #include "app/results.hpp"
 #include "base/file_name.hpp"
 #include "findings/plausibility.hpp"
@@ -51,7 +52,10 @@ void simulate(const SimulateOptions& options) {
   if (has_mesh && writes_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(
       scenario, machine, cyclograms, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
-  if (fields) fields->finish();
+  if (fields) {
+    fields->finish();
+    write_films(*scenario.machine, machine, folder);
+  }
   std::vector<std::optional<RecordBand>> bands;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const scenarios::SimulatedRun& run = runs[i];

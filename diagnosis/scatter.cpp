@@ -71,7 +71,8 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
                        .high = parameter.high,
                        .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; },
                        .own = e.kind->key,
-                       .line = line_of(e)});
+                       .line = line_of(e),
+                       .own_at = i});
     }
   }
   const effects::DoubtScene scene = scene_of(twin, {});

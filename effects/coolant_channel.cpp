@@ -16,7 +16,12 @@
 namespace driftwright::effects::coolant_channel {
 
 constexpr double kPer_L_min = 1e-3 / 60.0;  // m^3/s
-constexpr double kSections = 10.0;          // where `along` is given without `sections`
+/// Where `along` is given without `sections`. In a wall of one temperature any number is exact, since the liquid follows it
+/// exponentially. What remains is where in a section its heat passes: a section has its mean film everywhere, and in a laminar
+/// entrance the film falls as x^(-1/3), so a share of n^(-2/3) of the heat is within the first section and too far
+/// downstream. This share depends neither on the flow nor on the length. Conduction along the wall evens it out, and the
+/// error falls as n^(-1.3): 0.05 K for a wall 22 K warmer than its liquid with 40 (tests/solver/coolant_channel_test.cpp).
+constexpr double kSections = 40.0;
 constexpr double kUsual_K = kZeroCelsius_K + 20.0;
 constexpr double kSetPoint_K = 2.0;   // 1 sigma of a changed set point, as of a coolant
 constexpr double kSameLength = 1e-6;  // relative: rounding of a perimeter that the user computed
@@ -353,7 +358,7 @@ EffectKind kind() {
                      {"cross_section", "mm^2", 1e-2, 4e6, kNotGiven, "of the channel; left out: of a round bore"},
                      {"perimeter", "mm", 0.1, 1e5, kNotGiven,
                       "the part of the wetted perimeter that exchanges heat; left out: all, 4 cross_section / diameter"},
-                     {"sections", "1", 1.0, 200.0, kNotGiven, "with `along`: into which the surface is cut; left out: 10"},
+                     {"sections", "1", 1.0, 200.0, kNotGiven, "with `along`: into which the surface is cut; left out: 40"},
                      {"film_factor", "1", 0.01, 100.0, 1.0, "on the film: roughness, swirl after a bend, deposits", 0.1,
                       "coolant", Doubted::kFactor},
                      {"properties_at", "degC", 230.0, 450.0, kNotGiven,

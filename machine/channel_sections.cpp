@@ -60,12 +60,29 @@ Cut cut_of(const effects::Effect& e) {
   return {};
 }
 
+/// The section of n in which a share of the line is.
+int section_of(double share, int n) {
+  return std::min(n - 1, static_cast<int>(share * n));
+}
+
+/// The largest number of sections, below n, of which each has one of the shares.
+int most_sections(const std::vector<double>& shares, int n) {
+  for (int fewer = n - 1; fewer > 1; --fewer) {
+    std::vector<char> has(static_cast<std::size_t>(fewer), 0);
+    for (const double share : shares) has[static_cast<std::size_t>(section_of(share, fewer))] = 1;
+    if (std::find(has.begin(), has.end(), 0) == has.end()) return fewer;
+  }
+  return 1;
+}
+
 void cut(const effects::Effect& e, const Cut& into, mesh::Mesh& mesh) {
   const FlowLine line(effects::points_of_text(e.words.at(into.line)));
   const auto first = static_cast<int>(mesh.surfaces.size());
   std::vector<int> n_facets(static_cast<std::size_t>(into.n), 0);
+  std::vector<double> shares;
   for (const int facet : mesh.facets_on(mesh.surface(e.place))) {
-    const int i = std::min(into.n - 1, static_cast<int>(line.share_at(middle_of(mesh, facet)) * into.n));
+    shares.push_back(line.share_at(middle_of(mesh, facet)));
+    const int i = section_of(shares.back(), into.n);
     ++n_facets[static_cast<std::size_t>(i)];
     const auto nodes = mesh.facets.nodes(facet);
     const std::vector<int> own(nodes.begin(), nodes.end());  // add() may move the list that `nodes` is part of
@@ -75,9 +92,9 @@ void cut(const effects::Effect& e, const Cut& into, mesh::Mesh& mesh) {
     if (n_facets[static_cast<std::size_t>(i)] == 0) {
       throw InputError(e.reference_where.at(into.line),
                        fmt::format("section {} of {} of surface '{}' has no face of the mesh: no face is nearest to that "
-                                   "part of the line. Give fewer `sections`, a finer mesh, or points in mm from the inlet "
-                                   "to the outlet of this surface",
-                                   i + 1, into.n, e.place));
+                                   "part of the line. Write `sections: {}`, the most of which each has a face, or give a "
+                                   "finer mesh, or points in mm from the inlet to the outlet of this surface",
+                                   i + 1, into.n, e.place, most_sections(shares, into.n)));
     }
     mesh.surfaces.push_back(effects::section_name(e.place, i, into.n));
   }

@@ -128,6 +128,30 @@ TEST(Films, FilesOfAPatternAreOneAnOperatingPoint) {
   EXPECT_THAT(read_text(folder / "out" / "report.html"), HasSubstr("film_field front at 1000 rpm"));  // the picture
 }
 
+TEST(Films, AreWrittenBesideTheFieldsOfARun) {
+  const auto folder = fresh_folder("films_beside_fields");
+  std::ofstream(folder / "front.csv") << csv(
+      "x_mm,y_mm,z_mm,h_W_m2K,T_air_degC", [](double x_mm, double) { return fmt::format("{},24", x_mm < 50.0 ? 12 : 20); });
+  const std::string film = "{type: film_field, surface: front, file: front.csv}";
+  const auto out_of = [&](const std::string& model, const std::string& entry, const std::string& format) {
+    ColumnAndHead machine{.effects = {kHeat, kFilm, kContact, entry}};
+    machine.solver = fmt::format("{{output_interval: 5 min, fields_format: {}, model: {}}}", format, model);
+    const auto out = folder / (model + "_" + format + (entry == film ? "_film" : ""));
+    const CommandOutcome outcome =
+        run_program("simulate " + fixtures::write_column_and_head(folder, machine, "scenario") + " -o " + out.string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return out;
+  };
+  const auto full = out_of("full", film, "vtu"), reduced = out_of("reduced", film, "vtu");
+  const std::string text = read_text(full / "films.vtu");
+  EXPECT_THAT(text, AllOf(HasSubstr("Name=\"h_W_m2K\""), HasSubstr("Name=\"T_air_degC\""), Not(HasSubstr("quality"))));
+  EXPECT_TRUE(text == read_text(reduced / "films.vtu"));  // whose machine has no faces of its own
+  EXPECT_FALSE(std::filesystem::exists(out_of("reduced", film, "none") / "films.vtu"));
+  const auto without = out_of("reduced", "{type: convection, surface: front, film: 9 W/(m^2 K)}", "vtu");
+  EXPECT_TRUE(std::filesystem::exists(without / "fields.pvd"));
+  EXPECT_FALSE(std::filesystem::exists(without / "films.vtu"));
+}
+
 TEST(Films, SayWhatIsNotCovered) {
   const auto folder = fresh_folder("films_uncovered");
   std::ofstream(folder / "front.csv")

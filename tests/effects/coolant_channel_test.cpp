@@ -199,6 +199,13 @@ TEST(CoolantChannel, NamesTheSectionsOfASurface) {
   EXPECT_EQ(b.exchanges[2].per, Per::kTotal);
 }
 
+TEST(CoolantChannel, CutsALineInto40Sections) {
+  const HeatBalance b = heat_balance({read(
+      "{type: coolant_channel, surface: bore, along: [[0 mm, 0 mm, 0 mm], [0.1 m, 0 mm, 0 mm]], flow: 1 L/min, diameter: 8 "
+      "mm, length: 100 mm, set_point: 20 degC}")});
+  EXPECT_EQ(b.exchanges.size(), 40u);
+}
+
 TEST(CoolantChannel, ComesBackFromItsText) {
   const std::string text =
       "{type: coolant_channel, surface: bore, flow: 2 L/min, diameter: 8 mm, length: 100 mm, sections: 4, set_point: 21 "

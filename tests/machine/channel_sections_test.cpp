@@ -96,7 +96,8 @@ TEST(ChannelSections, WithoutAFaceAreRefused) {
         mesh::Mesh m = plate();
         add_channel_sections(model, m);
       },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("of 9 of surface 'z0' has no face"), HasSubstr("channel.yaml"))));
+      ThrowsMessage<InputError>(
+          AllOf(HasSubstr("of 9 of surface 'z0' has no face"), HasSubstr("`sections: 8`"), HasSubstr("channel.yaml"))));
 }
 
 }  // namespace
