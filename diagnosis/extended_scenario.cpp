@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
@@ -54,15 +55,10 @@ bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return is_near(x, y); });
 }
 
-bool is_near(const effects::KnownTo& a, const effects::KnownTo& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const auto& x, const auto& y) { return x.first == y.first && is_near(x.second, y.second); });
-}
-
 bool reads_back(const Effect& a, const Effect& b) {
   return a.kind == b.kind && a.place_kind == b.place_kind && a.place == b.place && a.references == b.references &&
          a.words == b.words && a.in == b.in && is_near(a.from_s, b.from_s) && is_near(a.until_s, b.until_s) &&
-         is_near(a.values, b.values) && is_near(a.known_to, b.known_to) &&
+         is_near(a.values, b.values) &&
          std::equal(a.tables.begin(), a.tables.end(), b.tables.begin(), b.tables.end(), [](const auto& x, const auto& y) {
            return x.first == y.first && is_near(x.second.time_s, y.second.time_s) && is_near(x.second.value, y.second.value);
          });
@@ -93,10 +89,7 @@ class Writer {
     change_ = &change;
     done_.clear();
     notes_.clear();
-    for (std::size_t i = 0; i < list_.size(); ++i) {
-      values(i, next[i]);
-      known_to(i, next[i]);
-    }
+    for (std::size_t i = 0; i < list_.size(); ++i) values(i, next[i]);
     for (std::size_t i = list_.size(); i < next.size(); ++i) append(next[i]);
     for (const auto& [line, notes] : notes_)
       yaml_.comment(line, fmt::format("{}: {}; {}", change.by, fmt::join(notes, ", "), change.comment));
@@ -105,10 +98,7 @@ class Writer {
 
   /// The edited text; if it does not have the right effects, a text written anew.
   [[nodiscard]] std::string text(std::vector<std::string> head) const {
-    YamlText yaml = yaml_;
-    bool fits = !in_one_piece_;
-    for (const auto& [i, comment] : replaced_) fits = yaml.append(*effects_, effects::yaml_of(list_[i]), comment) && fits;
-    if (const std::string edited = yaml.text(head); fits && says_what_it_should(edited)) return edited;
+    if (const std::string edited = yaml_.text(head); !in_one_piece_ && says_what_it_should(edited)) return edited;
     head.emplace_back("written anew: the text of the scenario could not be edited in place");
     std::string out;
     for (const std::string& line : head) out += fmt::format("# {}\n", line);
@@ -211,40 +201,14 @@ class Writer {
     return true;
   }
 
-  /// Writes how well the numbers of an effect are known.
-  void known_to(std::size_t i, const Effect& next) {
-    if (next.known_to == list_[i].known_to) return;
-    list_[i].known_to = next.known_to;
-    done_.push_back(fmt::format("{}: known_to {}", next.name(), effects::yaml_of(next.known_to)));
-    if (!is_in_file(i) || !known_to_in_place(i, next.known_to)) replace(i);
-  }
-
-  bool known_to_in_place(std::size_t i, const effects::KnownTo& said) {
-    const ConfigNode* was = entry(i).find("known_to");
-    if (!was) return yaml_.add_pair(entry(i), "known_to", effects::yaml_of(said));
-    if (was->is_scalar()) {
-      if (!yaml_.replace(*was, effects::yaml_of(said))) return false;
-      notes_[was->line].push_back("known_to was " + was->text);
-      return true;
-    }
-    for (const auto& [name, share] : said) {
-      const std::string text = effects::yaml_of(effects::KnownTo{{"", share}});
-      const ConfigNode* scalar = was->find(name);
-      if (scalar ? !yaml_.replace(*scalar, text) : !yaml_.add_pair(*was, name, text)) return false;
-      if (scalar && scalar->text != text)
-        notes_[scalar->line].push_back(fmt::format("known_to of {} was {}", name, scalar->text));
-    }
-    return true;
-  }
-
-  /// The old entry becomes a comment; text() writes the whole of it after the others.
+  /// Writes the whole entry after the others; the old one becomes a comment.
   void replace(std::size_t i) {
-    if (replaced_.contains(i)) return;
-    if (is_in_file(i) && yaml_.comment_out(*effects_, i)) {
-      replaced_.emplace(i, change_->comment);
-    } else {
-      in_one_piece_ = true;
+    if (is_in_file(i) && yaml_.comment_out(*effects_, i) &&
+        yaml_.append(*effects_, effects::yaml_of(list_[i]), change_->comment)) {
+      replaced_.insert(i);
+      return;
     }
+    in_one_piece_ = true;
   }
 
   /// A cyclogram from the run's file and, for a logger's file, the scenario's `columns`; a record in memory has no file.
@@ -317,7 +281,7 @@ class Writer {
   TwinState list_;  ///< effects of the text
   const ConfigNode* effects_ = nullptr;
   const StatedChange* change_ = nullptr;
-  std::map<std::size_t, std::string> replaced_;  ///< entries, and the comment on each
+  std::set<std::size_t> replaced_;
   std::vector<std::string> cyclograms_, done_;
   std::vector<std::pair<std::string, std::string>> added_cyclograms_;  ///< names and YAML
   std::map<int, std::vector<std::string>> notes_;                      ///< changes, by line

@@ -27,9 +27,8 @@ struct Knob {
   bool grows_with_size = false;       ///< its starting value is proportional to the claim's size; for kLog
   bool reading_only = false;          ///< the machine's own response is unchanged
   std::function<void(TwinState&, double value)> set = {};
-  std::string own = {};    ///< kind of the scenario's effect whose number it is, as its file has it; "": of none
-  int line = 0;            ///< of that effect's first key in the file
-  std::size_t own_at = 0;  ///< that effect's place in the scenario's list, unless `own` is ""
+  std::string own = {};  ///< kind of the scenario's effect whose number it is, as its file has it; "": of none
+  int line = 0;          ///< of that effect's first key in the file
 
   /// The time of a jump in a reading has no slope: the misfit is constant between two rows.
   [[nodiscard]] bool is_jump() const { return is_time && reading_only; }

@@ -71,8 +71,7 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
                        .high = parameter.high,
                        .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; },
                        .own = e.kind->key,
-                       .line = line_of(e),
-                       .own_at = i});
+                       .line = line_of(e)});
     }
   }
   const effects::DoubtScene scene = scene_of(twin, {});

@@ -28,7 +28,7 @@ std::string word(double share) {
 }  // namespace
 
 schema::Key known_to_key(const std::vector<std::string>& names) {
-  const schema::Ways share = {schema::choice({"fixed", "guess"}), schema::quantity("1", kBestKnown, 2.0)};
+  const schema::Ways share = {schema::choice({"fixed", "guess"}), schema::quantity("1", 1e-3, 2.0)};
   schema::Map by_name{
       .name = fmt::format("known_to ({})", names.empty() ? "by name" : fmt::format("{}", fmt::join(names, ", "))),
       .about = "How well single numbers are known: 1 sigma of their logarithms."};
@@ -62,19 +62,6 @@ double known_to(const KnownTo& said, const std::string& name, double otherwise) 
     if (const auto found = said.find(key); found != said.end()) return found->second;
   }
   return otherwise;
-}
-
-void set_known_to(KnownTo& said, const std::vector<std::string>& names, const std::string& name, double share) {
-  if (names.size() == 1 && !said.contains(name)) {
-    said = {{"", share}};
-    return;
-  }
-  if (const auto all = said.find(""); all != said.end()) {
-    const double others = all->second;
-    said.erase(all);
-    for (const std::string& other : names) said.emplace(other, others);
-  }
-  said[name] = share;
 }
 
 std::string yaml_of(const KnownTo& said) {

@@ -11,7 +11,6 @@ namespace driftwright::effects {
 
 /// Standard deviations of logarithms by the name of a number; "" for all others. 0: the number is not fitted.
 using KnownTo = std::map<std::string, double>;
-inline constexpr double kBestKnown = 1e-3;            ///< the smallest share that `known_to` takes
 inline constexpr double kGuess = 0.6931471805599453;  ///< standard deviation for `guess`: ln 2, a factor of 2
 
 /// The schema of the key `known_to` of an entry with numbers of these names; none: of names that the entry declares.
@@ -21,8 +20,6 @@ inline constexpr double kGuess = 0.6931471805599453;  ///< standard deviation fo
 [[nodiscard]] KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names);
 /// The standard deviation given for a number, or `otherwise` if none is given.
 [[nodiscard]] double known_to(const KnownTo& said, const std::string& name, double otherwise);
-/// Sets one of the numbers `names`; what was said for all of them holds for the others from then on.
-void set_known_to(KnownTo& said, const std::vector<std::string>& names, const std::string& name, double share);
 /// The YAML text that read_known_to() reads: "20 %", "guess", "fixed", or a map of these.
 [[nodiscard]] std::string yaml_of(const KnownTo& said);
 

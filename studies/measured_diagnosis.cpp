@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
 #include "base/delimited_text.hpp"
@@ -64,21 +63,6 @@ std::vector<StatedChange> stated_causes(const Diagnosis& d, const Eigen::VectorX
   return changes;
 }
 
-/// The entry that has a fitted number; none for the properties of a material.
-effects::Effect* own_effect_of(const diagnosis::Knob& knob, diagnosis::TwinState& state) {
-  if (!knob.own.empty()) return &state.at(knob.own_at);
-  if (knob.effect != "heat_capacity") return nullptr;
-  const auto node = std::find_if(state.begin(), state.end(), [&](const effects::Effect& e) {
-    return e.kind->key == "node" && e.place == knob.where && e.has("capacity");
-  });
-  return node == state.end() ? nullptr : &*node;
-}
-
-/// A standard deviation in two digits, and not below what `known_to` may say.
-double short_share(double sd) {
-  return std::max(effects::kBestKnown, std::strtod(fmt::format("{:.2g}", sd).c_str(), nullptr));
-}
-
 /// The scenario's own numbers as fitted, as changes of the scenario. @param x  as diagnosis::written_x() gives it
 /// @param causes_only  only numbers that moved so far that the diagnosis reports them as causes
 std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only, const Eigen::VectorXd& x) {
@@ -96,23 +80,6 @@ std::vector<StatedChange> stated_numbers(const Diagnosis& d, bool causes_only, c
          is_cause ? "diagnosis" : "calibration"});
   }
   return changes;
-}
-
-/// How well the records fixed the scenario's own numbers, as `known_to` of the entries that have them: the standard
-/// deviation of each number by itself, in two digits. A factor on a material's property is in no entry.
-StatedChange stated_known_to(const Diagnosis& d) {
-  return {"how well numbers are known", "one sigma, as these records fixed it",
-          [&d](diagnosis::TwinState& state) {
-            for (std::size_t i = 0; i < d.scatter.size(); ++i) {
-              const diagnosis::Knob& knob = d.scatter[i];
-              effects::Effect* own = own_effect_of(knob, state);
-              if (!own) continue;
-              const auto at = static_cast<Eigen::Index>(i);
-              effects::set_known_to(own->known_to, own->kind->known_roughly(), knob.own.empty() ? "capacity" : knob.name,
-                                    short_share(std::sqrt(d.written.fit.covariance(at, at))));
-            }
-          },
-          "calibration"};
 }
 
 void add_records(std::vector<std::string>& head, const MeasuredTwin& m) {
@@ -147,13 +114,6 @@ std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagno
   std::vector<std::string> head = {
       fmt::format("{} with its numbers as `driftwright calibrate` fitted them", name_in_comments(m.scenario.path))};
   add_records(head, m);
-  if (d.written.keeps_numbers) {
-    head.emplace_back(
-        "  `known_to` is what these records and your `known_to` together leave of each number (one sigma), without");
-    head.emplace_back(
-        "  their correlations. It already contains these records: calibrate this file with other records only. To fit");
-    head.emplace_back("  these and others together, calibrate " + name_in_comments(m.scenario.path) + " again.");
-  }
   if (const std::string warning = diagnosis::calibration_warning(d); !warning.empty()) head.push_back("WARNING: " + warning);
   head.emplace_back("");
   return head;
@@ -195,9 +155,7 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
   listener.begin("writing");
   const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
-  std::vector<StatedChange> changes = stated_numbers(result.found, false, x);
-  if (result.found.written.keeps_numbers) changes.push_back(stated_known_to(result.found));
-  result.written = written_scenario(m, changes, head_of_calibration(m, result.found), file);
+  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file);
   predict_as_written(m, result.written, result.found);
   return result;
 }

@@ -485,35 +485,6 @@ TEST(ExtendedScenario, WritesWhereANumberIsAnAlias) {
   expect_written_all_the_same("aliased", "  - {type: link, node: housing, to: ambient, conductance: *way}\n", "&way ");
 }
 
-TEST(ExtendedScenario, WritesHowWellNumbersAreKnownInEveryWritingOfIt) {
-  std::string text = kSpindle;
-  text.insert(text.find("12 W/K") + 6, ", known_to: guess");
-  text.insert(text.find("30 W}") + 4, ", known_to: {power: 20 %}");
-  const auto b = bench(write_file("known.yaml", text));
-  const ExtendedScenario e = extend(*b, [](TwinState& t) {
-    const auto know = [&](std::size_t i, const char* name, double share) {
-      effects::set_known_to(t[i].known_to, t[i].kind->known_roughly(), name, share);
-    };
-    know(3, "power", 0.04);
-    know(3, "exponent", 0.01);
-    know(4, "conductance", 0.031);
-    know(5, "conductance", 0.002);
-  });
-  EXPECT_THAT(e.text, AllOf(HasSubstr("conductance: 12 W/K, known_to: 3.1 %}   # diagnosis: known_to was guess; because"),
-                            HasSubstr("known_to: {power: 4 %, exponent: 1 %}}   # diagnosis: known_to of power was 20 %"),
-                            HasSubstr("  - known_to: 0.2 %\n    type: link"), ::testing::Not(HasSubstr("written anew"))));
-  const auto read = scenarios::read_scenario(write_file("known_extended.yaml", e.text)).machine->effects;
-  EXPECT_NEAR(effects::known_to(read[3].known_to, "exponent", 0.0), 0.01, 1e-12);
-  EXPECT_NEAR(effects::known_to(read[4].known_to, "conductance", 0.0), 0.031, 1e-12);
-  EXPECT_NEAR(effects::known_to(read[5].known_to, "conductance", 0.0), 0.002, 1e-12);
-}
-
-TEST(ExtendedScenario, KeepsWhatIsSaidForTheOtherNumbersWhereOneIsKnownBetter) {
-  effects::KnownTo said = {{"", 0.2}};
-  effects::set_known_to(said, {"power", "exponent"}, "power", 0.05);
-  EXPECT_EQ(said, (effects::KnownTo{{"power", 0.05}, {"exponent", 0.2}}));
-}
-
 TEST(ExtendedScenario, WritesIntoAListInBracketsThatEndsWithACommaAndBeforeTheEndOfTheDocument) {
   const std::string text = R"(name: flow
 reference_temperature: 20 degC

@@ -5,12 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "base/errors.hpp"
-#include "studies/prediction.hpp"
 #include "tests/shared/lumped_records.hpp"
 #include "tests/shared/refused.hpp"
 
@@ -52,44 +49,6 @@ TEST(Calibrate, PredictsByTheScenarioThatItWritesAlsoInWordsOfAnEarlierRelease) 
     ASSERT_EQ(by_file.size(), found.extended.size());
     for (std::size_t r = 0; r < by_file.size(); ++r) EXPECT_EQ(by_file[r], found.extended[r]);
   }
-}
-
-double sd_of(const diagnosis::Estimate& e) {
-  return std::log(e.high / e.low) / (2.0 * 1.96);
-}
-
-TEST(Calibrate, WritesHowWellTheRecordsFixedEachNumberAndPredictDrawsIt) {
-  const MeasuredTwin m = twin_of(diagnosis::kTwoNodes);
-  const auto [found, written] = calibrate(m, "calibrated.yaml", {});
-  ASSERT_TRUE(found.written.keeps_numbers) << found.written.why_nothing;
-  EXPECT_THAT(written.extended.text, AllOf(HasSubstr("calibrate this file with other records only"),
-                                           HasSubstr("calibrate plain.yaml again"), Not(HasSubstr("written anew"))));
-  const scenarios::Scenario again = scenarios::read_scenario(write_file("calibrated.yaml", written.extended.text));
-  const auto with_band = [](const scenarios::Scenario& s) {
-    return predict_drift(s, s.cyclogram("monday"), {.with_band = true}, {}, "test");
-  };
-  EXPECT_FALSE(with_band(m.scenario).band);
-  const Prediction p = with_band(again);
-  ASSERT_TRUE(p.band);
-  EXPECT_GT(p.band->high("nose")->values.back(), p.record.at("nose").values.back());
-  // What is written is the interval, in two digits, and the prior of a second calibration. The same records once more count
-  // twice: the common scale of heats, conductances and capacities, which no thermometer fixes and the priors of six numbers
-  // hold alone, would seem to be known sqrt(6) = 2.4 times as well.
-  const MeasuredTwin second = open_measured_twin(again, "calibrate", records(), {});
-  const MeasuredDiagnosis twice = calibrate(second, "twice.yaml", {});
-  ASSERT_EQ(twice.found.scatter.size(), found.scatter.size());
-  int n_written = 0;
-  for (std::size_t i = 0; i < found.scatter.size(); ++i) {
-    const diagnosis::Knob &before = found.scatter[i], &now = twice.found.scatter[i];
-    if (before.own.empty() && before.effect != "heat_capacity") continue;
-    ++n_written;
-    EXPECT_NEAR(now.prior_sd, std::max(1e-3, sd_of(found.calibrated[i])), 0.051 * now.prior_sd) << before.name;
-    EXPECT_LT(now.prior_sd, before.prior_sd) << before.name;
-    if (before.name == "power") {
-      EXPECT_LT(sd_of(twice.found.calibrated[i]), 0.6 * sd_of(found.calibrated[i]));
-    }
-  }
-  EXPECT_EQ(n_written, 7);  // power, exponent, three conductances, two capacities
 }
 
 /// Everything in one folder: the scenario with a former word and a plan in a file, a record with another name, results.
