@@ -18,7 +18,7 @@ class Pattern {
   Pattern(const Pattern&) = delete;
   Pattern& operator=(const Pattern&) = delete;
 
-  /// The leftmost match, as the whole and then each group (empty where it took no part); nothing if there is none.
+  /// The leftmost match: first the whole of it, then each group. A group that matched nothing is empty. No value: no match.
   [[nodiscard]] std::optional<std::vector<std::string>> find(const std::string& text) const;
   [[nodiscard]] bool is_in(const std::string& text) const { return find(text).has_value(); }
 
