@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""peer_fenicsx.py FOLDER [--solver direct|multigrid] [--mechanics each_minute|influence|none] [--step SECONDS] [--scheme BE|CN]
-                   [--ranks N] [--minutes N] [--name NAME] [--cap S]
+"""peer_fenicsx.py FOLDER [--solver cholmod|mumps|multigrid] [--mechanics each_minute|influence|none] [--step SECONDS]
+                   [--scheme BE|CN] [--ranks N] [--minutes N] [--name NAME] [--cap S]
 
-FEniCSx (dolfinx 0.5.2 of Debian 12), order of the mesh. Solvers as its documentation has them, by PETSc, set up once for all steps:
-  direct     Cholesky by MUMPS
+FEniCSx (dolfinx 0.5.2 of Debian 12), order of the mesh. Solvers by PETSc as its documentation has them, set up once for all steps:
+  cholmod    Cholesky by CHOLMOD, on one rank; here the fastest
+  mumps      Cholesky by MUMPS
   multigrid  conjugate gradients; hypre's BoomerAMG for heat, GAMG with rigid-body modes (demo_elasticity) for displacements
 Displacements as peer_freefem.py: one elastic solve a minute, or three adjoint solves before the run and dot products (influence).
 Forms are compiled on first use and kept in FOLDER/../fenicsx_cache; --minutes 1 does so in a run of its own.
@@ -38,16 +39,17 @@ def read_mesh(path):
 def solver_of(matrix, prefix, options, multigrid):
     from petsc4py import PETSc
 
-    direct = {"ksp_type": "preonly", "pc_type": "cholesky", "pc_factor_mat_solver_type": "mumps"}
+    direct = {"ksp_type": "preonly", "pc_type": "cholesky", "pc_factor_mat_solver_type": options.solver}
+    iterative = {"ksp_type": "cg", "ksp_rtol": 1e-8, **multigrid}
     database = PETSc.Options()
-    for key, value in (direct if options.solver == "direct" else {"ksp_type": "cg", "ksp_rtol": 1e-8, **multigrid}).items():
+    for key, value in (iterative if options.solver == "multigrid" else direct).items():
         database[prefix + key] = value
     matrix.setOption(PETSc.Mat.Option.SPD, True)
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOptionsPrefix(prefix)
     solver.setOperators(matrix)
     solver.setFromOptions()
-    solver.setInitialGuessNonzero(options.solver != "direct")
+    solver.setInitialGuessNonzero(options.solver == "multigrid")
     solver.setErrorIfNotConverged(True)
     solver.setUp()
     return solver
@@ -188,7 +190,7 @@ def solve(options):
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("folder")
-    arguments.add_argument("--solver", default="direct", choices=["direct", "multigrid"])
+    arguments.add_argument("--solver", default="cholmod", choices=["cholmod", "mumps", "multigrid"])
     arguments.add_argument("--mechanics", default="each_minute", choices=["each_minute", "influence", "none"])
     arguments.add_argument("--step", type=float, default=15.0)
     arguments.add_argument("--scheme", default="BE", choices=["BE", "CN"])
