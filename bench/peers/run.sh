@@ -24,7 +24,7 @@ python=/usr/bin/python3   # Debian's, which has gmsh and dolfinx
 program=${PROGRAM:-$top/driftwright}   # a built one, or the script that builds it first
 about() {
   date -u "+%Y-%m-%d %H:%M UTC"
-  echo "driftwright $("$program" --version), source at $(git -C "$(dirname "$(readlink -f "$program")")" log -1 --format="%h of %cs")"
+  echo "driftwright $("$program" --version), built $(date -u -r "${PROGRAM:-$top/build/release/app/driftwright}" "+%Y-%m-%d %H:%M UTC")"
   dpkg-query -W -f '${Package} ${Version}\n' freefem++ python3-dolfinx libpetsc-real3.18 calculix-ccx
   grep -m 1 "model name" /proc/cpuinfo
   echo "$(nproc) cores, load of other work: $(cut -d " " -f 1-3 /proc/loadavg)"
@@ -44,6 +44,7 @@ for size in "$@"; do
   "$python" "$here/peer_driftwright.py" "$folder" "$program" --name reference --relative 1e-6 --absolute 1e-5
   for again in 1 2 3; do "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_$again $tolerances; done
   "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_heat $tolerances --heat-only
+  "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_one_thread $tolerances --threads 1   # as FreeFEM
   peer fenicsx --name fenicsx_first_use --solver multigrid --minutes 1   # compiles the forms, which are kept for the next runs
   if [ "$size" -le 150000 ]; then   # the elastic factor alone takes 16 GB at 390 000 nodes
     peer freefem --name freefem
