@@ -2,12 +2,12 @@
 """peer_fenicsx.py FOLDER [--solver cholmod|mumps|multigrid] [--mechanics each_minute|influence|none] [--step SECONDS]
                    [--scheme BE|CN] [--ranks N] [--minutes N] [--name NAME] [--cap S]
 
-FEniCSx (dolfinx 0.5.2 of Debian 12), order of the mesh. Solvers by PETSc as its documentation has them, set up once for all steps:
+FEniCSx (dolfinx 0.5.2 of Debian 12), order of the mesh. Solvers of PETSc as in its documentation, set up once for all steps:
   cholmod    Cholesky by CHOLMOD, on one rank; here the fastest
   mumps      Cholesky by MUMPS
   multigrid  conjugate gradients; hypre's BoomerAMG for heat, GAMG with rigid-body modes (demo_elasticity) for displacements
-Displacements as peer_freefem.py: one elastic solve a minute, or three adjoint solves before the run and dot products (influence).
-Forms are compiled on first use and kept in FOLDER/../fenicsx_cache; --minutes 1 does so in a run of its own.
+Displacements as in peer_freefem.py: one elastic solve a minute, or three adjoint solves before the run and dot products.
+Forms are compiled on first use and kept in FOLDER/../fenicsx_cache; a run with --minutes 1 before the others does this.
 """
 import argparse
 import os
@@ -104,7 +104,8 @@ def solve(options):
 
     def operator(share):
         k, h = constant(share * case.CONDUCTIVITY_W_mK), constant(share * case.FILM_W_m2K)
-        return fem.form(capacity * u * v * dx + k * ufl.dot(ufl.grad(u), ufl.grad(v)) * dx + h * u * v * ds(case.SURFACES["exterior"]))
+        conduction = k * ufl.dot(ufl.grad(u), ufl.grad(v)) * dx
+        return fem.form(capacity * u * v * dx + conduction + h * u * v * ds(case.SURFACES["exterior"]))
 
     source = {name: constant(power_W / info["volume_m3"][name]) for name, power_W in case.POWER_W.items()}
     A, B = assemble_matrix(operator(theta), bcs=[cold]), assemble_matrix(operator(theta - 1.0))
@@ -132,14 +133,16 @@ def solve(options):
         lame, mu = constant(E * nu / ((1 + nu) * (1 - 2 * nu))), constant(E / (2 * (1 + nu)))
         expansion = constant(E / (1 - 2 * nu) * case.EXPANSION_1_K)
         strain = lambda a: ufl.sym(ufl.grad(a))
-        K = assemble_matrix(fem.form((2 * mu * ufl.inner(strain(w), strain(y)) + lame * ufl.div(w) * ufl.div(y)) * dx), bcs=[clamp])
+        work = 2 * mu * ufl.inner(strain(w), strain(y)) + lame * ufl.div(w) * ufl.div(y)
+        K = assemble_matrix(fem.form(work * dx), bcs=[clamp])
         L = assemble_matrix(fem.form(expansion * u * ufl.div(y) * dx))
         K.assemble()
         L.assemble()
         if options.solver == "multigrid":
             K.setNearNullSpace(rigid_modes(W))
         tell("elasticity assembled, %d unknowns" % (3 * W.dofmap.index_map.size_global))
-        elastic = solver_of(K, "elastic_", options, {"pc_type": "gamg", "mg_levels_ksp_type": "chebyshev", "mg_levels_pc_type": "jacobi",
+        elastic = solver_of(K, "elastic_", options, {"pc_type": "gamg", "mg_levels_ksp_type": "chebyshev",
+                                                     "mg_levels_pc_type": "jacobi",
                                                      "mg_levels_ksp_chebyshev_esteig_steps": 10})
         tell("elasticity set up")
         tip = dof_at(W, info["tip_m"])

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# bench/peers/run.sh [-w FOLDER] [-2] SIZE...: the same 300 minutes on the same meshes, by Driftwright, FreeFEM, FEniCSx and CalculiX.
+# bench/peers/run.sh [-w FOLDER] [-2] SIZE...: the same 300 minutes on the same meshes by Driftwright, FreeFEM, FEniCSx, CalculiX.
 #
 #   bench/peers/run.sh 20000 97000          meshes of about so many nodes of linear tetrahedra; -2: of quadratic ones
 #
-# Needs freefem++, python3-dolfinx, calculix-ccx, libopenblas0-serial, python3-gmsh, python3-numpy and time (Debian 12), which
-# Driftwright itself does not need. Without OpenBLAS FreeFEM takes twice as long. One run at a time: keep the machine quiet.
+# Needs freefem++, python3-dolfinx, calculix-ccx, libopenblas0-serial, python3-gmsh, python3-numpy and time (Debian 12); none of
+# them is a package of Driftwright but OpenBLAS. Without it FreeFEM takes twice as long. One run at a time: keep the machine quiet.
 # Prints one table of all meshes: times with errors beside them. table.csv and the logs are beside each mesh.
 set -eu
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -44,8 +44,9 @@ for size in "$@"; do
   "$python" "$here/peer_driftwright.py" "$folder" "$program" --name reference --relative 1e-6 --absolute 1e-5
   for again in 1 2 3; do "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_$again $tolerances; done
   "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_heat $tolerances --heat-only
-  "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_one_thread $tolerances --threads 1   # as FreeFEM
-  peer fenicsx --name fenicsx_first_use --solver multigrid --minutes 1   # compiles the forms, which are kept for the next runs
+  "$python" "$here/peer_driftwright.py" "$folder" "$program" --name driftwright_one_thread $tolerances --threads 1
+  # The first use of FEniCSx compiles its forms, which are kept for the next runs.
+  peer fenicsx --name fenicsx_one_minute --solver multigrid --minutes 1
   if [ "$size" -le 150000 ]; then   # the elastic factor alone takes 16 GB at 390 000 nodes
     peer freefem --name freefem
     peer freefem --name freefem_influence --mechanics influence

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """table.py REFERENCE FOLDER...: one table of all runs of all folders, as text and as FOLDER/table.csv.
 
-REFERENCE is the name of the run that errors are counted against (a fine one of the same semi-discrete system). `times` is the
-processor time over Driftwright's for the same results in the same folder: the middle one of driftwright_1 to _3 with
+REFERENCE is the name of the run that errors are counted against (a fine one of the same semi-discrete system). `times` is
+the processor time over Driftwright's for the same results in the same folder: the middle one of driftwright_1 to _3 with
 displacements, driftwright_heat without. A run that was cut short has none.
 """
 import csv
@@ -20,7 +20,8 @@ FORM = "%9s  %-26s %4s %9s %12s %7s %8s %5s %9s %10s  %s"
 
 def rows_of(folder, reference):
     n_nodes = case.info(folder)["n_nodes"]
-    tables = {os.path.basename(path)[:-4]: case.read_rows(path) for path in glob.glob(folder + "/*.csv") if not path.endswith("/table.csv")}
+    paths = {os.path.basename(path)[:-4]: path for path in glob.glob(folder + "/*.csv")}
+    tables = {name: case.read_rows(path) for name, path in paths.items() if name != "table"}
     fine = tables.get(reference, {})
     runs = []
     for path in sorted(glob.glob(folder + "/*.run.json")):
