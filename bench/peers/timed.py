@@ -7,7 +7,7 @@ import time
 
 
 def run(command, log, cap_s, environment=None, folder=None):
-    """Wall and user CPU seconds, peak MB (of it or its largest child) and exit code; killed after cap_s (exit code -9)."""
+    """Wall and processor seconds (user and system), peak MB (of it or its largest child) and exit code; killed after cap_s (exit code -9)."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.time()
     with open(log, "w") as file:
@@ -23,8 +23,8 @@ def run(command, log, cap_s, environment=None, folder=None):
         os.remove(log + ".peak")
     except (OSError, ValueError, IndexError):
         peak_MB = float("nan")
-    return {"exit_code": -9 if process.returncode == 137 else process.returncode, "wall_s": wall_s, "user_s": after.ru_utime - before.ru_utime,
-            "system_s": after.ru_stime - before.ru_stime, "peak_MB": peak_MB}
+    return {"exit_code": -9 if process.returncode == 137 else process.returncode, "wall_s": wall_s, "peak_MB": peak_MB,
+            "processor_s": after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime}
 
 
 def report(folder, name, outcome, n_rows, note=""):
@@ -32,5 +32,5 @@ def report(folder, name, outcome, n_rows, note=""):
     outcome = {**outcome, "name": name, "rows": n_rows, "note": note}
     with open("%s/%s.run.json" % (folder, name), "w") as file:
         json.dump(outcome, file, indent=1)
-    print("%-34s exit %d  wall %8.2f s  user %8.2f s  peak %6.0f MB  rows %d %s"
-          % (name, outcome["exit_code"], outcome["wall_s"], outcome["user_s"], outcome["peak_MB"], n_rows, note), flush=True)
+    print("%-34s exit %d  wall %8.2f s  processor %8.2f s  peak %6.0f MB  rows %d %s"
+          % (name, outcome["exit_code"], outcome["wall_s"], outcome["processor_s"], outcome["peak_MB"], n_rows, note), flush=True)
