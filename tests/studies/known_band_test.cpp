@@ -83,17 +83,17 @@ scenarios::Scenario fitted_body(const std::string& known_together) {
       write_file("fitted.yaml", read_text(body("", "", "").path) + "known_together: " + known_together + "\n"));
 }
 
-// ln power = 0.05 a, ln conductance = 0.05 a + 0.004 b with independent a, b: their quotient is known better than either.
+// ln power = 0.01 a, ln conductance = 0.01 a + 0.002 b with independent a, b: their quotient is known better than either.
 TEST(KnownBand, OfNumbersThatAreKnownTogetherIsThatOfLinearTheory) {
   const Prediction p = predicted(
-      fitted_body("{numbers: [heat_source body power, \"link body,ambient conductance\"], factor: [0.05, 0.05, 0.004]}"));
+      fitted_body("{numbers: [heat_source body power, \"link body,ambient conductance\"], factor: [0.01, 0.01, 0.002]}"));
   ASSERT_TRUE(p.band);
   const double t_s = p.record.time_s[120], steady_K = kPower_W / kConductance_W_K;
   const double x = kConductance_W_K * t_s / kCapacity_J_K, decay = std::exp(-x), rise_K = steady_K * (1.0 - decay);
   const double by_conductance = -rise_K + steady_K * x * decay;
-  const double sd_K = std::hypot(0.05 * (rise_K + by_conductance), 0.004 * by_conductance);
-  EXPECT_NEAR(0.5 * (high(p, "t_body", 120) - low(p, "t_body", 120)) / (1.96 * sd_K), 1.0, 0.01);  // each by itself: 13
-  EXPECT_THAT(p.band->words, HasSubstr("2 numbers known to 5 to 5.02 % (`known_together` and `known_to`"));
+  const double sd_K = std::hypot(0.01 * (rise_K + by_conductance), 0.002 * by_conductance);
+  EXPECT_NEAR(0.5 * (high(p, "t_body", 120) - low(p, "t_body", 120)) / (1.96 * sd_K), 1.0, 0.01);  // each by itself: 6.5
+  EXPECT_THAT(p.band->words, HasSubstr("2 numbers known to 1 to 1.02 % (`known_together` and `known_to`"));
 }
 
 TEST(KnownBand, IsRefusedWhereWhatIsKnownTogetherDoesNotFitTheScenario) {
