@@ -86,7 +86,7 @@ void require_even_expansion(const MachineModel& model, const MovingAxis& axis) {
 }  // namespace
 
 MachineModel at_pose(MachineModel model, const Pose& pose) {
-  for (std::size_t i = 0; i < model.axes.size(); ++i) model.axes[i].at_SI = pose[i];
+  model.axes = axes_at(std::move(model.axes), pose);
   return model;
 }
 

@@ -17,10 +17,6 @@ namespace {
 constexpr double kRounding_SI = 1e-9;  // m, of millimetres with seven digits over a hundred metres; rad, 1 nm at 1 m
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
-bool is_within(const MovingAxis& axis, double position_SI) {
-  return axis.is_endless || (position_SI >= axis.low_SI - kRounding_SI && position_SI <= axis.high_SI + kRounding_SI);
-}
-
 std::string range_words(const MovingAxis& axis) {
   return axis.words(axis.low_SI) + " to " + axis.words(axis.high_SI);
 }
@@ -68,7 +64,7 @@ MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
   axis.step_SI = unit_SI * in.quantity("step");
   for (const char* key : {"drawn_at", "at"}) {
     const double position_SI = std::string(key) == "at" ? axis.at_SI : axis.drawn_at_SI;
-    if (!is_within(axis, position_SI))
+    if (!axis.allows(position_SI))
       in.fail(key,
               fmt::format("{} is outside the `range` of axis '{}', {}", axis.words(position_SI), name, range_words(axis)));
   }
@@ -167,6 +163,10 @@ double MovingAxis::unit_SI() const {
   return way.turns ? kTurn_rad / 360.0 : 1e-3;
 }
 
+bool MovingAxis::allows(double position_SI) const {
+  return is_endless || (position_SI >= low_SI - kRounding_SI && position_SI <= high_SI + kRounding_SI);
+}
+
 std::string MovingAxis::words(double position_SI) const {
   const double position = position_SI / unit_SI();
   return fmt::format("{:g} {}", std::abs(position) < 1e-9 ? 0.0 : position, unit());
@@ -208,6 +208,11 @@ Pose pose_of(const std::vector<MovingAxis>& axes) {
   return pose;
 }
 
+std::vector<MovingAxis> axes_at(std::vector<MovingAxis> axes, const Pose& pose) {
+  for (std::size_t i = 0; i < axes.size(); ++i) axes[i].at_SI = pose[i];
+  return axes;
+}
+
 std::string pose_words(const std::vector<MovingAxis>& axes, const Pose& pose) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < axes.size(); ++i) parts.push_back(axes[i].name + " = " + axes[i].words(pose[i]));
@@ -228,7 +233,7 @@ void set_pose(std::vector<MovingAxis>& axes, const std::string& text, const std:
   } catch (const RangeError& e) {
     throw InputError(fmt::format("--pose {}: {}", text, e.what()));
   }
-  if (!is_within(moved, moved.at_SI))
+  if (!moved.allows(moved.at_SI))
     throw InputError(moved.where, fmt::format("--pose {}: the position is outside the `range` of axis '{}', {}", text,
                                               moved.name, range_words(moved)));
   for (const Cyclogram& c : cyclograms) {
@@ -277,7 +282,7 @@ void require_within_range(const std::vector<MovingAxis>& axes, const Cyclogram& 
     const Cyclogram::Column* column = column_of(axis, cyclogram);
     if (!column) continue;
     for (std::size_t i = 0; i < column->rows.value.size(); ++i) {
-      if (is_within(axis, axis.unit_SI() * column->rows.value[i])) continue;
+      if (axis.allows(axis.unit_SI() * column->rows.value[i])) continue;
       throw InputError(axis.where,
                        fmt::format("cyclogram '{}' moves axis '{}' to {:g} {} in row {} of column '{}', at {:g} min; its "
                                    "`range` is {}. Correct the row or the range",

@@ -27,6 +27,8 @@ struct MovingAxis {
   /// "mm" or "deg": of columns, and as people write positions.
   [[nodiscard]] const char* unit() const { return way.turns ? "deg" : "mm"; }
   [[nodiscard]] double unit_SI() const;
+  /// True within the range, to rounding.
+  [[nodiscard]] bool allows(double position_SI) const;
   /// "200 mm", "30 deg"
   [[nodiscard]] std::string words(double position_SI) const;
 };
@@ -46,6 +48,8 @@ using Pose = std::vector<double>;
 [[nodiscard]] mesh::Way way_at_pose(const std::vector<MovingAxis>& axes, std::size_t axis);
 
 [[nodiscard]] Pose pose_of(const std::vector<MovingAxis>& axes);
+/// The same axes at another pose.
+[[nodiscard]] std::vector<MovingAxis> axes_at(std::vector<MovingAxis> axes, const Pose& pose);
 /// "x = 200 mm, z = -50 mm"
 [[nodiscard]] std::string pose_words(const std::vector<MovingAxis>& axes, const Pose& pose);
 /// Moves an axis as the user writes it: "x=200mm", "c=30deg". @throws InputError  for an unknown axis, a position that is

@@ -24,7 +24,7 @@ std::vector<double> read_positions_SI(const ConfigMap& in, const std::string& ke
   std::vector<double> positions_SI = in.quantities(key);
   for (double& at_SI : positions_SI) {
     at_SI *= unit_of_keys_SI(axis);
-    if (!axis.is_endless && (at_SI < axis.low_SI || at_SI > axis.high_SI))
+    if (!axis.allows(at_SI))
       in.fail(key, fmt::format("{} is outside the `range` of the axis, {} to {}", axis.words(at_SI), axis.words(axis.low_SI),
                                axis.words(axis.high_SI)));
   }
@@ -59,7 +59,7 @@ BallBarSettings read_ball_bar(const ConfigMap& in, const std::vector<MovingAxis>
     const MovingAxis& axis = axes[bar.axes[i]];
     if (axis.way.turns) in.fail("axes", fmt::format("axis '{}' turns; two linear axes are required", axis.name));
     bar.centre_m[i] = centre_m.empty() ? axis.at_SI : centre_m[i];
-    if (bar.centre_m[i] - bar.radius_m < axis.low_SI || bar.centre_m[i] + bar.radius_m > axis.high_SI)
+    if (!axis.allows(bar.centre_m[i] - bar.radius_m) || !axis.allows(bar.centre_m[i] + bar.radius_m))
       in.fail("radius", fmt::format("the circle leaves the `range` of axis '{}', {} to {}; its centre is at {}", axis.name,
                                     axis.words(axis.low_SI), axis.words(axis.high_SI), axis.words(bar.centre_m[i])));
   }
