@@ -24,8 +24,9 @@ std::string range_words(const MovingAxis& axis) {
 /// The position as the axis counts it: without full turns, above -180 deg and up to 180 deg, if it is endless.
 double counted(const MovingAxis& axis, double position_SI) {
   if (!axis.is_endless) return position_SI;
-  const double rest_rad = std::remainder(position_SI, kTurn_rad);
-  return rest_rad + 0.5 * kTurn_rad <= kRounding_SI ? 0.5 * kTurn_rad : rest_rad;
+  constexpr double kDigits = 1e9;  // of a degree: 370 deg and 10 deg must be the same number, not only nearly
+  const double rest_deg = std::round(kDigits * std::remainder(position_SI / axis.unit_SI(), 360.0)) / kDigits;
+  return axis.unit_SI() * (rest_deg <= -180.0 ? 180.0 : rest_deg);
 }
 
 Eigen::Vector3d read_direction(const ConfigMap& in, const char* key) {
