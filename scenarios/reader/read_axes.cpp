@@ -29,13 +29,13 @@ double counted(const MovingAxis& axis, double position_SI) {
   return axis.unit_SI() * (rest_deg <= -180.0 ? 180.0 : rest_deg);
 }
 
-Eigen::Vector3d read_direction(const ConfigMap& in, const char* key) {
-  if (in.is_list(key)) {
-    const Eigen::Vector3d direction = in.vector3(key);
-    if (!(direction.norm() > 0.0)) in.fail(key, "the direction must have a length above zero, such as [0, 0, 1]");
+Eigen::Vector3d read_direction(const ConfigMap& in, bool turns) {
+  if (turns && in.is_list("about")) {
+    const Eigen::Vector3d direction = in.vector3("about");
+    if (!(direction.norm() > 0.0)) in.fail("about", "the direction must have a length above zero, such as [0, 0, 1]");
     return direction.normalized();
   }
-  const std::string word = in.choice(key);
+  const std::string word = in.choice(turns ? "about" : "along");
   return (word[0] == '-' ? -1.0 : 1.0) * Eigen::Vector3d::Unit(word.back() - 'x');
 }
 
@@ -43,7 +43,7 @@ MovingAxis read_moving_axis(const std::string& name, const ConfigMap& in) {
   const bool turns = in.description().when_key == "turns";
   MovingAxis axis{.name = name,
                   .moves = in.texts(turns ? "turns" : "moves"),
-                  .way = {.direction = read_direction(in, turns ? "about" : "along"), .turns = turns},
+                  .way = {.direction = read_direction(in, turns), .turns = turns},
                   .column = {},
                   .where = in.where()};
   if (turns) axis.way.through_m = in.vector3("through");

@@ -147,6 +147,9 @@ TEST(RotaryAxes, AreRefusedWhereTheyCannotTurn) {
                  "moves axis 'c' to 190 deg in row 1");
   EXPECT_REFUSED(read({.rows = "{columns: [duration, speed, position_c_mm], rows: [[1 h, 0 rpm, 19 mm]]}"}), "is in mm",
                  "must be in deg");
+  EXPECT_REFUSED(read(with("{c: {turns: [table], about: [0, 0, 0], through: [0 mm, 0 mm, 0 mm]}}")), "axes.c.about",
+                 "length above zero");
+  EXPECT_REFUSED(read(with("{x: {moves: [table], along: [1, 0, 0], range: [0 m, 1 m]}}")), "axes.x.along", "single value");
   // An axis that carries another must be above it.
   EXPECT_REFUSED(read(with("{c: {" + about_z + "}, x: {moves: [base, table], along: x, range: [-1 m, 1 m]}}")), "axes.x",
                  "both move 'table'", "Change the order");
