@@ -11,9 +11,9 @@ namespace {
 
 /// One .vtu of each time: the points of the grid in the frame of the work, with their errors.
 void write_volume(output::ResultsFolder& folder, const studies::WorkVolume& volume,
-                  const scenarios::VolumeSettings& settings) {
+                  const scenarios::VolumeSettings& settings, const std::vector<scenarios::MovingAxis>& axes) {
   std::vector<int> n;
-  for (const std::vector<double>& of_axis : settings.positions_m) n.push_back(static_cast<int>(of_axis.size()));
+  for (const std::vector<double>& of_axis : settings.positions_SI) n.push_back(static_cast<int>(of_axis.size()));
   const auto n_points = static_cast<Eigen::Index>(volume.points.size());
   Eigen::Matrix3Xd place_m(3, n_points);
   std::vector<output::PointVectors> errors = {{"error_um", Eigen::Matrix3Xd(3, n_points)},
@@ -23,8 +23,10 @@ void write_volume(output::ResultsFolder& folder, const studies::WorkVolume& volu
     for (Eigen::Index i = 0; i < n_points; ++i) {
       const studies::VolumePoint& p = volume.points[static_cast<std::size_t>(i)];
       place_m.col(i) = p.place_m;
-      errors[0].value.col(i) = 1e6 * p.error_m[t];
-      errors[1].value.col(i) = 1e6 * p.turn_rad[t];
+      const Eigen::Matrix3d into_work =
+          scenarios::motion_of(scenarios::axes_at(axes, p.pose), settings.work).turn.transpose();
+      errors[0].value.col(i) = 1e6 * into_work * p.error_m[t];
+      errors[1].value.col(i) = 1e6 * into_work * p.turn_rad[t];
     }
     files.push_back(fmt::format("volume/volume_{:04}.vtu", t));
     output::write_point_grid(n, place_m, errors, volume.time_s[t], folder.path(files.back()));
@@ -47,7 +49,7 @@ void run_volume(const CommonOptions& options, const scenarios::Scenario& scenari
       scenarios::open_model(scenario, {&scenario.cyclogram(settings.cyclogram)}, progress.listener(), false, &drawn);
   const studies::WorkVolume volume = studies::study_volume(scenario, drawn, machine, progress.listener());
   progress.begin("writing results");
-  write_volume(folder, volume, settings);
+  write_volume(folder, volume, settings, scenario.machine->axes);
   folder.write_text("record.csv",
                     record_csv(volume.run.record, provenance_lines(folder.made_by(), "cyclogram " + settings.cyclogram)));
   folder.write_text("heat_flows.csv", heat_flows_csv(volume.run.trajectory, settings.cyclogram, folder.made_by()));

@@ -88,7 +88,7 @@ void add_simulate(CLI::App& cli, SimulateOptions& options) {
                    "repeated [all of the scenario]")
       ->allow_extra_args(false);
   verb->add_option("--pose", options.pose,
-                   "position of an axis of the scenario, such as x=200mm; may be repeated [`at` of `axes`]")
+                   "position of an axis of the scenario, such as x=200mm or c=30deg; may be repeated [`at` of `axes`]")
       ->allow_extra_args(false);
   verb->callback([&] { app::simulate(options); });
 }

@@ -57,15 +57,16 @@ ut_system* unit_system() {  // the only table of units, read from UDUNITS' own f
 /// Common spellings of units and their meaning: UDUNITS would read W/m2K as W K/m2 if at all, and C as coulomb.
 std::string meant_by(const std::string& unit) {
   static const std::map<std::string, std::string> meant = {
-      {"C", "degC"},          {"°C", "degC"},      {"deg", "degC"},       {"W/m2K", "W/(m^2 K)"},  {"W/m^2K", "W/(m^2 K)"},
-      {"W/m²K", "W/(m^2 K)"}, {"W/mK", "W/(m K)"}, {"J/kgK", "J/(kg K)"}, {"kJ/kgK", "kJ/(kg K)"}, {"um/mK", "um/(m K)"},
-      {"µm/mK", "um/(m K)"},  {"1/min", "rpm"},    {"U/min", "rpm"},      {"l/min", "L/min"},      {"Nm", "N m"}};
+      {"C", "degC"},          {"°C", "degC"},        {"W/m2K", "W/(m^2 K)"}, {"W/m^2K", "W/(m^2 K)"},
+      {"W/m²K", "W/(m^2 K)"}, {"W/mK", "W/(m K)"},   {"J/kgK", "J/(kg K)"},  {"kJ/kgK", "kJ/(kg K)"},
+      {"um/mK", "um/(m K)"},  {"µm/mK", "um/(m K)"}, {"1/min", "rpm"},       {"U/min", "rpm"},
+      {"l/min", "L/min"},     {"Nm", "N m"}};
   const auto at = meant.find(unit);
   return at == meant.end() ? "" : fmt::format("; write '{}'", at->second);
 }
 
 UnitPtr parse_unit(const std::string& text) {
-  UnitPtr unit(ut_parse(unit_system(), text.c_str(), UT_UTF8));
+  UnitPtr unit(ut_parse(unit_system(), text == "deg" ? "degree" : text.c_str(), UT_UTF8));  // UDUNITS has no deg
   if (!unit) throw RangeError(fmt::format("unknown unit '{}'{}", text, meant_by(text)));
   return unit;
 }
@@ -181,6 +182,7 @@ double parse_temperature_K(const std::string& text) {
   if (given.empty()) throw RangeError(fmt::format("'{}' has no unit; it must be a temperature such as '20 degC'", text));
   if (given == "C" || given == "F")  // coulomb and farad
     throw RangeError(fmt::format("'{}' is no temperature; write '{:g} deg{}'", text, number, given));
+  if (given == "deg") throw RangeError(fmt::format("'{}' is an angle; write '{:g} degC'", text, number));
   return cv_convert_double(converter(given, "K"), number);
 }
 

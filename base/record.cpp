@@ -15,9 +15,9 @@
 namespace driftwright {
 namespace {
 
-const std::array<std::string, 16>& unit_table() {
-  static const std::array<std::string, 16> units = {"percent", "mm_min", "W_m2", "count", "degC", "urad", "min", "rpm",
-                                                    "um",      "mm",     "s",    "h",     "K",    "W",    "V",   "1"};
+const std::array<std::string, 17>& unit_table() {
+  static const std::array<std::string, 17> units = {
+      "percent", "mm_min", "W_m2", "count", "degC", "urad", "min", "rpm", "deg", "um", "mm", "s", "h", "K", "W", "V", "1"};
   return units;
 }
 

@@ -10,14 +10,14 @@ std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine
   std::vector<output::PictureMark> marks;
   for (const scenarios::Sensor& sensor : machine.sensors) {
     if (const auto* point = std::get_if<scenarios::PointOnRegion>(&sensor.place))
-      marks.push_back({sensor.name, point->at_m + scenarios::shift_m(machine.axes, point->region)});
+      marks.push_back({sensor.name, scenarios::motion_of(machine.axes, point->region)(point->at_m)});
   }
   // Indicators of several directions at one point share a mark.
   std::vector<output::PictureMark> indicators;
   for (const scenarios::DisplacementOutput& output : machine.displacements) {
     if (!output.points) continue;
     const scenarios::PointOnRegion& tool = output.points->tool;
-    const Eigen::Vector3d at_m = tool.at_m + scenarios::shift_m(machine.axes, tool.region);
+    const Eigen::Vector3d at_m = scenarios::motion_of(machine.axes, tool.region)(tool.at_m);
     const auto same = std::find_if(indicators.begin(), indicators.end(),
                                    [&](const output::PictureMark& mark) { return mark.at_m == at_m; });
     if (same == indicators.end())

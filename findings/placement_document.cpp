@@ -275,7 +275,7 @@ output::Picture told_picture(const Placement& p, const scenarios::MachineModel& 
   }
   const auto add_mark = [&](const std::string& name, int spot) {
     const studies::Spot& s = p.spots[static_cast<std::size_t>(spot)];
-    marks.push_back({name, s.at_m + scenarios::shift_m(machine.axes, s.region)});
+    marks.push_back({name, scenarios::motion_of(machine.axes, s.region)(s.at_m)});
   };
   const std::vector<int> set = bought(p);
   for (std::size_t i = 0; i < set.size(); ++i) add_mark(p.names[i], set[i]);

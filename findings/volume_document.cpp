@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "findings/columns.hpp"
 #include "findings/machine_section.hpp"
 #include "findings/named_value.hpp"
 #include "findings/run_section.hpp"
+#include "findings/volume_measurements.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -24,10 +24,6 @@ double error_of(const studies::VolumePoint& point, std::size_t time, std::size_t
   return 1e6 * (which < 3 ? point.error_m : point.turn_rad)[time][axis];  // um, urad
 }
 
-Column urad_column(const std::string& key, const std::string& title) {
-  return {.key = key, .title = title, .unit = "urad", .digits = output::decimals(1)};
-}
-
 Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAxis>& axes) {
   Table table{.key = "points",
               .title = "Error of the tool against the work at each pose and time",
@@ -36,8 +32,10 @@ Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAx
               .detail = true,
               .file = "volume.csv"};
   for (const MovingAxis& axis : axes)
-    table.columns.push_back(
-        {.key = "position_" + axis.name + "_mm", .title = axis.name, .unit = "mm", .digits = output::decimals(1)});
+    table.columns.push_back({.key = fmt::format("position_{}_{}", axis.name, axis.unit()),
+                             .title = axis.name,
+                             .unit = axis.unit(),
+                             .digits = output::decimals(1)});
   for (const char* name : {"x", "y", "z"})
     table.columns.push_back({.key = fmt::format("place_{}_mm", name),
                              .title = fmt::format("place {}", name),
@@ -50,7 +48,7 @@ Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAx
   for (std::size_t t = 0; t < volume.time_s.size(); ++t) {
     for (const studies::VolumePoint& p : volume.points) {
       std::vector<output::Datum> row = {volume.time_s[t] / 60.0};
-      for (const double at_m : p.pose) row.emplace_back(1e3 * at_m);
+      for (std::size_t i = 0; i < axes.size(); ++i) row.emplace_back(p.pose[i] / axes[i].unit_SI());
       for (Eigen::Index i = 0; i < 3; ++i) row.emplace_back(1e3 * p.place_m[i]);
       for (std::size_t i = 0; i < 6; ++i) row.emplace_back(error_of(p, t, i));
       table.rows.push_back(std::move(row));
@@ -63,9 +61,9 @@ Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAx
 std::vector<const studies::VolumePoint*> line_along(const studies::WorkVolume& volume, const VolumeSettings& settings,
                                                     std::size_t axis) {
   scenarios::Pose middle;
-  for (std::size_t i = 0; i < settings.positions_m.size(); ++i) {
+  for (std::size_t i = 0; i < settings.positions_SI.size(); ++i) {
     middle.push_back(*std::min_element(
-        settings.positions_m[i].begin(), settings.positions_m[i].end(),
+        settings.positions_SI[i].begin(), settings.positions_SI[i].end(),
         [&](double a, double b) { return std::abs(a - volume.own.pose[i]) < std::abs(b - volume.own.pose[i]); }));
   }
   std::vector<const studies::VolumePoint*> line;
@@ -77,22 +75,24 @@ std::vector<const studies::VolumePoint*> line_along(const studies::WorkVolume& v
   return line;
 }
 
-/// Errors of one axis as ISO 230-1 names them, EXX, EYX, ... ECX, from the first position of the axis on.
+/// Errors of one axis as ISO 230-1 names them, EXX, EYX, ... ECX, from the first position of the axis on. Those of an axis
+/// that turns are at its axis of rotation, where an angle makes no shift.
 void add_axis(Section& body, const studies::WorkVolume& volume, const VolumeSettings& settings,
               const std::vector<MovingAxis>& axes, std::size_t axis) {
   const std::vector<const studies::VolumePoint*> line = line_along(volume, settings, axis);
   if (line.size() < 2) return;
-  std::string letter = axes[axis].name;
-  std::transform(letter.begin(), letter.end(), letter.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const std::string letter = axis_letter(axes[axis]), unit = axes[axis].unit();
   Section section{.key = "axes", .title = "Axis " + letter, .item = output::Item{"axis", axes[axis].name}};
-  Table table{.key = "errors",
-              .title = fmt::format("Errors of axis {} after {:.0f} min (ISO 230-1), from its first position on", letter,
-                                   volume.time_s.back() / 60.0),
-              .caption = "The other axes are at the positions nearest to the pose of the scenario.",
-              .columns = {{.key = "position_mm", .title = axes[axis].name, .unit = "mm", .digits = output::decimals(1)}}};
+  Table table{
+      .key = "errors",
+      .title = fmt::format("Errors of axis {} after {:.0f} min (ISO 230-1), from its first position on", letter,
+                           volume.time_s.back() / 60.0),
+      .caption = std::string("Of the tool against the work. The other axes are at the positions nearest to the pose of "
+                             "the scenario.") +
+                 (axes[axis].way.turns ? " At the point `through` of the axis of rotation." : ""),
+      .columns = {{.key = "position_" + unit, .title = axes[axis].name, .unit = unit, .digits = output::decimals(1)}}};
   Plot plot{.title = fmt::format("Errors of axis {} after {:.0f} min", letter, volume.time_s.back() / 60.0),
-            .x_label = fmt::format("{} [mm]", axes[axis].name),
+            .x_label = fmt::format("{} [{}]", axes[axis].name, unit),
             .y_label = "error [µm]"};
   for (std::size_t i = 0; i < 6; ++i) {
     const std::string key = kErrorTitles[i], title = key + letter;
@@ -100,19 +100,25 @@ void add_axis(Section& body, const studies::WorkVolume& volume, const VolumeSett
     if (i < 3) plot.series.push_back({.label = title});
   }
   const std::size_t last = volume.time_s.size() - 1;
+  const auto error_at = [&](const studies::VolumePoint& p, std::size_t i) {
+    if (i >= 3 || !axes[axis].way.turns) return error_of(p, last, i);
+    return 1e6 * studies::error_on_axis(axes, axis, settings.work, p, last)[static_cast<Eigen::Index>(i)];
+  };
   for (const studies::VolumePoint* p : line) {
-    std::vector<output::Datum> row = {1e3 * p->pose[axis]};
+    const double position = p->pose[axis] / axes[axis].unit_SI();
+    std::vector<output::Datum> row = {position};
     for (std::size_t i = 0; i < 6; ++i) {
-      const double change = error_of(*p, last, i) - error_of(*line.front(), last, i);
+      const double change = error_at(*p, i) - error_at(*line.front(), i);
       row.emplace_back(change);
       if (i >= 3) continue;
-      plot.series[i].x.push_back(1e3 * p->pose[axis]);
+      plot.series[i].x.push_back(position);
       plot.series[i].y.push_back(change);
     }
     table.rows.push_back(std::move(row));
   }
   add(section, std::move(plot));
   add(section, std::move(table));
+  if (axes[axis].way.turns) add_axis_location(section, volume, line, settings, axes, axis);
   body.sections.push_back(std::move(section));
 }
 
@@ -152,6 +158,7 @@ output::Document document_of(const studies::WorkVolume& volume, const scenarios:
   add(body, named_value("own_um", "largest error at the scenario's pose", own_um, "um"));
   add(body, named_value("left_um", "largest error left by a correction by that pose", left_um, "um"));
   for (std::size_t i = 0; i < axes.size(); ++i) add_axis(body, volume, settings, axes, i);
+  add_measurements(body, volume, settings, axes);
   add(body, volume_table(volume, axes));
   const Cyclogram& cyclogram = scenario.cyclogram(settings.cyclogram);
   Section run{.key = "cyclogram", .title = "Cyclogram " + cyclogram.name, .detail = true};

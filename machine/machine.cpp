@@ -33,10 +33,10 @@ constexpr double kSnap_m = 5e-3;  ///< largest distance by which a sensor is mov
 mesh::MeshPoint place_point(const MachineModel& model, const Mesh& mesh, const PointOnRegion& point) {
   must_be_one_of(point.where, "region", point.region, mesh.regions);
   const std::vector<int> cells = mesh.cells_in(mesh.region(point.region));
-  const Eigen::Vector3d moved_m = shift_m(model.axes, point.region);
-  const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, point.at_m + moved_m);
+  const mesh::Motion motion = motion_of(model.axes, point.region);
+  const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, motion(point.at_m));
   if (!(found.distance_m <= kSnap_m)) {
-    const Eigen::Vector3d drawn_m = found.position_m - moved_m;
+    const Eigen::Vector3d drawn_m = motion.before(found.position_m);
     throw InputError(
         point.where,
         fmt::format("the point lies {:.1f} mm outside region '{}' (at most {:.0f} mm is moved); its nearest point is "
@@ -196,7 +196,7 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
     const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
                                    [&](const auto& other) { return other.joint == j.mechanics.joint; });
     if (again) throw InputError(j.where, fmt::format("joint '{}' is listed twice under `joints`", j.mechanics.joint));
-    placed.joints.push_back(j.mechanics);
+    placed.joints.push_back(mechanics_at_pose(model, mesh, j));
   }
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
@@ -223,15 +223,16 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
 }
 
 ToolAgainstWork tool_against_work(const MachineModel& model, const Mesh& mesh, const PointOnRegion& tool,
-                                  const std::string& work, const Where& where) {
+                                  const std::string& work, const Where& where, const std::optional<ToolAndBall>& between) {
   must_be_one_of(where, "region", work, mesh.regions);
   const mesh::MeshPoint at = place_point(model, mesh, tool);
-  const mesh::MeshPoint foot = mesh::nearest_point(mesh, mesh.cells, mesh.cells_in(mesh.region(work)), at.position_m);
-  ToolAgainstWork error{.place_m = at.position_m - shift_m(model.axes, work), .functionals = {}};
+  const auto [end_m, ball_m] = between.value_or(ToolAndBall{at.position_m, at.position_m});
+  const mesh::MeshPoint foot = mesh::nearest_point(mesh, mesh.cells, mesh.cells_in(mesh.region(work)), ball_m);
+  ToolAgainstWork error{.place_m = motion_of(model.axes, work).before(end_m), .functionals = {}};
   for (std::size_t i = 0; i < 3; ++i) {
     const Eigen::Vector3d direction = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i));
-    add_displacement(error.functionals[i], mesh, at, direction);
-    add_stand(error.functionals[i], mesh, foot, at.position_m - foot.position_m, direction);
+    add_stand(error.functionals[i], mesh, at, end_m - at.position_m, -direction);
+    add_stand(error.functionals[i], mesh, foot, ball_m - foot.position_m, direction);
     add_rotation(error.functionals[3 + i], mesh, at, direction);
     add_rotation(error.functionals[3 + i], mesh, foot, -direction);
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "base/record.hpp"
 #include "machine/mapped_films.hpp"
@@ -40,15 +41,21 @@ struct PlacedMachine {
 
 /// The error of a tool against the work, as linear functionals of displacements.
 struct ToolAgainstWork {
-  Eigen::Vector3d place_m;  ///< the tool's point in the frame of the work: where it is when the work is as drawn
-  /// u_tool - u_foot - ω_foot × arm along x, y, z [m], and ω_tool - ω_foot about x, y, z [rad]. The foot is the point of
-  /// the work's region nearest to the tool; what the work carries moves and turns with it as a rigid body.
+  Eigen::Vector3d place_m;  ///< the tool's end in the frame of the work: where it is when the work is as drawn
+  /// u_end - u_foot - ω_foot × arm along x, y, z [m], and ω_tool - ω_foot about x, y, z [rad]. The foot is the point of the
+  /// work's region nearest to the ball; what the work carries moves and turns with it as a rigid body.
   std::array<solver::DisplacementFunctional, 6> functionals;
 };
+/// Two points at the model's pose: one that a rigid body on the tool's point carries, and one that the work carries.
+struct ToolAndBall {
+  Eigen::Vector3d tool_end_m, ball_m;
+};
 /// @param mesh  of place(), at the model's pose
+/// @param between  what the error is between; none: the tool's point, and the point of the work that is there
 /// @throws InputError  for a region that does not exist, and a tool that is not on its region
 [[nodiscard]] ToolAgainstWork tool_against_work(const MachineModel& model, const mesh::Mesh& mesh, const PointOnRegion& tool,
-                                                const std::string& work, const Where& where);
+                                                const std::string& work, const Where& where,
+                                                const std::optional<ToolAndBall>& between = {});
 
 /// The full model, ready to run.
 struct Machine {

@@ -43,10 +43,10 @@ Carriers carriers_of_side(const std::vector<MovingAxis>& axes, const mesh::Mesh&
 }
 
 /// @throws InputError  if the sides of a joint have lost each other, or the axis does not move along them
-void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const MovingAxis& axis) {
+void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const MovingAxis& axis, const mesh::Way& way) {
   constexpr double kMostRise = 0.1;  // 6 degrees, as faces of a guide (mesh/joint_sides.cpp)
   const std::string lost =
-      fmt::format("at {} = {:g} mm joint '{}' has lost its guide: ", axis.name, 1e3 * axis.at_m, joint.name);
+      fmt::format("at {} = {} joint '{}' has lost its guide: ", axis.name, axis.words(axis.at_SI), joint.name);
   std::vector<solver::JointPoint> points;
   try {
     points = solver::joint_points(mesh, joint);
@@ -54,9 +54,9 @@ void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const Movi
     throw InputError(axis.where, lost + "its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
   }
   if (std::any_of(points.begin(), points.end(),
-                  [&](const auto& p) { return std::abs(p.normal.dot(axis.along)) > kMostRise; }))
-    throw InputError(axis.where,
-                     lost + "the axis moves its two sides apart, not along each other; correct `along` or `moves`");
+                  [&](const auto& p) { return std::abs(p.normal.dot(way.along(p.position_m))) > kMostRise; }))
+    throw InputError(axis.where, lost + "the axis moves its two sides apart, not along each other; correct " +
+                                     (way.turns ? "`about`, `through` or `turns`" : "`along` or `moves`"));
 }
 
 void require_apart(const mesh::Mesh& mesh, const std::vector<MovingAxis>& axes) {
@@ -66,15 +66,27 @@ void require_apart(const mesh::Mesh& mesh, const std::vector<MovingAxis>& axes) 
   const Eigen::Vector3d at_mm = 1e3 * overlap->point_m;
   throw InputError(axes.front().where,
                    fmt::format("at {} the regions '{}' and '{}' overlap at [{:.1f} mm, {:.1f} mm, {:.1f} mm]; narrow the "
-                               "`range`, or add the other region to `moves`",
+                               "`range`, or add the other region to `moves` (`turns`)",
                                pose_words(axes, pose_of(axes)), region(overlap->cell), region(overlap->other), at_mm[0],
                                at_mm[1], at_mm[2]));
+}
+
+/// The directions of an expansion would turn with the body, but materials have theirs in the frame of the machine.
+void require_even_expansion(const MachineModel& model, const MovingAxis& axis) {
+  for (const MaterialEntry& entry : model.materials) {
+    const solver::Expansion& e = entry.material.expansion_1_K;
+    if (is_in(axis.moves, entry.region) && (e.x != e.y || e.y != e.z))
+      throw InputError(axis.where,
+                       fmt::format("region '{}' expands differently along x, y and z; axis '{}' cannot turn it. Give "
+                                   "the region a material with one `expansion`",
+                                   entry.region, axis.name));
+  }
 }
 
 }  // namespace
 
 MachineModel at_pose(MachineModel model, const Pose& pose) {
-  for (std::size_t i = 0; i < model.axes.size(); ++i) model.axes[i].at_m = pose[i];
+  model.axes = axes_at(std::move(model.axes), pose);
   return model;
 }
 
@@ -83,6 +95,7 @@ void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
   if (axes.empty()) return;
   for (const MovingAxis& axis : axes) {
     for (const std::string& region : axis.moves) must_be_one_of(axis.where, "region", region, mesh.regions);
+    if (axis.way.turns) require_even_expansion(model, axis);
   }
   for (const effects::Exchange& e : effects::heat_balance(model.effects).exchanges) {
     if (!e.part.is_even())
@@ -99,22 +112,46 @@ void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
                    b = carriers_of_side(axes, mesh, joint.side_b, outer);
     for (std::size_t i = 0; i < axes.size(); ++i) {
       if (a[i] == b[i]) continue;
-      mesh::continue_sides(mesh, joint, outer, axes[i].along);
+      mesh::continue_sides(mesh, joint, outer, axes[i].way);
       sliding.emplace_back(j, i);
     }
   }
-  std::vector<Eigen::Vector3d> shift(mesh.regions.size());
-  std::transform(mesh.regions.begin(), mesh.regions.end(), shift.begin(),
-                 [&](const std::string& region) { return shift_m(axes, region); });
-  if (const auto torn = mesh::move_regions(mesh, shift))
+  std::vector<mesh::Motion> motions(mesh.regions.size());
+  std::transform(mesh.regions.begin(), mesh.regions.end(), motions.begin(),
+                 [&](const std::string& region) { return motion_of(axes, region); });
+  if (const auto torn = mesh::move_regions(mesh, motions))
     throw InputError(axes.front().where,
                      fmt::format("the regions '{}' and '{}' share nodes and are one body; an axis must move both or neither",
                                  mesh.regions[static_cast<std::size_t>(torn->first)],
                                  mesh.regions[static_cast<std::size_t>(torn->second)]));
-  const bool is_drawn = std::all_of(shift.begin(), shift.end(), [](const auto& s) { return s == Eigen::Vector3d::Zero(); });
+  const bool is_drawn = std::all_of(motions.begin(), motions.end(), [](const auto& m) { return m == mesh::Motion{}; });
   if (is_drawn) return;
-  for (const auto& [joint, axis] : sliding) require_guided(mesh, mesh.joints[joint], axes[axis]);
+  for (const auto& [joint, axis] : sliding) require_guided(mesh, mesh.joints[joint], axes[axis], way_at_pose(axes, axis));
   require_apart(mesh, axes);
+}
+
+solver::JointMechanics mechanics_at_pose(const MachineModel& model, const mesh::Mesh& mesh, const JointEntry& entry) {
+  solver::JointMechanics mechanics = entry.mechanics;
+  auto* ring = std::get_if<solver::RingSprings>(&mechanics.kind);
+  if (!ring || model.axes.empty()) return mechanics;
+  const auto joint =
+      std::find_if(mesh.joints.begin(), mesh.joints.end(), [&](const mesh::Joint& j) { return j.name == mechanics.joint; });
+  const std::vector<mesh::DescribedFacet> outer = mesh::described_outer_faces(mesh);
+  std::optional<Eigen::Vector3d> turned;
+  for (const std::string& side : {joint->side_a, joint->side_b}) {
+    for (const int region : mesh::regions_of_surface(mesh, side, outer)) {
+      const Eigen::Vector3d here = motion_of(model.axes, mesh.regions[static_cast<std::size_t>(region)]).turn * ring->axis;
+      constexpr double kSame = 1e-9;  // rounding
+      if (turned && (*turned - here).norm() > kSame)
+        throw InputError(entry.where,
+                         fmt::format("at {} the two sides of ring '{}' turn its `axis` to different directions; "
+                                     "the ring's axis must be that about which one side turns",
+                                     pose_words(model.axes, pose_of(model.axes)), mechanics.joint));
+      turned = here;
+    }
+  }
+  if (turned) ring->axis = *turned;
+  return mechanics;
 }
 
 }  // namespace driftwright::scenarios

@@ -1,5 +1,5 @@
 #pragma once
-// Sides of joints on which bodies slide, and bodies moved on them.
+// Sides of joints on which bodies slide or turn, and bodies moved on them.
 
 #include <optional>
 #include <span>
@@ -7,23 +7,23 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/motion.hpp"
 #include "mesh/pick_surfaces.hpp"
 
 namespace driftwright::mesh {
 
-/// Adds to both sides of a joint the outer faces of their own regions that continue them along a direction: the whole guide
-/// on which one body slides on the other. A face continues a side if one of the side's faces, moved along the direction,
-/// covers the centre of the face, with the same normal. Faces that the direction crosses are not continued.
+/// Adds to both sides of a joint the outer faces of their own regions that continue them along a way: the whole guide on
+/// which one body slides or turns on the other. A face continues a side if one of the side's faces, moved along the way,
+/// covers the centre of the face, with the same normal. Faces that the way crosses are not continued.
 /// @param outer  described_outer_faces(mesh)
-/// @param along  of length 1
-void continue_sides(Mesh& mesh, const Joint& joint, std::span<const DescribedFacet> outer, const Eigen::Vector3d& along);
+void continue_sides(Mesh& mesh, const Joint& joint, std::span<const DescribedFacet> outer, const Way& way);
 
 /// The regions whose faces a surface consists of, each once.
 [[nodiscard]] std::vector<int> regions_of_surface(const Mesh& mesh, const std::string& surface,
                                                   std::span<const DescribedFacet> outer);
 
-/// Moves the nodes of each region. @param shift_m  of each region; regions that share nodes must have the same
-/// @returns  two regions that share nodes and have different shifts; nothing is moved then
-[[nodiscard]] std::optional<std::pair<int, int>> move_regions(Mesh& mesh, const std::vector<Eigen::Vector3d>& shift_m);
+/// Moves the nodes of each region. @param motions  of each region; regions that share nodes must have the same
+/// @returns  two regions that share nodes and have different motions; nothing is moved then
+[[nodiscard]] std::optional<std::pair<int, int>> move_regions(Mesh& mesh, const std::vector<Motion>& motions);
 
 }  // namespace driftwright::mesh

@@ -1,6 +1,7 @@
 #pragma once
 // The mechanical supports and joints of a machine, as the user gives them.
 
+#include <Eigen/Core>
 #include <array>
 #include <string>
 #include <variant>
@@ -32,7 +33,7 @@ struct NormalSprings {
 /// A ring: force per relative displacement of its sides along an axis and in each direction across it. The stiffness is
 /// spread evenly over the area, so that the ring also resists tilting, because of its width and diameter, and turning.
 struct RingSprings {
-  int axis = 0;  ///< 0, 1, 2 = x, y, z
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< direction of length 1
   double axial_N_m = 0.0;
   double radial_N_m = 0.0;
 };

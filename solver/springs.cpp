@@ -103,7 +103,7 @@ SpringLayer joint_layer(const Mesh& mesh, const RegionMaterials& materials, cons
             return {along_and_across(p.normal, k.normal_N_m / area_m2, k.tangential_N_m / area_m2),
                     k.normal_N_m != k.tangential_N_m};
           } else if constexpr (std::is_same_v<Kind, RingSprings>) {
-            return {along_and_across(Eigen::Vector3d::Unit(k.axis), k.axial_N_m / area_m2, k.radial_N_m / area_m2), false};
+            return {along_and_across(k.axis, k.axial_N_m / area_m2, k.radial_N_m / area_m2), false};
           } else {
             throw std::logic_error("springs for a joint without mechanics");
           }

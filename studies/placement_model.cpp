@@ -123,7 +123,7 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
   model.regions = std::move(spots.regions);
   model.left_out = std::move(spots.left_out);
   model.spots = std::move(spots.points);
-  for (Spot& spot : model.spots) spot.at_m -= scenarios::shift_m(scenario.machine->axes, spot.region);
+  for (Spot& spot : model.spots) spot.at_m = scenarios::motion_of(scenario.machine->axes, spot.region).before(spot.at_m);
   for (const std::string& name : mounted) {
     (void)known_output(model.system, "--mounted", name, true);
     model.spots.push_back({.sensor = name});

@@ -5,46 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine/poses.hpp"
 #include "machine/run_record.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::studies {
 namespace {
 
-using scenarios::MachineModel, scenarios::Pose, scenarios::VolumeSettings;
-
-/// The machine at a pose with the six errors as its functionals.
-struct PlacedAtPose {
-  MachineModel model;
-  scenarios::PlacedMachine placed;
-  Eigen::Vector3d place_m;  ///< of the tool in the frame of the work
-};
-
-PlacedAtPose placed_at(const MachineModel& model, const VolumeSettings& settings, const mesh::Mesh& drawn,
-                       const Pose& pose) {
-  MachineModel here = scenarios::at_pose(model, pose);
-  here.displacements.clear();  // only the six errors are solved for
-  here.tilts.clear();
-  scenarios::PlacedMachine placed = scenarios::place(here, drawn);
-  const scenarios::ToolAgainstWork error =
-      scenarios::tool_against_work(here, placed.mesh, settings.tool, settings.work, settings.where);
-  placed.functionals.assign(error.functionals.begin(), error.functionals.end());
-  return {std::move(here), std::move(placed), error.place_m};
-}
-
-/// @param theta_K  temperatures of the nodes above the reference, one column of each time
-VolumePoint errors_at(const MachineModel& model, const VolumeSettings& settings, const mesh::Mesh& drawn, const Pose& pose,
-                      const Eigen::MatrixXd& theta_K) {
-  const PlacedAtPose at = placed_at(model, settings, drawn, pose);
-  const Eigen::MatrixXd values = scenarios::influences(at.model, at.placed).transpose() * theta_K;  // 6 x n_times
-  VolumePoint point{.pose = pose, .place_m = at.place_m, .error_m = {}, .turn_rad = {}};
-  for (Eigen::Index t = 0; t < values.cols(); ++t) {
-    point.error_m.emplace_back(values.col(t).head<3>());
-    point.turn_rad.emplace_back(values.col(t).tail<3>());
-  }
-  return point;
-}
+using scenarios::MachineModel, scenarios::VolumeSettings;
 
 /// The longest error vector less that of another point at the same time.
 LargestError largest_less(const WorkVolume& volume, const VolumePoint& other) {
@@ -87,7 +54,11 @@ WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& d
   const auto n_times = static_cast<Eigen::Index>(volume.time_s.size());
   Eigen::MatrixXd theta_K(drawn.n_nodes(), n_times);
   listener.begin(fmt::format("placing the machine at {} poses", settings.n_poses()));  // before a long run that none needs
-  for (std::size_t i = 0; i < settings.n_poses(); ++i) (void)placed_at(machine, settings, drawn, settings.pose(i));
+  for (std::size_t i = 0; i < settings.n_poses(); ++i) require_pose(machine, settings, drawn, settings.pose(i));
+  if (settings.r_test)
+    require_poses(volume.r_test.emplace(commanded_r_test(machine.axes, settings)), machine, settings, drawn);
+  if (settings.ball_bar)
+    require_poses(volume.ball_bar.emplace(commanded_ball_bar(machine.axes, settings)), machine, settings, drawn);
   listener.begin(fmt::format("simulating {:.0f} min", cyclogram.duration_s() / 60.0));
   const std::vector<double> rows_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s, volume.time_s);
   Eigen::Index next = 0;
@@ -107,6 +78,8 @@ WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& d
     listener.share(static_cast<double>(i + 1) / static_cast<double>(settings.n_poses() + 1));
     volume.points.push_back(errors_at(machine, settings, drawn, settings.pose(i), theta_K));
   }
+  if (volume.r_test) take_readings(*volume.r_test, machine, settings, drawn, theta_K, listener);
+  if (volume.ball_bar) take_readings(*volume.ball_bar, machine, settings, drawn, theta_K, listener);
   return volume;
 }
 

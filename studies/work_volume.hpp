@@ -1,27 +1,22 @@
 #pragma once
 // The study behind `run` of a scenario with `volume`: the error of the tool against the work at every pose of a grid, at
-// times of a cyclogram.
+// times of a cyclogram, and the measurements that are simulated at these times.
 
+#include <optional>
 #include <vector>
 
-#include "base/listener.hpp"
 #include "machine/simulated_run.hpp"
+#include "studies/volume_measurements.hpp"
 
 namespace driftwright::studies {
-
-/// The errors at a pose, actual - commanded, one of each time.
-struct VolumePoint {
-  scenarios::Pose pose;
-  Eigen::Vector3d place_m;                ///< of the tool in the frame of the work (machine/machine.hpp)
-  std::vector<Eigen::Vector3d> error_m;   ///< along x, y, z
-  std::vector<Eigen::Vector3d> turn_rad;  ///< about x, y, z
-};
 
 struct WorkVolume {
   std::vector<double> time_s;
   std::vector<VolumePoint> points;  ///< in the order of VolumeSettings::pose()
   VolumePoint own;                  ///< at the pose of the scenario
   scenarios::SimulatedRun run;      ///< of the cyclogram
+  std::optional<RTest> r_test = {};
+  std::optional<BallBar> ball_bar = {};
 };
 
 /// The point with the longest error vector at one of the times.
@@ -39,7 +34,7 @@ struct LargestError {
 /// pose: an axis is taken to visit all poses in a time in which no temperature changes.
 /// @param drawn  mesh of build_mesh()
 /// @param model  of this mesh, full, made for the cyclogram
-/// @throws InputError  as place() and tool_against_work() at each pose, before the simulation
+/// @throws InputError  as place() and tool_against_work() at each pose, and as commanded_r_test(), before the simulation
 [[nodiscard]] WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& drawn,
                                       const scenarios::Model& model, const Listener& listener);
 

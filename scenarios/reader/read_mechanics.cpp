@@ -69,7 +69,8 @@ JointEntry read_joint(const ConfigMap& in) {
   const bool ring = in.has("axis") && in.has("axial_stiffness") && in.has("radial_stiffness");
   if (springs) kind = solver::NormalSprings{in.quantity("normal_stiffness"), in.quantity("tangential_stiffness")};
   if (ring)
-    kind = solver::RingSprings{in.choice("axis")[0] - 'x', in.quantity("axial_stiffness"), in.quantity("radial_stiffness")};
+    kind = solver::RingSprings{Eigen::Vector3d::Unit(in.choice("axis")[0] - 'x'), in.quantity("axial_stiffness"),
+                               in.quantity("radial_stiffness")};
   if (in.has("mechanics")) {
     const std::string word = in.choice("mechanics");
     if (word == "tied") kind = solver::Tied{};

@@ -188,7 +188,8 @@ std::string name_of(const std::string& source) {
 
 bool is_of_column(const std::string& name, const std::string& unit) {
   if (unit == "mm" && (name.starts_with("position_") || name.starts_with("stroke_"))) return true;
-  constexpr const char* kOther[] = {"um", "mm", "urad", "s", "min", "h"};
+  if (unit == "deg" && name.starts_with("position_")) return true;
+  constexpr const char* kOther[] = {"um", "mm", "urad", "deg", "s", "min", "h"};
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }
 

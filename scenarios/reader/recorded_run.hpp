@@ -16,8 +16,8 @@ enum class Reading {
   kPlan,     ///< a planned drive: from time 0, without gaps, each value used as it is
 };
 
-/// Whether a channel may drive a machine: all units except those of lengths, angles and times; and in mm the places of
-/// axes, `position_...` and `stroke_...`.
+/// Whether a channel may drive a machine: all units except those of lengths, angles and times; and the places of axes,
+/// `position_...` in mm or deg and `stroke_...` in mm.
 [[nodiscard]] bool is_of_column(const std::string& name, const std::string& unit);
 
 /// A record as a run of the machine.

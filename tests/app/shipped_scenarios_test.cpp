@@ -167,6 +167,30 @@ TEST(MovingMill, EndsWithTwoWhereAnAxisLeavesItsRange) {
   EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
+TEST(RotaryMill, ItsRTestShowsThePlaceOfTheAxisThatTheVolumeHas) {
+  const std::filesystem::path folder = fresh_folder("rotary_mill") / "results";
+  const CommandOutcome outcome = run_program("run scenarios/rotary_mill.yaml -o " + folder.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const fixtures::Table volume = fixtures::read_table(folder / "volume.csv");
+  ASSERT_EQ(volume.size(), 1u + 2 * 36);
+  EXPECT_THAT(volume[0], testing::Contains("position_c_deg"));
+  ASSERT_EQ(fixtures::read_table(folder / "r_test.csv").size(), 1u + 2 * 8);
+  ASSERT_EQ(fixtures::read_table(folder / "ball_bar.csv").size(), 1u + 2 * 16);
+  const auto summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+  const auto& fit = summary.at("r_test").at("fit").back();
+  const auto axis =
+      std::find_if(summary.at("axes").begin(), summary.at("axes").end(), [](const auto& a) { return a.at("axis") == "c"; });
+  ASSERT_NE(axis, summary.at("axes").end());
+  const auto& location = axis->at("location").back();
+  // The tool of the volume is above the axis of C, so both see its place. They differ by what the linear axes do on the circle.
+  EXPECT_NEAR(fit.at("YO_um").get<double>(), location.at("YO_um").get<double>(), 3.0);
+  EXPECT_NEAR(fit.at("XO_um").get<double>(), location.at("XO_um").get<double>(), 3.0);
+  EXPECT_GT(fit.at("YO_um").get<double>(), 15.0);     // the warm column and head bend the tool away from it
+  EXPECT_GT(fit.at("radial_um").get<double>(), 0.0);  // the table has grown
+  EXPECT_NEAR(summary.at("r_test").at("reach_mm").get<double>(), 0.0, 1e-6);  // x, y and z bring the tool to the ball
+  EXPECT_GT(summary.at("ball_bar").at("fit").back().at("G_um").get<double>(), 0.0);
+}
+
 TEST(Mesh, OfALumpedMachineIsRefused) {
   const CommandOutcome outcome =
       run_program("mesh scenarios/lumped_spindle.yaml -o " + (fresh_folder("lumped_mesh") / "out").string());

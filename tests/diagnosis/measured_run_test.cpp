@@ -401,8 +401,8 @@ TEST_F(MeasuredRunTest, RefusesARecordOfAnotherPose) {
   model.ambient = {{0.0}, {0.0}};
   model.axes.push_back({.name = "x",
                         .moves = {"table"},
-                        .along = Eigen::Vector3d::UnitX(),
-                        .high_m = 1.0,
+                        .way = {.direction = Eigen::Vector3d::UnitX()},
+                        .high_SI = 1.0,
                         .column = "position_x",
                         .where = {}});
   const auto read_at = [&](double position_mm) {

@@ -166,7 +166,7 @@ TEST(Pose, OfABodyThatCarriesTheWorkTakesTheToolAlongTheAxis) {
   const PlacedMachine placed = place(model);
   const ToolAgainstWork error = tool_against_work(model, placed.mesh, {"bed", {0.4, 0.0, 0.1}, {}}, "table", {});
   EXPECT_LT((error.place_m - Eigen::Vector3d(0.4 + 0.1, 0.0, 0.1)).norm(), 1e-9);
-  EXPECT_LT((shift_m(model.axes, "table") - Eigen::Vector3d(-0.1, 0.0, 0.0)).norm(), 1e-12);
+  EXPECT_LT((motion_of(model.axes, "table").shift_m - Eigen::Vector3d(-0.1, 0.0, 0.0)).norm(), 1e-12);
 }
 
 SimulatedRun simulate(const Scenario& scenario) {
@@ -249,7 +249,7 @@ TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
 TEST(Axes, ArePlacedFromTheCommandLine) {
   std::vector<MovingAxis> axes = Slide{}.read().machine->axes;
   set_pose(axes, "x=250mm", {});
-  EXPECT_NEAR(axes[0].at_m, 0.25, 1e-12);
+  EXPECT_NEAR(axes[0].at_SI, 0.25, 1e-12);
   EXPECT_REFUSED(set_pose(axes, "y=1mm", {}), "there are x");
   EXPECT_REFUSED(set_pose(axes, "x=1000mm", {}), "outside the `range`");
   EXPECT_REFUSED(set_pose(axes, "x=far", {}), "--pose x=far");

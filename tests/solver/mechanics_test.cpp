@@ -99,8 +99,10 @@ TEST(SpringJoint, NormalStiffnessIsInSeriesWithTheBars) {
 TEST(SpringJoint, ARingIsStiffAlongItsAxisAndAcross) {
   const double k_N_m = 3e8;
   const double expected_N = BarsBetweenWalls::force_N(k_N_m);
-  EXPECT_NEAR(BarsBetweenWalls().computed_force_N(RingSprings{0, k_N_m, 1e9}) / expected_N, 1.0, kSolve);
-  EXPECT_NEAR(BarsBetweenWalls().computed_force_N(RingSprings{1, 1e9, k_N_m}) / expected_N, 1.0, kSolve);
+  EXPECT_NEAR(BarsBetweenWalls().computed_force_N(RingSprings{Eigen::Vector3d::UnitX(), k_N_m, 1e9}) / expected_N, 1.0,
+              kSolve);
+  EXPECT_NEAR(BarsBetweenWalls().computed_force_N(RingSprings{Eigen::Vector3d::UnitY(), 1e9, k_N_m}) / expected_N, 1.0,
+              kSolve);
 }
 
 TEST(SpringJoint, ATieGivesWayByAThousandthOfTheFacetsSize) {
@@ -202,10 +204,11 @@ TEST(SpringJoint, OnACylinderAddsUpToItsStiffness) {
     return total;
   };
   const Eigen::Matrix3d ring = Eigen::Vector3d(3e8, 3e8, 1e7).asDiagonal();
-  EXPECT_LT((sum(RingSprings{2, 1e7, 3e8}) - ring).norm(), 1e-12 * ring.norm());
+  EXPECT_LT((sum(RingSprings{Eigen::Vector3d::UnitZ(), 1e7, 3e8}) - ring).norm(), 1e-12 * ring.norm());
   const Eigen::Matrix3d springs = Eigen::Vector3d(2.5e8, 2.5e8, 1e8).asDiagonal();
   EXPECT_LT((sum(NormalSprings{4e8, 1e8}) - springs).norm(), 1e-6 * springs.norm());  // smoothed normals, curved facets
-  EXPECT_NO_THROW(Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", RingSprings{2, 1e7, 3e8}}}));
+  EXPECT_NO_THROW(
+      Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", RingSprings{Eigen::Vector3d::UnitZ(), 1e7, 3e8}}}));
   EXPECT_REFUSED(Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", NormalSprings{1e9, 0.0}}}),
                  "'shaft' is not held: as a rigid body it can still translate along z, "
                  "rotate about z through x = 0.0 mm, y = 0.0 mm.");
