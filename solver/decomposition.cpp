@@ -29,7 +29,7 @@ void Decompositions::add_flows(Decomposition& d) const {
   d.flows = d.flows * d.vectors;
 }
 
-const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool with_flows) {
+Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool with_flows) {
   for (Decomposition& d : kept_) {
     if (d.coefficient != coefficient) continue;
     if (with_flows && d.flows.size() == 0) add_flows(d);
@@ -44,6 +44,7 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool
   Decomposition& d = kept_[oldest_];
   ++n_made_;
   d.coefficient = coefficient;
+  d.decays = {};
   const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
   Eigen::MatrixXd k = system_.conduction;
   Eigen::VectorXd to_ambient = Eigen::VectorXd::Zero(n), offset = to_ambient;

@@ -1,6 +1,7 @@
 #pragma once
 // A linear reduced system in the eigenvectors of its K, with one decomposition per set of coefficients.
 
+#include "solver/decays.hpp"
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::solver {
@@ -17,6 +18,7 @@ struct Decomposition {
   Eigen::MatrixXd flows;                  ///< c_e flow_e', n_exchanges x size
   Eigen::VectorXd ambient_W_K, offset_W;  ///< c_e ambient_sum_e, c_e offset_sum_e
   Eigen::RowVectorXd stored_J_K;          ///< 1'M V
+  Decays decays;                          ///< e^{-Λt}
 };
 
 /// Stores the latest decompositions. Not thread-safe.
@@ -27,7 +29,7 @@ class Decompositions {
 
   /// The decomposition of these coefficients; valid until the next call. @param with_flows false: `flows`, `ambient_W_K` and
   /// `offset_W` may be empty
-  const Decomposition& at(const Eigen::VectorXd& coefficient, bool with_flows = true);
+  Decomposition& at(const Eigen::VectorXd& coefficient, bool with_flows = true);
   [[nodiscard]] int n_made() const { return n_made_; }
 
  private:

@@ -27,6 +27,8 @@ double phi3(double x) {
 
 }  // namespace
 
+/// z over one stretch, in the eigenvectors. Slow modes, of which a and b would be differences of large numbers, have a, b and
+/// w of 0 and are added apart.
 struct Propagator::Solution {
   const Eigen::VectorXd& lambda;
   Eigen::VectorXd z0, f0, f1;  // at the stretch's start; load and its slope
@@ -36,48 +38,52 @@ struct Propagator::Solution {
   Solution(const Eigen::VectorXd& lambda_1_s, Eigen::VectorXd start, Eigen::VectorXd load, Eigen::VectorXd slope,
            double length_s)
       : lambda(lambda_1_s), z0(std::move(start)), f0(std::move(load)), f1(std::move(slope)) {
-    for (Eigen::Index i = 0; i < lambda.size(); ++i) {
-      if (!(lambda[i] * length_s > kSlowMode)) slow.push_back(i);
-    }
     b = f1.cwiseQuotient(lambda);
     a = (f0 - b).cwiseQuotient(lambda);
     w = z0 - a;
+    for (Eigen::Index i = 0; i < lambda.size(); ++i) {
+      if (lambda[i] * length_s > kSlowMode) continue;
+      slow.push_back(i);
+      a[i] = b[i] = w[i] = 0.0;
+    }
   }
 
-  /// z at t, e = e^{-λt}.
-  template <class Column>
-  void state(double t_s, const Eigen::ArrayXd& e, Column z) const {
-    z = a.array() + t_s * b.array() + w.array() * e;
-    for (Eigen::Index i : slow) {
-      const double x = lambda[i] * t_s;
-      z[i] = z0[i] * e[i] + t_s * (phi1(x) * f0[i] + t_s * phi2(x) * f1[i]);
-    }
+  [[nodiscard]] double slow_state(Eigen::Index i, double t_s) const {
+    const double x = lambda[i] * t_s;
+    return z0[i] * std::exp(-x) + t_s * (phi1(x) * f0[i] + t_s * phi2(x) * f1[i]);
   }
-  /// ∫ z from 0 to t.
-  template <class Column>
-  void integral(double t_s, const Eigen::ArrayXd& e, Column sum) const {
-    sum = t_s * (a.array() + 0.5 * t_s * b.array()) + w.array() * (1.0 - e) / lambda.array();
-    for (Eigen::Index i : slow) {
-      const double x = lambda[i] * t_s;
-      sum[i] = t_s * (phi1(x) * z0[i] + t_s * (phi2(x) * f0[i] + t_s * phi3(x) * f1[i]));
-    }
+  [[nodiscard]] double slow_integral(Eigen::Index i, double t_s) const {
+    const double x = lambda[i] * t_s;
+    return t_s * (phi1(x) * z0[i] + t_s * (phi2(x) * f0[i] + t_s * phi3(x) * f1[i]));
   }
-  /// z at the columns' times and, unless null, ∫ z up to them. @param start_s  of the stretch
-  void at(std::span<const double> times_s, double start_s, Eigen::MatrixXd& states, Eigen::MatrixXd* integrals) const {
-    Eigen::ArrayXd e = Eigen::ArrayXd::Ones(lambda.size()), decay(lambda.size());
-    double t_s = 0.0, step_s = -1.0;
-    for (std::size_t i = 0; i < times_s.size(); ++i) {  // evenly spaced outputs take one exponential per mode
-      const auto k = static_cast<Eigen::Index>(i);
-      const double now_s = times_s[i] - start_s;
-      if (std::abs(now_s - t_s - step_s) > 1e-9 * step_s) {
-        step_s = now_s - t_s;
-        decay = (-step_s * lambda.array()).exp();
-      }
-      e *= decay;
-      t_s = now_s;
-      state(t_s, e, states.col(k));
-      if (integrals) integral(t_s, e, integrals->col(k));
-    }
+  [[nodiscard]] Eigen::VectorXd decay(double t_s) const { return (-t_s * lambda.array()).exp(); }
+  /// z at t. @param e  decay(t)
+  [[nodiscard]] Eigen::VectorXd state(double t_s, const Eigen::VectorXd& e) const {
+    Eigen::VectorXd z = a.array() + t_s * b.array() + w.array() * e.array();
+    for (Eigen::Index i : slow) z[i] = slow_state(i, t_s);
+    return z;
+  }
+  /// The rows' products with z, without the slow modes.
+  [[nodiscard]] SumsOfDecays states_of(const Eigen::MatrixXd& rows) const {
+    SumsOfDecays sums;
+    sums.factors.resize(rows.rows(), SumsOfDecays::kPowers + lambda.size());
+    sums.curve().setZero();
+    sums.constant().noalias() = rows * a;
+    sums.slope().noalias() = rows * b;
+    sums.factors.rightCols(lambda.size()) = rows * w.asDiagonal();
+    return sums;
+  }
+  /// The rows' products with ∫ z, likewise.
+  [[nodiscard]] SumsOfDecays integrals_of(const Eigen::MatrixXd& rows) const {
+    Eigen::VectorXd u = w.cwiseQuotient(lambda);
+    for (Eigen::Index i : slow) u[i] = 0.0;
+    SumsOfDecays sums;
+    sums.factors.resize(rows.rows(), SumsOfDecays::kPowers + lambda.size());
+    sums.curve().noalias() = 0.5 * (rows * b);
+    sums.constant().noalias() = rows * u;
+    sums.slope().noalias() = rows * a;
+    sums.factors.rightCols(lambda.size()) = rows * (-u).asDiagonal();
+    return sums;
   }
 };
 
@@ -85,12 +91,15 @@ namespace {
 
 /// @throws SolveError  for a temperature among the outputs that no machine has
 void require_sane_outputs(const Trajectory& run, const ReducedSystem& system) {
-  for (std::size_t o = 0; o < system.outputs.unit.size() && !run.time_s.empty(); ++o) {
-    if (system.outputs.unit[o] != "K") continue;
-    const auto row = run.outputs.row(static_cast<Eigen::Index>(o));
+  Eigen::ArrayXd farthest_K = Eigen::ArrayXd::Zero(run.outputs.rows());
+  for (Eigen::Index k = 0; k < run.outputs.cols(); ++k) farthest_K = farthest_K.max(run.outputs.col(k).array().abs());
+  for (std::size_t o = 0; o < system.outputs.unit.size(); ++o) {
+    const auto row = static_cast<Eigen::Index>(o);
+    if (system.outputs.unit[o] != "K" || farthest_K[row] < system.reference_K) continue;
     Eigen::Index at = 0;
-    const double farthest_K = row.cwiseAbs().maxCoeff(&at), value_K = row[at];
-    if (farthest_K > 0.0) require_sane(&value_K, 1, system.reference_K, run.time_s[static_cast<std::size_t>(at)]);
+    run.outputs.row(row).cwiseAbs().maxCoeff(&at);
+    const double value_K = run.outputs(row, at);
+    require_sane(&value_K, 1, system.reference_K, run.time_s[static_cast<std::size_t>(at)]);
   }
 }
 
@@ -109,8 +118,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   run.time_s = output_s;
   run.outputs.resize(system_.outputs.state.cols(), n_times);
   if (states) states->resize(n, n_times);
-  const bool reads_ambient = (system_.outputs.ambient.array() != 0.0).any();
-  Eigen::VectorXd heat_J;  // of every flow up to the start of the stretch
+  Eigen::VectorXd heat_J, inwards;  // of every flow up to the start of the stretch; sign of each exchange's flow
   double initial_J = 0.0;
   if (with_heat) {
     run.flows = flows_of(system_);
@@ -118,14 +126,16 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
     run.heat_J.resize(n_sources + n_exchanges, n_times);
     run.stored_J.resize(n_times);
     initial_J = system_.ones.dot(start);
+    inwards.resize(n_exchanges);
+    for (Eigen::Index i = 0; i < n_exchanges; ++i)
+      inwards[i] = run.flows[static_cast<std::size_t>(n_sources + i)].kind == FlowKind::kInternal ? 1.0 : -1.0;
   }
 
-  Eigen::VectorXd state = start, coefficient(n_exchanges), power_W(n_sources);
-  Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
+  Eigen::VectorXd coefficient(n_exchanges), power_W(n_sources);
   SeriesInOrder ambient_in_order(ambient);
   LawChanges changes(system_.change_times_s);
-  const Decomposition* decomposition = nullptr;
-  Eigen::VectorXd load;  // of everything except the ambient, in the eigenvectors
+  Decomposition* decomposition = nullptr;
+  Eigen::VectorXd z, load;  // state and load of everything except the ambient, in the eigenvectors
   std::size_t next = 0;
   for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),
@@ -136,49 +146,60 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
       for (Eigen::Index i = 0; i < n_exchanges; ++i)
         coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
       for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
-      decomposition = &decompositions_.at(coefficient, with_heat);
+      if (!decomposition || coefficient != decomposition->coefficient) {
+        const Eigen::VectorXd state = decomposition ? Eigen::VectorXd(decomposition->vectors * z) : start;
+        decomposition = &decompositions_.at(coefficient, with_heat);
+        z.noalias() = decomposition->to_modes * state;
+      }
       load = decomposition->loads * power_W + decomposition->offset;
     }
-    const Decomposition& d = *decomposition;
-    const Solution solution(d.lambda_1_s, d.to_modes * state, load + ambient_K * d.to_ambient, ambient_slope * d.to_ambient,
+    Decomposition& d = *decomposition;
+    const Solution solution(d.lambda_1_s, std::move(z), load + ambient_K * d.to_ambient, ambient_slope * d.to_ambient,
                             length_s);
 
     std::size_t last = next;
     while (last < output_s.size() && output_s[last] <= stretch.end_s) ++last;
     const auto first_column = static_cast<Eigen::Index>(next), n_columns = static_cast<Eigen::Index>(last - next);
-    block.resize(n, n_columns);
-    if (with_heat) integrals.resize(n, n_columns);
-    solution.at(std::span(output_s).subspan(next, last - next), stretch.start_s, block, with_heat ? &integrals : nullptr);
-    run.outputs.middleCols(first_column, n_columns).noalias() = d.outputs * block;
-    if (states) states->middleCols(first_column, n_columns).noalias() = d.vectors * block;
-    const auto heats_after = [&](double dt_s, const auto& integral) {
-      const double ambient_Ks = dt_s * (ambient_K + 0.5 * ambient_slope * dt_s);
-      Eigen::VectorXd heat = heat_J;
-      heat.head(n_sources) += dt_s * power_W;
-      const Eigen::VectorXd crossed = d.flows * integral - ambient_Ks * d.ambient_W_K - dt_s * d.offset_W;
-      for (Eigen::Index i = 0; i < n_exchanges; ++i) {
-        const bool is_internal = run.flows[static_cast<std::size_t>(n_sources + i)].kind == FlowKind::kInternal;
-        heat[n_sources + i] += is_internal ? crossed[i] : -crossed[i];
-      }
-      return heat;
-    };
-    for (Eigen::Index k = 0; k < n_columns; ++k) {
-      const double now_s = output_s[next + static_cast<std::size_t>(k)];
-      if (reads_ambient) run.outputs.col(first_column + k) += ambient.at(now_s) * system_.outputs.ambient;
-      if (!with_heat) continue;
-      run.heat_J.col(first_column + k) = heats_after(now_s - stretch.start_s, integrals.col(k));
-      run.stored_J[first_column + k] = d.stored_J_K.dot(block.col(k)) - initial_J;
-    }
+    const std::span now_s = std::span(output_s).subspan(next, last - next);
     next = last;
-
-    const Eigen::ArrayXd e = (-length_s * d.lambda_1_s.array()).exp();
-    Eigen::VectorXd z(n);
+    // Sums at the outputs of this stretch, with the slow modes' share of the rows they were made of.
+    const auto write = [&](const SumsOfDecays& sums, const Eigen::MatrixXd& rows, auto slow_value, auto out) {
+      d.decays.values(sums, d.lambda_1_s, now_s, stretch.start_s, out);
+      for (Eigen::Index i : solution.slow) {
+        for (Eigen::Index k = 0; k < n_columns; ++k)
+          out.col(k) += slow_value(i, now_s[static_cast<std::size_t>(k)] - stretch.start_s) * rows.col(i);
+      }
+    };
+    const auto slow_state = [&](Eigen::Index i, double t_s) { return solution.slow_state(i, t_s); };
+    const auto slow_integral = [&](Eigen::Index i, double t_s) { return solution.slow_integral(i, t_s); };
+    SumsOfDecays outputs = solution.states_of(d.outputs);
+    outputs.constant() += ambient_K * system_.outputs.ambient;
+    outputs.slope() += ambient_slope * system_.outputs.ambient;
+    write(outputs, d.outputs, slow_state, run.outputs.middleCols(first_column, n_columns));
+    if (states) write(solution.states_of(d.vectors), d.vectors, slow_state, states->middleCols(first_column, n_columns));
+    const Eigen::VectorXd e = solution.decay(length_s);
     if (with_heat) {
-      solution.integral(length_s, e, z.head(n));
-      heat_J = heats_after(length_s, z);
+      const Eigen::MatrixXd flows = inwards.asDiagonal() * d.flows;
+      SumsOfDecays heats = solution.integrals_of(flows);
+      const Eigen::VectorXd from_ambient = inwards.cwiseProduct(d.ambient_W_K);
+      heats.constant() += heat_J.tail(n_exchanges);
+      heats.slope() -= ambient_K * from_ambient + inwards.cwiseProduct(d.offset_W);
+      heats.curve() -= 0.5 * ambient_slope * from_ambient;
+      write(heats, flows, slow_integral, run.heat_J.bottomRows(n_exchanges).middleCols(first_column, n_columns));
+      for (Eigen::Index k = 0; k < n_columns; ++k) {
+        const double t_s = now_s[static_cast<std::size_t>(k)] - stretch.start_s;
+        run.heat_J.col(first_column + k).head(n_sources) = heat_J.head(n_sources) + t_s * power_W;
+      }
+      heat_J.head(n_sources) += length_s * power_W;
+      heat_J.tail(n_exchanges) = heats.at(length_s, e);
+      for (Eigen::Index i : solution.slow) heat_J.tail(n_exchanges) += solution.slow_integral(i, length_s) * flows.col(i);
+      SumsOfDecays stored = solution.states_of(d.stored_J_K);
+      stored.constant().array() -= initial_J;
+      Eigen::MatrixXd stored_J(1, n_columns);
+      write(stored, d.stored_J_K, slow_state, stored_J.middleCols(0, n_columns));
+      run.stored_J.segment(first_column, n_columns) = stored_J.transpose();
     }
-    solution.state(length_s, e, z.head(n));
-    state.noalias() = d.vectors * z;
+    z = solution.state(length_s, e);
   }
   require_sane_outputs(run, system_);
   return run;

@@ -42,6 +42,14 @@ ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& ambient)
     live_exchanges_.push_back({.index = e, .matrix = static_cast<std::size_t>(same - matrices_.begin())});
     if (same == matrices_.end()) matrices_.push_back({&g});
   }
+  const auto look_at = [&](const BoundLaw& law) {
+    for (int p : law.probes) looked_at_.push_back(static_cast<std::size_t>(p));
+  };
+  for (const HeatSource& s : system.sources) look_at(s.power_W);
+  for (const auto& e : system.exchanges) look_at(e.coefficient);
+  std::sort(looked_at_.begin(), looked_at_.end());
+  looked_at_.erase(std::unique(looked_at_.begin(), looked_at_.end()), looked_at_.end());
+  probe_K_.resize(system.probes.size());
 }
 
 void ReducedOde::begin(const Eigen::VectorXd& start, double* y) {
@@ -66,22 +74,20 @@ void ReducedOde::tolerances(double absolute_K, double* tolerance) const {
   std::fill(tolerance + n_, tolerance + size(), 1e30);
 }
 
-double ReducedOde::value(const BoundLaw& law, const std::vector<double>& probe_K) const {
+double ReducedOde::value(const BoundLaw& law) {
   if (law.thermostat >= 0 && !is_on_[static_cast<std::size_t>(law.thermostat)]) return 0.0;
+  inputs_.probe_K.clear();
   if (!law.looks_at_state()) return law(inputs_);
-  effects::Inputs inputs = inputs_;
-  for (int p : law.probes) inputs.probe_K.push_back(probe_K[static_cast<std::size_t>(p)]);
-  return law.law(inputs);
+  for (int p : law.probes) inputs_.probe_K.push_back(probe_K_[static_cast<std::size_t>(p)]);
+  return law.law(inputs_);
 }
 
-std::vector<double> ReducedOde::probe_K(const Eigen::VectorXd& w, double ambient_K) const {
-  std::vector<double> t_K(system_.probes.size());
-  for (std::size_t p = 0; p < t_K.size(); ++p) {
+void ReducedOde::probe(const Eigen::VectorXd& w, double ambient_K) {
+  for (std::size_t p : looked_at_) {
     const Probe& probe = system_.probes[p];
-    t_K[p] = system_.reference_K + probes_.col(static_cast<Eigen::Index>(p)).dot(w) + probe.ambient_share * ambient_K +
-             probe.offset_K;
+    probe_K_[p] = system_.reference_K + probes_.col(static_cast<Eigen::Index>(p)).dot(w) + probe.ambient_share * ambient_K +
+                  probe.offset_K;
   }
-  return t_K;
 }
 
 bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
@@ -93,11 +99,11 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
                   power_W = Eigen::VectorXd::Zero(power_W_.size());
   for (std::size_t s = 0; s < system_.sources.size(); ++s) {
     const BoundLaw& law = system_.sources[s].power_W;
-    if (!law.looks_at_state()) power_W[static_cast<Eigen::Index>(s)] = value(law, {});
+    if (!law.looks_at_state()) power_W[static_cast<Eigen::Index>(s)] = value(law);
   }
   for (std::size_t e = 0; e < system_.exchanges.size(); ++e) {
     const BoundLaw& law = system_.exchanges[e].coefficient;
-    if (!law.looks_at_state()) coefficient[static_cast<Eigen::Index>(e)] = value(law, {});
+    if (!law.looks_at_state()) coefficient[static_cast<Eigen::Index>(e)] = value(law);
   }
   bool jumps = is_first_ || power_W != power_W_;
   for (std::size_t e = 0; e < system_.exchanges.size() && !jumps; ++e) {
@@ -115,11 +121,11 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
     }
   };
   weights_of_probes(Eigen::MatrixXd::Identity(n_, n_));
-  const std::vector<double> t_K = probe_K(z, inputs_.ambient_K);
+  probe(z, inputs_.ambient_K);
   bool serves = !is_first_;  // true if the present diagonal can be kept
   for (const LiveExchange& live : live_exchanges_) {
     double& c = coefficient[static_cast<Eigen::Index>(live.index)];
-    c = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
+    c = std::max(0.0, value(system_.exchanges[live.index].coefficient));
     serves = serves && std::abs(c - live.in_diagonal) <= kServes * live.in_diagonal;
   }
   for (const LiveExchange& live : live_exchanges_) {
@@ -133,7 +139,6 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   now_ = decompositions_.at(coefficient);
   const Eigen::MatrixXd& v = now_.vectors;
   weights_of_probes(v);
-  for (ExchangeMatrix& m : matrices_) m.now.noalias() = v.transpose() * (*m.of_system * v);
   for (LiveExchange& live : live_exchanges_) {
     const auto& e = system_.exchanges[live.index];
     live.to_ambient.noalias() = v.transpose() * e.to_ambient;
@@ -157,48 +162,65 @@ double ReducedOde::distance_to_switch_K(int i, double t_s, const double* y) cons
   return t_K - (is_on_[static_cast<std::size_t>(i)] ? thermostat.off_below_K : thermostat.on_above_K);
 }
 
-void ReducedOde::evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W) {
-  const double ambient_K = ambient_.at(t_s);
-  inputs_.ambient_K = ambient_K;
-  const std::vector<double> t_K = probe_K(w, ambient_K);
+void ReducedOde::find_laws(double t_s, const Eigen::VectorXd& w) {
+  inputs_.ambient_K = ambient_.at(t_s);
+  probe(w, inputs_.ambient_K);
   for (LiveSource& live : live_sources_) {
-    power_W_[static_cast<Eigen::Index>(live.index)] = live.power_W = value(system_.sources[live.index].power_W, t_K);
+    power_W_[static_cast<Eigen::Index>(live.index)] = live.power_W = value(system_.sources[live.index].power_W);
   }
-  heat = now_.offset + ambient_K * now_.to_ambient - now_.lambda_1_s.cwiseProduct(w);
-  heat.noalias() += now_.loads * power_W_;
+  for (LiveExchange& live : live_exchanges_) live.coefficient = value(system_.exchanges[live.index].coefficient);
+}
+
+void ReducedOde::find_heat(const Eigen::VectorXd& w) {
+  const double ambient_K = inputs_.ambient_K;
+  heat_ = now_.offset + ambient_K * now_.to_ambient - now_.lambda_1_s.cwiseProduct(w);
+  heat_.noalias() += now_.loads * power_W_;
+  if (matrices_.empty()) return;
   for (ExchangeMatrix& m : matrices_) m.beyond = 0.0;
-  for (LiveExchange& live : live_exchanges_) {
-    live.coefficient = value(system_.exchanges[live.index].coefficient, t_K);
+  for (const LiveExchange& live : live_exchanges_) {
     const double beyond = live.coefficient - live.in_diagonal;
     matrices_[live.matrix].beyond += beyond;
-    heat += beyond * (ambient_K * live.to_ambient + live.offset);
+    heat_ += beyond * (ambient_K * live.to_ambient + live.offset);
   }
-  for (const ExchangeMatrix& m : matrices_) heat.noalias() -= m.beyond * (m.now * w);
+  z_.noalias() = now_.vectors * w;
+  exchanged_.setZero(n_);
+  for (const ExchangeMatrix& m : matrices_) {
+    if (m.beyond != 0.0) exchanged_.noalias() += m.beyond * *m.of_system * z_;
+  }
+  heat_.noalias() -= now_.vectors.transpose() * exchanged_;
+}
+
+void ReducedOde::find_flows(const Eigen::VectorXd& w) {
+  const double ambient_K = inputs_.ambient_K;
   const Eigen::Index n_sources = power_W_.size(), n_exchanges = now_.ambient_W_K.size();
-  flow_W.head(n_sources) = power_W_;
-  flow_W.tail(n_exchanges).noalias() = now_.flows * w;
-  flow_W.tail(n_exchanges) -= ambient_K * now_.ambient_W_K + now_.offset_W;
+  flow_W_.head(n_sources) = power_W_;
+  flow_W_.tail(n_exchanges).noalias() = now_.flows * w;
+  flow_W_.tail(n_exchanges) -= ambient_K * now_.ambient_W_K + now_.offset_W;
   for (const LiveExchange& live : live_exchanges_) {
     const auto& e = system_.exchanges[live.index];
-    flow_W[n_sources + static_cast<Eigen::Index>(live.index)] =
+    flow_W_[n_sources + static_cast<Eigen::Index>(live.index)] =
         live.coefficient * (live.flow.dot(w) - e.ambient_sum * ambient_K - e.offset_sum);
   }
-  for (Eigen::Index j = n_sources; j < flow_W.size(); ++j) {
-    if (flows_[static_cast<std::size_t>(j)].kind != FlowKind::kInternal) flow_W[j] = -flow_W[j];
+  for (Eigen::Index j = n_sources; j < flow_W_.size(); ++j) {
+    if (flows_[static_cast<std::size_t>(j)].kind != FlowKind::kInternal) flow_W_[j] = -flow_W_[j];
   }
 }
 
 void ReducedOde::find_slopes(double t_s, const Eigen::VectorXd& w) {
   constexpr double kHalfStep_K = 0.01;
-  const std::vector<double> t_K = probe_K(w, ambient_.at(t_s));
+  probe(w, ambient_.at(t_s));
   for (LiveSource& live : live_sources_) {
     const BoundLaw& law = system_.sources[live.index].power_W;
     live.slope = Eigen::VectorXd::Zero(n_);
     for (int p : law.probes) {
-      std::vector<double> below = t_K, above = t_K;
-      below[static_cast<std::size_t>(p)] -= kHalfStep_K;
-      above[static_cast<std::size_t>(p)] += kHalfStep_K;
-      live.slope += (value(law, above) - value(law, below)) / (2.0 * kHalfStep_K) * probes_.col(p);
+      double& probe_K = probe_K_[static_cast<std::size_t>(p)];
+      const double here_K = probe_K;
+      probe_K = here_K + kHalfStep_K;
+      const double above = value(law);
+      probe_K = here_K - kHalfStep_K;
+      const double below = value(law);
+      probe_K = here_K;
+      live.slope += (above - below) / (2.0 * kHalfStep_K) * probes_.col(p);
     }
   }
 }
@@ -207,7 +229,9 @@ void ReducedOde::slopes(double t_s, const double* y, double* ydot) {
   is_rough_ = has_jumped_;
   has_jumped_ = false;
   const Eigen::VectorXd w = unknowns(y);
-  evaluate(t_s, w, heat_, flow_W_);
+  find_laws(t_s, w);
+  find_heat(w);
+  find_flows(w);
   find_slopes(t_s, w);
   at_start_ << heat_, flow_W_;
   std::copy(at_start_.data(), at_start_.data() + size(), ydot);
@@ -230,7 +254,8 @@ bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, 
   bool converged = false;
   for (int i = 0; i < kMostNewtonIterations && !converged; ++i) {
     w = base + x;
-    evaluate(t_s, w, heat_, flow_W_);
+    find_laws(t_s, w);
+    find_heat(w);
     Eigen::VectorXd step = damping.cwiseProduct(gathered + gamma * heat_ - x);
     if (n_live > 0) step += gamma * along * coupling.solve(slopes.transpose() * step);
     x += step;
@@ -244,8 +269,8 @@ bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, 
   // Heats use the flows of the state found: stage values and balance agree up to the size of the last step, which is linear
   // in it.
   w = base + x;
-  Eigen::VectorXd heat(n_);
-  evaluate(t_s, w, heat, flow_W_);
+  find_laws(t_s, w);
+  find_flows(w);
   std::copy(x.data(), x.data() + n_, c);
   for (Eigen::Index j = 0; j < flow_W_.size(); ++j) c[n_ + j] = s[n_ + j] + gamma * flow_W_[j];
   for (int i = 0; i < size(); ++i) latest_[i] = (c[i] - s[i]) / gamma;

@@ -60,11 +60,15 @@ class ReducedOde : public StageOde {
     Eigen::VectorXd to_ambient = {}, offset = {}, flow = {};
   };
   [[nodiscard]] Map unknowns(const double* y) const { return {y, n_}; }
-  /// Value of a law at the probes' temperatures.
-  [[nodiscard]] double value(const BoundLaw& law, const std::vector<double>& probe_K) const;
-  [[nodiscard]] std::vector<double> probe_K(const Eigen::VectorXd& w, double ambient_K) const;
-  /// Heat into each unknown and each flow at w.
-  void evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W);
+  /// Value of a law at probe_K_.
+  [[nodiscard]] double value(const BoundLaw& law);
+  /// Sets probe_K_ of the probes that laws look at.
+  void probe(const Eigen::VectorXd& w, double ambient_K);
+  /// Sets powers and coefficients at w.
+  void find_laws(double t_s, const Eigen::VectorXd& w);
+  /// Sets heat_ and flow_W_ at w, after find_laws().
+  void find_heat(const Eigen::VectorXd& w);
+  void find_flows(const Eigen::VectorXd& w);
   void find_slopes(double t_s, const Eigen::VectorXd& w);
 
   const ReducedSystem& system_;
@@ -78,19 +82,22 @@ class ReducedOde : public StageOde {
   Eigen::VectorXd power_W_;  ///< of sources
   std::vector<LiveSource> live_sources_;
   std::vector<LiveExchange> live_exchanges_;
-  /// V'G V of live exchanges; those of one surface (free convection and radiation) share one G.
+  /// G of live exchanges; those of one surface (free convection and radiation) share one. Not transformed, V'G V: that costs
+  /// as much as all products with them in a stretch.
   struct ExchangeMatrix {
     const Eigen::MatrixXd* of_system;
-    Eigen::MatrixXd now = {};
     double beyond = 0.0;  ///< sum of coefficients minus those in Λ
   };
   std::vector<ExchangeMatrix> matrices_;
-  Eigen::MatrixXd probes_;  ///< size x n_probes, in the current eigenvectors
+  Eigen::MatrixXd probes_;              ///< size x n_probes, in the current eigenvectors
+  std::vector<std::size_t> looked_at_;  ///< probes of laws
+  std::vector<double> probe_K_;         ///< of each probe; those that no law looks at are not set
   bool is_first_ = true;
   bool has_jumped_ = false, is_rough_ = false;  ///< since the last step; before the current one
   double began_J_ = 0.0;
   Eigen::VectorXd at_start_, latest_;  ///< slopes of unknowns and flows
-  Eigen::VectorXd heat_, flow_W_;
+  Eigen::VectorXd heat_, flow_W_;      ///< into each unknown, and of each flow
+  Eigen::VectorXd z_, exchanged_;      ///< V w, and Σ_e (c_e - c_e0) G_e V w
   int n_solves_ = 0, n_iterations_ = 0;
 };
 

@@ -173,6 +173,28 @@ TEST(Propagator, WithoutLossesItRisesInAStraightLine) {
   EXPECT_NEAR(run.outputs(0, 1), 2.0 + 180.0, 1e-12);
 }
 
+TEST(Propagator, ManyOutputsAreThoseAskedOneByOne) {
+  // Each minute, while the ambient has knots between minutes; outputs, states, heats. One has no losses: a mode with λ = 0.
+  const FullSystem full = fixtures::two_blocks(1);
+  const ReducedSystem reduced =
+      project(full, orthonormalise(full.mass, Eigen::MatrixXd::Identity(full.size(), full.size())));
+  const TimeSeries ambient{{0, 2010, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+  for (const ReducedSystem& system : {reduced, one_body(4000, 0)}) {
+    const Eigen::VectorXd start = 5.0 * system.ones;
+    Eigen::MatrixXd states, state;
+    const Trajectory many = Propagator(system).run(kCycle, ambient, every(60), start, true, &states);
+    ASSERT_EQ(many.outputs.cols(), 121);
+    EXPECT_GT(many.outputs.maxCoeff(), 30.0);
+    for (Eigen::Index k = 0; k < 121; k += 7) {
+      const Trajectory one = Propagator(system).run(kCycle, ambient, {60.0 * static_cast<double>(k)}, start, true, &state);
+      EXPECT_LT((one.outputs - many.outputs.col(k)).cwiseAbs().maxCoeff(), 1e-10) << k;
+      EXPECT_LT((state - states.col(k)).cwiseAbs().maxCoeff(), 1e-10 * states.cwiseAbs().maxCoeff()) << k;
+      EXPECT_LT((one.heat_J - many.heat_J.col(k)).cwiseAbs().maxCoeff(), 1e-10 * many.heat_J.cwiseAbs().maxCoeff()) << k;
+      EXPECT_NEAR(one.stored_J[0], many.stored_J[k], 1e-10 * many.heat_J.cwiseAbs().maxCoeff()) << k;
+    }
+  }
+}
+
 TEST(Propagator, HeatsAddUpToWhatIsStored) {
   // With the uniform temperature in the basis, 1'(M z' + K z - f) = 0 holds in the small system, too.
   const FullSystem system = fixtures::two_blocks(1);
