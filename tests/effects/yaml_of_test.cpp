@@ -77,8 +77,8 @@ Effect drawn(const EffectKind& kind, Place place, Random& random) {
   return e;
 }
 
-// What is left out by chance is drawn with a chance of 1/2: one part in a thousand is in none of ten at a place.
-constexpr int kReadAtAPlace = 10, kDrawnAtAPlace = 200;
+// What is left out by chance is drawn with a chance of 1/2, so that each part of a kind is among them.
+constexpr int kReadAtAPlace = 20, kDrawnAtAPlace = 200;
 
 TEST(YamlOf, ComesBackForEveryKindAtEveryPlace) {
   Random random(17, 0);
