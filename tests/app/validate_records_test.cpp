@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/csv_row.hpp"
 #include "base/record.hpp"
 #include "tests/shared/command_line.hpp"
 #include "tests/shared/edited_text.hpp"
@@ -574,6 +576,39 @@ TEST_F(ValidateRecords, ASimulatedRunIsCorrectedAsItWasJudged) {
   const CommandOutcome unknown = compensate(other, "ridge_all_sensors.json", "--through none");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.output, AllOf(HasSubstr("'t_column'"), HasSubstr("no sensor of"), Not(HasSubstr("simulating"))));
+}
+
+// Each cyclogram of a family, named or drawn, in each season: as it is driven, and what the observer leaves of it.
+TEST_F(ValidateRecords, EachFamilyIsJudgedInEachSeason) {
+  const auto out = fresh_folder("seasons") / "out";
+  const std::string seasons = scenario("seasons", [](std::string& t) {
+    t += "solver: {model: reduced}\nvalidation:\n  train: [warm_up, steps]\n  families:\n    other: [to_and_fro]\n"
+         "    drawn: {count: 2, sections: 3, duration: 2 h, speeds: [500 rpm, 1500 rpm, 3000 rpm]}\n"
+         "  seasons: {summer: {offset: 8 K, swing: 3 K}}\n";
+  });
+  const CommandOutcome judged = run_program("validate " + seasons + " -o " + out.string());
+  ASSERT_EQ(judged.exit_code, 0) << judged.output;
+  std::istringstream lines(read_text(out / "strategies.csv"));
+  std::map<std::string, double> uncorrected_um;  // family, season and run
+  int n_observed = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> cells = csv_cells(line);  // strategy, family, season, run, failed, peak before, .., left
+    if (cells.size() < 8 || !cells[4].empty()) continue;
+    if (cells[0] == "no correction") uncorrected_um[cells[1] + " " + cells[2] + " " + cells[3]] = std::stod(cells[7]);
+    if (cells[0] != "observer") continue;
+    ++n_observed;
+    EXPECT_LT(std::stod(cells[7]), 0.01 * std::stod(cells[5])) << line;
+  }
+  ASSERT_EQ(uncorrected_um.size(), 6U);
+  EXPECT_EQ(n_observed, 6);
+  const Record run = read_record_csv(record("to_and_fro"));
+  double peak_um = 0.0;
+  for (double um : run.at("tip_z").values) peak_um = std::max(peak_um, std::abs(um - run.at("tip_z").values.front()));
+  EXPECT_NEAR(uncorrected_um.at("other as trained to_and_fro"), peak_um, 1e-4 * peak_um);  // the solver's relative tolerance
+  for (const char* cyclogram : {"other {} to_and_fro", "drawn {} drawn_random_01", "drawn {} drawn_random_02"}) {
+    const auto in = [&](const char* season) { return uncorrected_um.at(fmt::format(fmt::runtime(cyclogram), season)); };
+    EXPECT_GT(in("summer"), 1.01 * in("as trained")) << cyclogram;
+  }
 }
 
 /// The record as a logger in Germany would have written it, of a clock that is set back in between.

@@ -59,9 +59,25 @@ void expect_what_is_written_is_said(const Diagnosis& d) {
 
 class ACause : public testing::TestWithParam<Cause> {};
 
+/// Causes that show in two records; a third one takes twice as long, because each is also left out in turn.
+constexpr std::string_view kInTwoRecords[] = {
+    "a_lead_that_picks_up_the_drive",
+    "a_logger_that_was_set_right",
+    "a_pump_that_comes_again",
+    "a_heater_at_rest",
+    "preload_that_grows_with_what_a_ring_is_warmer",
+    "a_gear_stage",
+};
+std::string two_records_of_two_nodes() {
+  std::string text = kTwoNodes;
+  const std::size_t from = text.find("  friday:");
+  return text.erase(from, text.find("solver:") - from);
+}
+
 TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   const Cause& cause = GetParam();
-  const std::string plain = with_effect(kTwoNodes, cause.believed);
+  const bool are_two = std::find(std::begin(kInTwoRecords), std::end(kInTwoRecords), cause.name) != std::end(kInTwoRecords);
+  const std::string plain = with_effect(are_two ? two_records_of_two_nodes() : kTwoNodes, cause.believed);
   std::string truth = plain;
   for (const std::string& e : cause.entries) truth = with_effect(truth, e);
   const Found found(plain, truth, std::string(cause.name) + "_");
@@ -405,8 +421,6 @@ constexpr std::string_view kOfEachSort[] = {
     "a_thermometer_that_stays_off",
     "a_lead_that_picks_up_the_drive",
     "a_logger_that_was_set_right",
-    "an_ambient_that_stays_warmer",
-    "a_fan_that_stays_on",
     "a_pump_that_comes_again",
     "a_heater_at_rest",
     "preload_that_grows_with_what_a_ring_is_warmer",
@@ -414,7 +428,6 @@ constexpr std::string_view kOfEachSort[] = {
     "a_fixture_that_stays",
     "a_gear_stage",
     "a_filter_that_clogs",
-    "a_scale_that_lags_from_the_second_day_on",
 };
 
 std::vector<Cause> causes(bool are_of_each_sort) {
@@ -485,7 +498,7 @@ TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
 // A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the
 // catalogue, say by how much.
 TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
-  std::string machine = kTwoNodes;
+  std::string machine = two_records_of_two_nodes();
   const std::string one = "      - {node: head, sensitivity: 3 um/K}\n";
   machine.insert(machine.find(one) + one.size(), "      - {node: column, sensitivity: 2 um/K}\n");
   const std::string truth = with_effect(machine, "{type: scale_expansion, displacement: nose, factor: 2.5}");
@@ -547,8 +560,9 @@ TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
 
 TEST(AShortStop,
      IsFoundThoughItLiesBetweenTheTimesThatAreTriedFirst) {  // 2.5 min of a record of 5 h: rarer than any grid of stops
-  const std::string truth = with_effect(kTwoNodes, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
-  const Found found(kTwoNodes, truth, "stop_", {.row_s = 30.0, .noise_K = 0.1, .noise_um = 1.0});
+  const std::string machine = two_records_of_two_nodes();
+  const std::string truth = with_effect(machine, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
+  const Found found(machine, truth, "stop_", {.row_s = 30.0, .noise_K = 0.1, .noise_um = 1.0});
   const Diagnosis& d = found.d;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "missing_stop");
@@ -561,7 +575,8 @@ TEST(AShortStop,
 }
 
 TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {  // heat in one body would not do
-  const std::string machine = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
+  const std::string machine =
+      with_effect(two_records_of_two_nodes(), "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
   const std::string truth = with_effect(
       machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
   const Found found(machine, truth, "speed_");
