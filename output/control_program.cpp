@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
-#include "output/control_languages/dialect.hpp"
+#include "output/control_dialect.hpp"
 
 namespace driftwright::output {
 namespace {

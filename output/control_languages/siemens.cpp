@@ -4,7 +4,7 @@
 
 #include "base/characters.hpp"
 #include "base/errors.hpp"
-#include "output/control_languages/dialect.hpp"
+#include "output/control_dialect.hpp"
 
 namespace driftwright::output {
 namespace {

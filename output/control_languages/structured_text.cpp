@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/characters.hpp"
-#include "output/control_languages/dialect.hpp"
+#include "output/control_dialect.hpp"
 
 namespace driftwright::output {
 namespace {

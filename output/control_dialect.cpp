@@ -1,4 +1,4 @@
-#include "output/control_languages/dialect.hpp"
+#include "output/control_dialect.hpp"
 
 #include <fmt/format.h>
 
