@@ -119,7 +119,7 @@ class Axis:
         out, rows = np.array(out), rows + [rows[-1]]
         warm = {b: out[:, self.at(b)] for b in self.bodies}
         middles = 0.5 * (self.faces[1:] + self.faces[:-1])
-        warm["x_screw"] = np.array([np.interp(0.605, middles, row[:CELLS]) for row in out])  # the middle of section 14 of 28
+        warm["x_screw"] = np.array([np.interp(0.5 * self.length, middles, row[:CELLS]) for row in out])
         grown = np.concatenate([np.zeros((len(out), 1)), np.cumsum(EXPANSION * self.cell * (out[:, :CELLS] - 20.0), axis=1)], axis=1)
         at = lambda mm: np.array([np.interp(FIXED_GAP + p / 1e3, self.faces, g) for p, g in zip(mm, grown)]) * 1e6
         position = np.array([r[1] for r in rows])
@@ -130,19 +130,15 @@ class Axis:
         return np.array(times), rows, warm, read
 
 
-def write_record(path, axis, drive, ambient, rng, noise_K=0.05, noise_um=0.5, step_K=0.0, ambient_error_K=0.0, channels=None):
-    times, rows, warm, read = axis.run(drive, ambient)
+def write_record(path, axis, drive, ambient, rng, noise_K=0.05, noise_um=1.0, row_s=120.0):
+    """A record as a logger writes it, with white noise."""
+    times, rows, warm, read = axis.run(drive, ambient, row_s)
     sensors = dict(t_nut="x_nut", t_fixed="x_fixed", t_far="x_far", t_motor="x_motor", t_screw="x_screw", t_bed="bed")
-    columns = {"t_" + k[2:]: warm[v] + noise_K * rng.standard_normal(len(times)) for k, v in sensors.items()}
-    if step_K:
-        columns = {k: np.round(v / step_K) * step_K for k, v in columns.items()}
-    columns = {k + "_degC": v for k, v in columns.items()}
+    columns = {k + "_degC": warm[v] + noise_K * rng.standard_normal(len(times)) for k, v in sensors.items()}
     columns.update({k + "_um": v + noise_um * rng.standard_normal(len(times)) for k, v in read.items()})
-    if channels:
-        columns = {k: v for k, v in columns.items() if k in channels}
     with open(path, "w") as f:
         f.write("time_s,speed_rpm,feed_x_mm_min,position_x_mm,stroke_x_mm,ambient_degC,%s\n" % ",".join(columns))
         for i, time in enumerate(times):
             feed, position, stroke = rows[i]
-            f.write("%.0f,0,%.6g,%.6g,%.6g,%.3f,%s\n" % (time, feed * 6e4, position, stroke, ambient(time) - ambient_error_K,
+            f.write("%.0f,0,%.6g,%.6g,%.6g,%.3f,%s\n" % (time, feed * 6e4, position, stroke, ambient(time),
                                                          ",".join("%.4f" % v[i] for v in columns.values())))
