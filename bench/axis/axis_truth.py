@@ -118,8 +118,6 @@ class Axis:
             out.append(t.copy())
         out, rows = np.array(out), rows + [rows[-1]]
         warm = {b: out[:, self.at(b)] for b in self.bodies}
-        middles = 0.5 * (self.faces[1:] + self.faces[:-1])
-        warm["x_screw"] = np.array([np.interp(0.5 * self.length, middles, row[:CELLS]) for row in out])
         grown = np.concatenate([np.zeros((len(out), 1)), np.cumsum(EXPANSION * self.cell * (out[:, :CELLS] - 20.0), axis=1)], axis=1)
         at = lambda mm: np.array([np.interp(FIXED_GAP + p / 1e3, self.faces, g) for p, g in zip(mm, grown)]) * 1e6
         position = np.array([r[1] for r in rows])
@@ -133,7 +131,7 @@ class Axis:
 def write_record(path, axis, drive, ambient, rng, noise_K=0.05, noise_um=1.0, row_s=120.0):
     """A record as a logger writes it, with white noise."""
     times, rows, warm, read = axis.run(drive, ambient, row_s)
-    sensors = dict(t_nut="x_nut", t_fixed="x_fixed", t_far="x_far", t_motor="x_motor", t_screw="x_screw", t_bed="bed")
+    sensors = dict(t_nut="x_nut", t_fixed="x_fixed", t_far="x_far", t_motor="x_motor", t_bed="bed")  # none on the turning screw
     columns = {k + "_degC": warm[v] + noise_K * rng.standard_normal(len(times)) for k, v in sensors.items()}
     columns.update({k + "_um": v + noise_um * rng.standard_normal(len(times)) for k, v in read.items()})
     with open(path, "w") as f:
