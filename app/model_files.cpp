@@ -13,6 +13,7 @@
 #include "follow/watch_json.hpp"
 #include "follow/watch_trial.hpp"
 #include "output/drift_model_c.hpp"
+#include "output/linuxcnc_component.hpp"
 #include "output/drift_model_files.hpp"
 #include "output/predictor_file.hpp"
 

@@ -210,6 +210,16 @@ bool YamlText::comment_out(const ConfigNode& list, std::size_t entry) {
   return true;
 }
 
+bool YamlText::remove(const std::string& top_key) {
+  if (at({root_->line, root_->column}) == '{') return false;
+  for (const ConfigNode::Key& key : root_->keys) {
+    if (key.text != top_key) continue;
+    for (int line = key.line; line <= last_line(next_line(*root_, key.line)); ++line) removed_.push_back(line);
+    return true;
+  }
+  return false;
+}
+
 void YamlText::comment(int line, const std::string& text) {
   std::string& c = comments_[line];
   c += (c.empty() ? "" : "; ") + text;
@@ -219,6 +229,7 @@ std::string YamlText::text(const std::vector<std::string>& head) const {
   std::string out;
   for (const std::string& line : head) out += line.empty() ? "#\n" : "# " + line + "\n";
   for (int n = 1; n <= static_cast<int>(lines_.size()); ++n) {
+    if (std::find(removed_.begin(), removed_.end(), n) != removed_.end()) continue;
     std::string line = lines_[static_cast<std::size_t>(n) - 1];
     for (auto r = replacements_.rbegin(); r != replacements_.rend(); ++r) {
       if (r->first.line == n) line.replace(static_cast<std::size_t>(r->first.column) - 1, r->second.length, r->second.text);

@@ -32,6 +32,8 @@ class YamlText {
   bool append(const ConfigNode& list, const std::string& entry, const std::string& comment);
   /// Turns an entry of a block list into comment lines.
   bool comment_out(const ConfigNode& list, std::size_t entry);
+  /// Leaves out a key of a block map at the top, with its value; of another top, or without the key, it does nothing.
+  bool remove(const std::string& top_key);
   /// Adds a comment at the end of a line, counted from one.
   void comment(int line, const std::string& text);
 
@@ -66,7 +68,8 @@ class YamlText {
   std::map<Spot, Replacement> replacements_;
   std::map<int, std::vector<std::string>> behind_;  ///< lines to insert after a line
   std::map<int, std::string> comments_;
-  std::vector<int> dead_;  ///< lines that become comments
+  std::vector<int> dead_;     ///< lines that become comments
+  std::vector<int> removed_;  ///< lines that are left out
 };
 
 }  // namespace driftwright

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/dense.hpp"
 #include "base/normal.hpp"
 #include "base/shown_units.hpp"
 #include "diagnosis/discrepancy.hpp"
@@ -14,6 +15,7 @@
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/output_error.hpp"
+#include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
 
@@ -131,22 +133,31 @@ MeanError kept_out_loss(const std::vector<double>& misses, const std::vector<dou
 std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance,
                                      const std::vector<double>& known_to) {
   std::vector<Estimate> numbers;
-  const Twin& twin = fitter.twin();
+  const std::vector<std::string> names = number_names(fitter.twin(), fitter.scatter());
   for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
     const Knob& k = fitter.scatter()[i];
     const auto at = static_cast<Eigen::Index>(i);
     const double sd = std::sqrt(covariance(at, at));
-    TwinState turned = twin.as_written();
-    k.set(turned, k.value(x[at]));
-    std::string of;  // names one of several sensitivities of a body
-    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
-      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
-    numbers.push_back({fmt::format("{} {} {}{}", k.own.empty() ? k.effect : k.own, k.where, k.name, of), k.unit,
-                       k.value(x[at]), k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd), x[at] / known_to[i],
-                       known_to[i], k.scale == Knob::Scale::kLog});
+    numbers.push_back({names[i], k.unit, k.value(x[at]), k.value(x[at] - kNormal95 * sd), k.value(x[at] + kNormal95 * sd),
+                       x[at] / known_to[i], known_to[i], k.scale == Knob::Scale::kLog});
     numbers.back().line = k.line;
   }
   return numbers;
+}
+
+scenarios::KnownTogether known_together(const std::vector<Estimate>& numbers, const std::vector<Knob>& knobs,
+                                        const Eigen::MatrixXd& covariance) {
+  scenarios::KnownTogether known;
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    if (!knobs[i].in.empty()) continue;  // an offset of one record
+    own.push_back(static_cast<Eigen::Index>(i));
+    known.numbers.push_back(numbers[i].name);
+  }
+  const dense::SymmetricEigen modes(covariance(own, own));
+  const Eigen::MatrixXd root = modes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * modes.eigenvectors().transpose();
+  known.factor = (dense::orthonormal_from(root).transpose() * root).transpose().triangularView<Eigen::Lower>();
+  return known;
 }
 
 Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
@@ -186,6 +197,7 @@ Diagnosis calibrate(const Twin& twin, const Twin* coarse, const std::vector<Meas
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.calibrated = fitted_numbers(*chosen.fitter, chosen.fitted.fit.x, chosen.fitted.fit.covariance, known_to);
+  d.known_together = known_together(d.calibrated, d.scatter, chosen.fitted.fit.covariance);
 
   listener.begin("looking at what is left");
   d.unexplained = unexplained_of(*chosen.fitter, chosen.fitted, d.noise);

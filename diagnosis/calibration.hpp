@@ -19,6 +19,11 @@ namespace driftwright::diagnosis {
 [[nodiscard]] std::vector<Estimate> fitted_numbers(const Fitter& fitter, const Eigen::VectorXd& x,
                                                    const Eigen::MatrixXd& covariance, const std::vector<double>& known_to);
 
+/// What a fit leaves open of the scenario's own numbers, whatever the offsets of its records are.
+/// @param numbers, covariance  one entry, row and column for each knob
+[[nodiscard]] scenarios::KnownTogether known_together(const std::vector<Estimate>& numbers, const std::vector<Knob>& knobs,
+                                                      const Eigen::MatrixXd& covariance);
+
 /// A diagnosis without causes: numbers, gain, and what is left. Numbers are written unless the error is larger than the
 /// scenario's: on the rows that they were fitted to, or on kept-out rows by more than a standard error of the folds. If the
 /// simulation errs by more than noise, nor may displacements together lose on fitted rows, nor a channel on kept-out rows.

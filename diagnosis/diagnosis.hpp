@@ -138,6 +138,7 @@ struct Diagnosis {
   std::vector<Knob> scatter;         ///< uncertain numbers: the scenario's own and each run's ambient
   std::vector<std::size_t> moved;    ///< indices of those that moved so far that they are causes, in the order of these
   std::vector<Estimate> calibrated;  ///< these numbers as fitted with the written causes
+  scenarios::KnownTogether known_together;  ///< of calibrate(): what the fit leaves open of them, without the ambient
   Prediction as_written;
   /// For each cause: all that was found but this cause, at the same numbers. Empty if it was not simulated: the diagnosis
   /// was ended, or the machine has no solution without the cause.

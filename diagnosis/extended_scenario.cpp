@@ -25,6 +25,8 @@ namespace {
 
 using effects::Effect;
 
+constexpr const char* kKnownTogether = "known_together";
+
 double rounded(double value) {
   return std::isfinite(value) ? std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr) : value;
 }
@@ -96,15 +98,23 @@ class Writer {
     return done_;
   }
 
+  /// What the fit leaves open, after everything else and in place of what the text says of it.
+  void known_together(const scenarios::KnownTogether& known) {
+    says_anew_ = true;
+    if (!known.numbers.empty()) tail_ = scenarios::yaml_of(known);
+    if (yaml_.root().find(kKnownTogether) && !yaml_.remove(kKnownTogether)) in_one_piece_ = true;
+  }
+
   /// The edited text; if it does not have the right effects, a text written anew.
   [[nodiscard]] std::string text(std::vector<std::string> head) const {
-    if (const std::string edited = yaml_.text(head); !in_one_piece_ && says_what_it_should(edited)) return edited;
+    if (const std::string edited = yaml_.text(head) + tail_; !in_one_piece_ && says_what_it_should(edited)) return edited;
     head.emplace_back("written anew: the text of the scenario could not be edited in place");
     std::string out;
     for (const std::string& line : head) out += fmt::format("# {}\n", line);
     const ConfigNode& root = yaml_.root();
     for (std::size_t i = 0; i < root.keys.size(); ++i) {
       const std::string& key = root.keys[i].text;
+      if (key == kKnownTogether && says_anew_) continue;
       if (key == "effects") {
         out += "effects:\n";
         for (const Effect& e : list_) out += fmt::format("  - {}\n", effects::yaml_of(e));
@@ -117,7 +127,7 @@ class Writer {
         out += fmt::format("{}: {}\n", key, anew(*root.items[i]));
       }
     }
-    return out;
+    return out + tail_;
   }
 
  private:
@@ -285,6 +295,8 @@ class Writer {
   std::vector<std::string> cyclograms_, done_;
   std::vector<std::pair<std::string, std::string>> added_cyclograms_;  ///< names and YAML
   std::map<int, std::vector<std::string>> notes_;                      ///< changes, by line
+  std::string tail_;                                                   ///< after the text
+  bool says_anew_ = false;                                             ///< the tail replaces `known_together`
   bool in_one_piece_ = false;                                          ///< the text could not be edited and is written anew
 };
 
@@ -298,13 +310,15 @@ std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::Vecto
 
 ExtendedScenario extended_scenario(const scenarios::Scenario& scenario, const Twin& twin,
                                    const std::vector<MeasuredRun>& runs, const std::vector<StatedChange>& changes,
-                                   std::vector<std::string> head, const std::filesystem::path& folder) {
+                                   std::vector<std::string> head, const std::filesystem::path& folder,
+                                   const std::optional<scenarios::KnownTogether>& known_together) {
   ExtendedScenario result;
   Writer writer(scenario, twin, runs, folder);
   for (const StatedChange& change : changes) {
     const std::vector<std::string> done = writer.write(change);
     if (!done.empty()) result.written.push_back(fmt::format("{}: {}", change.name, fmt::join(done, "; ")));
   }
+  if (known_together) writer.known_together(*known_together);
   result.text = writer.text(std::move(head));
   return result;
 }

@@ -1,7 +1,10 @@
 #include "diagnosis/scatter.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "diagnosis/own_effects.hpp"
 
@@ -47,6 +50,22 @@ std::vector<Knob> ambient_scatter(const std::vector<MeasuredRun>& runs) {
                      }});
   }
   return knobs;
+}
+
+std::vector<std::string> number_names(const Twin& twin, const std::vector<Knob>& knobs) {
+  std::vector<std::string> names;
+  std::map<std::string, int> uses;
+  for (const Knob& k : knobs) {
+    TwinState turned = twin.as_written();
+    k.set(turned, k.value(0.0));
+    std::string of;  // names one of several sensitivities of a body
+    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
+      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
+    const std::string name = fmt::format("{} {} {}{}", k.own.empty() ? k.effect : k.own, k.where, k.name, of);
+    const int use = ++uses[name];
+    names.push_back(use == 1 ? name : fmt::format("{} {}", name, use));
+  }
+  return names;
 }
 
 std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {

@@ -1,5 +1,5 @@
 #pragma once
-// A formula with its limits as a program in a control's own language. (drift_model_c writes it as C and for LinuxCNC.)
+// A formula with its limits as a program in a control's own language. (drift_model_c writes it as C, linuxcnc_component for LinuxCNC.)
 
 #include <span>
 

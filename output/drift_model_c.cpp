@@ -4,265 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <functional>
-#include <stdexcept>
 #include <vector>
 
 #include "base/characters.hpp"
 #include "base/errors.hpp"
 #include "compensation/control/axis_travel.h"
 #include "compensation/predictors/control_tables.hpp"
+#include "output/correction_in_c.hpp"
 
 namespace driftwright::output {
 namespace {
-
-using compensation::FailSafe;
-
-/// Names that readings must not have: other arguments, and the component's pins, parameters and variables.
-const std::vector<std::string> kTaken = {"s",
-                                         "dt_s",
-                                         "enable",
-                                         "machine_is_on",
-                                         "heartbeat",
-                                         "restart",
-                                         "period",
-                                         "fperiod",
-                                         "eoffset_counts",
-                                         "eoffset_scale",
-                                         "eoffset_enable",
-                                         "correction_um",
-                                         "axis_offset_um",
-                                         "model_trust",
-                                         "most_rate_um_s",
-                                         "sign",
-                                         "count_um",
-                                         "machine_unit_um",
-                                         "most_age_s",
-                                         "step_s",
-                                         "model",
-                                         "axis",
-                                         "position",
-                                         "waited_s",
-                                         "is_started",
-                                         "heartbeat_is_late",
-                                         "setting_is_wrong",
-                                         "probed_um",
-                                         "probe_um",
-                                         "probe_strobe",
-                                         "probe_residual_um",
-                                         "probe_sigma_um",
-                                         "probe_verdict",
-                                         "probe_off_um",
-                                         "refused_probings",
-                                         "probe_noise_um",
-                                         "probe_lag_s",
-                                         "probing",
-                                         "processes",
-                                         "prediction_um",
-                                         "probe_waited_s",
-                                         "strobe_was_on"};
-
-/// A name that C and HAL allow; HAL allows no two underscores in a row.
-std::string c_name(const std::string& name) {
-  std::string result = name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ? "x_" : "";
-  for (char ch : name) {
-    const char wanted = std::isalnum(static_cast<unsigned char>(ch)) ? ch : '_';
-    if (wanted != '_' || result.empty() || result.back() != '_') result += wanted;
-  }
-  return result;
-}
-
-/// The target's name in C. `drift` would make a drift_state of its own beside that of drift_correction.h.
-std::string target_name(const std::string& target) {
-  const std::string name = c_name(target);
-  return name == "drift" || name == "probe" || name == "axis_offset" ? "x_" + name : name;
-}
-
-/// HAL's names have at most 47 characters; "doubt-" and the name of the loaded component take part of them.
-constexpr std::size_t kLongestPin = 28;
-
-/// The names of the readings, in the order of the guards.
-std::vector<std::string> reading_names(const std::vector<FailSafe::Guard>& guards, std::size_t longest = std::string::npos) {
-  std::vector<std::string> names, taken = kTaken;
-  for (const FailSafe::Guard& g : guards) {
-    const std::string plain = c_name(fmt::format("{}_{}", g.input, g.unit)).substr(0, longest);
-    std::string name = plain;
-    for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k)  // "a b" and "a-b" give the same name
-      name = fmt::format("{}_{}", plain, k);
-    names.push_back(name);
-    taken.push_back(name);
-  }
-  return names;
-}
-
-std::string c_number(double x) {
-  if (std::isinf(x)) return x > 0.0 ? "HUGE_VAL" : "-HUGE_VAL";
-  const std::string text = fmt::format("{:.17g}", x);  // reads back exactly
-  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
-}
-
-/// Text that is safe in a C comment or in a string of a component.
-std::string quoted(std::string text) {
-  for (char& ch : text) {
-    if (ch == '"' || ch == '\\') ch = '\'';
-  }
-  for (std::size_t at = 0; (at = text.find("*/")) != std::string::npos;) text.replace(at, 2, "* /");
-  for (std::size_t at = 0; (at = text.find("/*")) != std::string::npos;) text.replace(at, 2, "/ *");
-  return text;
-}
-
-/// What each filter of probings knows: of the model, then of its members if their weights move.
-std::vector<compensation::ResidualProcess> processes_of(const DeployedModel& d) {
-  std::vector<compensation::ResidualProcess> processes = {*d.residual};
-  for (const compensation::MemberResidual& m : d.member_residuals) processes.push_back(m.process);
-  return processes;
-}
-
-/// `{deviation_um, time_constant_s, noise_um, lag_s, is_known_at_start}`.
-std::string process_text(const compensation::ResidualProcess& p, const std::string& noise_um, const std::string& lag_s,
-                         bool is_known) {
-  return fmt::format("{{{}, {}, {}, {}, {}}}", c_number(p.deviation_um), c_number(p.time_constant_s), noise_um, lag_s,
-                     is_known ? 1 : 0);
-}
-
-/// How C calls the filter of probings: of one model (probe_feedback.h), or of a blend whose weights move (probe_members.h).
-struct ProbeCalls {
-  std::string prefix;                 ///< of the functions
-  std::string arguments;              ///< settings and state
-  std::string prediction, corrected;  ///< their next arguments in ..._row() and ..._corrected_um()
-  std::string said;                   ///< before what is said of the last probing
-  std::string refused;                ///< number of refused ones
-};
-ProbeCalls probe_calls(const DeployedModel& d, const std::string& settings, const std::string& state,
-                       const std::string& prediction) {
-  if (d.members.empty())
-    return {.prefix = "probe",
-            .arguments = fmt::format("&{}, &{}", settings, state),
-            .prediction = prediction,
-            .corrected = prediction + ", ",
-            .said = state + ".",
-            .refused = state + ".n_refused"};
-  const std::size_t n = 1 + d.members.size();
-  return {.prefix = "probe_members",
-          .arguments = fmt::format("{}, {}.members, {}", settings, state, n),
-          .prediction = state + ".predictions_um",
-          .corrected = "",
-          .said = fmt::format("probe_leading({}.members, {})->", state, n),
-          .refused = state + ".members[0].n_refused"};
-}
 
 /// `static const TYPE NAME[] = {rows};`, with one row of zeros for an empty table: C has no empty arrays.
 std::string table(const std::string& type, const std::string& name, std::vector<std::string> rows) {
   if (rows.empty()) rows = {"{0}"};
   return fmt::format("static const {} {}[] = {{\n  {}\n}};\n", type, name, fmt::join(rows, ",\n  "));
-}
-
-/// What the component has for a probe. @{
-constexpr const char* kProbePins =
-    R"(pin in float probe_um "what the probe reads on the corrected axis: by how much it is off, um; not a number: the probe missed";
-pin in bit probe_strobe = 0 "turns on when a probed value is there, and off before the next one";
-pin out float probe_residual_um "what probings have found beyond the model, um; correction-um contains it";
-pin out float probe_sigma_um "standard deviation of what is left after probings, um";
-pin out signed probe_verdict "of the last probing: 1 taken; 2 taken as a jump; refused: 3 too far from what is expected (probe again), 4 too early, 5 no number, 6 the same number too often in a row";
-pin out float probe_off_um "of the last probing: read minus expected, um";
-pin out signed refused_probings "how many were refused";
-)";
-constexpr const char* kProbeRow =
-    "    {0}_row({1}, {2}, axis_offset_correction_um(&axis), probe_waited_s);\n"
-    "    probe_waited_s = 0.0;\n";
-constexpr const char* kProbeCycle =
-    "  if (probe_strobe && !strobe_was_on) {{\n    if (is_started) {{\n{row}    }}\n"
-    "    {prefix}_left({arguments}, probe_um);\n  }}\n"
-    "  strobe_was_on = probe_strobe;\n"
-    "  if (is_started && probe_waited_s == 0.0)\n"
-    "    correction_um = {prefix}_corrected_um({arguments}, {corrected}{lowest}, {highest});\n";
-constexpr const char* kProbeOutputs =
-    "  probe_residual_um = {0}_expected_um({1}, 0.0);\n"
-    "  probe_sigma_um = {0}_deviation_um({1}, 0.0);\n"
-    "  probe_verdict = {2}verdict;\n  probe_off_um = {2}off_um;\n  refused_probings = {3};\n";
-/// @}
-
-/// The component, as halcompile reads it.
-constexpr const char* kComponent =
-    R"(component {name} "Correction of {target} [um], by {kind}, as external offset of an axis";
-description """
-{made_by}
-
-What is judged by Driftwright runs here: {c_file} holds the tables of the model, {files} must lie beside this file when it is compiled:
-
-  halcompile --install {name}.comp
-
-For the axis L, with [AXIS_L]OFFSET_AV_RATIO in the INI file:
-
-  loadrt {name} names=thermal
-  addf thermal servo-thread
-  net thermal-counts thermal.eoffset-counts => axis.l.eoffset-counts
-  net thermal-scale thermal.eoffset-scale => axis.l.eoffset-scale
-  net thermal-enable thermal.eoffset-enable => axis.l.eoffset-enable
-{nets}
-LinuxCNC adds up changes of the counts, drops them before all joints are homed, and forgets them when the machine is switched off.
-machine-is-on must therefore be the and of motion.motion-enabled and motion.is-all-homed.
-""";
-{pins}pin in bit enable = 0 "the offset follows the correction; else it goes back to 0 at the slew limit";
-pin in bit machine_is_on = 0 "while it is off, counts and offset are 0 at once";
-pin in bit heartbeat = 0 "turns over while the readings are fresh; until it first does, and when it has not for most-age-s, the offset goes back to 0 and the readings count as missing";
-pin in bit restart = 0 "forgets everything: rises, lags and trust begin anew when it goes back to 0";
-pin out signed eoffset_counts "to axis.L.eoffset-counts";
-pin out float eoffset_scale "to axis.L.eoffset-scale: units of the machine per count";
-pin out bit eoffset_enable "to axis.L.eoffset-enable";
-pin out float correction_um "of the model: what is to be taken away from the position";
-pin out float axis_offset_um "of the axis, in force";
-pin out float model_trust "0 to 1, that the prediction was multiplied by";
-{probe_pins}pin out bit heartbeat_is_late "the watchdog has bitten";
-pin out bit setting_is_wrong "a parameter is out of its range; the offset goes back to 0";
-{doubts}param rw float most_rate_um_s = {rate} "slew limit of the offset, um/s; 0 or more";
-param rw float most_um = {most} "largest offset by size, um; 0: no limit";
-param rw float sign = -1.0 "-1: the axis moves against the drift; +1: with it. A new one waits until the offset is 0";
-param rw float count_um = 0.1 "um per count, above 0. A new one waits until the offset is 0";
-param rw float machine_unit_um = 1000.0 "um in one unit of the machine: 1000 for mm, 25400 for inch. A new one waits until the offset is 0";
-param rw float most_age_s = {age} "the heartbeat must turn over within this time, s; above 0";
-param rw float step_s = {period} "from one step of the model to the next, s: as far apart as the readings that it was judged on; 0: each cycle";
-{probe_parameters}variable {state} model;
-variable {axis_state} axis;
-variable double waited_s;
-variable int is_started;
-{probe_variables}include "{c_file}";
-include "drift_correction.c";
-{probe_include}include "axis_offset.c";
-{axis_include}function _ fp;
-license "GPL";
-;;
-FUNCTION(_) {{
-  static const {state} at_start;
-{begin}  const axis_offset_settings settings = {{most_rate_um_s, sign, count_um, machine_unit_um, most_age_s, most_um}};
-  const int is_late = {watch};
-  waited_s += fperiod;
-{wait}  if (restart) {{
-    model = at_start;
-    is_started = 0;
-    correction_um = 0.0;
-{forget}  }} else if (is_started ? !(waited_s + 0.5 * fperiod < step_s) : !is_late) {{
-{step}    is_started = 1;
-    waited_s = 0.0;
-  }}
-{probe}{apply}  eoffset_counts = axis.counts;
-  eoffset_scale = axis.scale;
-  eoffset_enable = axis.is_offset_enabled;
-  axis_offset_um = axis.offset_um;
-  model_trust = {trust};
-  heartbeat_is_late = is_late;
-  setting_is_wrong = {is_wrong};
-{outputs}{set_doubts}}}
-)";
-
-/// The settings of the filters, for both files. @param noise_um, lag_s  as C has them
-std::string processes_text(const DeployedModel& d, const std::string& noise_um, const std::string& lag_s) {
-  std::vector<std::string> texts;
-  for (const compensation::ResidualProcess& p : processes_of(d))
-    texts.push_back(process_text(p, noise_um, lag_s, d.model.from_start));
-  return d.members.empty() ? texts.front() : fmt::format("{{{}}}", fmt::join(texts, ", "));
 }
 
 std::string c_term(const drift_term& t) {
@@ -274,7 +30,7 @@ std::string c_term(const drift_term& t) {
 std::string member_tables(const DeployedModel& d, const std::string& name, const std::vector<std::string>& inputs) {
   std::string text = "/* The formulas of which the one above is the mean:";
   std::vector<std::string> formulas;
-  for (const compensation::MemberResidual& m : d.member_residuals) text += fmt::format("\n * - {}", quoted(m.name));
+  for (const compensation::MemberResidual& m : d.member_residuals) text += fmt::format("\n * - {}", quoted_in_c(m.name));
   text += " */\n";
   for (std::size_t k = 0; k < d.members.size(); ++k) {
     const compensation::FormulaTable formula = compensation::formula_table(d.members[k], inputs);
@@ -353,65 +109,6 @@ std::string probed_function(const DeployedModel& d, const std::string& name, con
   return text;
 }
 
-/// The parts of a component that depend on what it runs; the defaults are those of one formula without a probe.
-struct ComponentParts {
-  std::string target, kind, state, files, step;
-  std::string pins, doubts, values, set_doubts;  ///< of the readings
-  std::string nets = "", axis_state = "axis_offset_state", axis_include = "";
-  std::string watch = "axis_offset_watch(&settings, &axis, heartbeat, fperiod)";
-  std::string apply = "  axis_offset_step(&settings, &axis, machine_is_on, enable, correction_um, fperiod);\n";
-  std::string trust = "model.run.trust", is_wrong = "axis.is_wrong";
-  std::string probe_pins, probe_parameters, probe_variables, probe_include, begin, wait, probe, outputs, forget;
-};
-
-/// With pins for the readings. @param doubted  C that says whether a reading is doubted
-ComponentParts component_of(const FailSafe& safe, const std::vector<std::string>& readings,
-                            const std::function<std::string(std::size_t)>& doubted) {
-  ComponentParts c;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    c.pins += fmt::format("pin in float {} \"{} in {}; not a number while there is none\";\n", readings[k],
-                          quoted(safe.guards[k].input), quoted(safe.guards[k].unit));
-    c.doubts += fmt::format("pin out bit doubt_{} \"{} is doubted, and replaced where others allow it\";\n", readings[k],
-                            quoted(safe.guards[k].input));
-    c.values += fmt::format("is_late ? NAN : {}, ", readings[k]);
-    c.set_doubts += fmt::format("    doubt_{} = {};\n", readings[k], doubted(k));
-  }
-  return c;
-}
-
-std::string component_text(const ComponentParts& c, const FailSafe& safe, const std::string& name, const std::string& c_file,
-                           const std::string& made_by) {
-  return fmt::format(kComponent, fmt::arg("name", name), fmt::arg("target", quoted(c.target)),
-                     fmt::arg("kind", quoted(c.kind)), fmt::arg("made_by", quoted(made_by)), fmt::arg("c_file", c_file),
-                     fmt::arg("nets", c.nets), fmt::arg("pins", c.pins), fmt::arg("doubts", c.doubts),
-                     fmt::arg("step", c.step), fmt::arg("set_doubts", c.set_doubts), fmt::arg("state", c.state),
-                     fmt::arg("files", c.files), fmt::arg("probe_pins", c.probe_pins),
-                     fmt::arg("probe_parameters", c.probe_parameters), fmt::arg("probe_variables", c.probe_variables),
-                     fmt::arg("probe_include", c.probe_include), fmt::arg("begin", c.begin), fmt::arg("wait", c.wait),
-                     fmt::arg("probe", c.probe), fmt::arg("outputs", c.outputs), fmt::arg("is_wrong", c.is_wrong),
-                     fmt::arg("forget", c.forget), fmt::arg("axis_state", c.axis_state),
-                     fmt::arg("axis_include", c.axis_include), fmt::arg("watch", c.watch), fmt::arg("apply", c.apply),
-                     fmt::arg("trust", c.trust), fmt::arg("rate", c_number(safe.most_rate_um_s)),
-                     fmt::arg("most", c_number(std::max(-safe.lowest_um, safe.highest_um))),
-                     fmt::arg("age", c_number(safe.stale_s)), fmt::arg("period", c_number(safe.period_s)));
-}
-
-/// The readings of all places, each once.
-struct PlacedReadings {
-  std::vector<FailSafe::Guard> guards;
-  std::vector<std::string> names;                  ///< in C
-  std::vector<std::vector<std::size_t>> of_place;  ///< of each place, in the order of its guards
-};
-PlacedReadings readings_of(std::span<const PlacedModel> places, std::size_t longest = std::string::npos) {
-  PlacedReadings r;
-  for (const PlacedModel& p : places) {
-    r.of_place.emplace_back();
-    for (const FailSafe::Guard& g : p.model.safe.guards) r.of_place.back().push_back(reading_among(r.guards, g));
-  }
-  r.names = reading_names(r.guards, longest);
-  return r;
-}
-
 DeployedModel without_probings(DeployedModel d) {
   d.residual.reset();
   d.members.clear();
@@ -433,12 +130,6 @@ std::vector<std::string> place_names(std::span<const PlacedModel> places, const 
   return names;
 }
 
-std::vector<double> positions_mm(std::span<const PlacedModel> places) {
-  std::vector<double> mm;
-  for (const PlacedModel& p : places) mm.push_back(p.at_mm);
-  return mm;
-}
-
 /// c_function() whose names in C begin with `name`.
 std::string c_function_called(const std::string& name, const DeployedModel& d, const std::string& made_by) {
   const std::string capitals = upper_case(name);
@@ -453,11 +144,11 @@ std::string c_function_called(const std::string& name, const DeployedModel& d, c
   const compensation::FormulaTable formula = compensation::formula_table(d.model, inputs);
   const drift_fail_safe& safe = safe_table.safe;
 
-  std::string comment = quoted(formula_text(d));
+  std::string comment = quoted_in_c(formula_text(d));
   for (std::size_t at = 0; (at = comment.find('\n', at)) != std::string::npos && at + 1 < comment.size(); at += 4)
     comment.replace(at, 1, "\n * ");
-  std::string text = fmt::format("/* Correction of {} [um], by {}. {}\n *\n * {} *\n", quoted(d.model.target),
-                                 quoted(d.model.kind), quoted(made_by), comment);
+  std::string text = fmt::format("/* Correction of {} [um], by {}. {}\n *\n * {} *\n", quoted_in_c(d.model.target),
+                                 quoted_in_c(d.model.kind), quoted_in_c(made_by), comment);
   const char* probing_file = !d.members.empty() ? " probe_feedback.c probe_members.c"
                              : d.residual       ? " probe_feedback.c"
                                                 : "";
@@ -549,7 +240,7 @@ std::string c_over_travel(std::span<const PlacedModel> places, const std::string
   const PlacedReadings readings = readings_of(places);
   std::string text =
       fmt::format("/* One correction over the travel of {}, straight between its places and held beyond them. {}\n",
-                  quoted(of), quoted(made_by));
+                  quoted_in_c(of), quoted_in_c(made_by));
   text +=
       " * Compile it with drift_correction.c, axis_travel.c and axis_offset.c, which lie beside it. */\n"
       "#include \"axis_travel.h\"\n\n";
@@ -579,111 +270,6 @@ std::string c_over_travel(std::span<const PlacedModel> places, const std::string
       name, fmt::join(at, ", "), fmt::join(states, ""), places.size(), fmt::join(arguments, ""), fmt::join(steps, ""),
       fmt::join(trusts, ""));
   return text;
-}
-
-std::string linuxcnc_over_travel(std::span<const PlacedModel> places, const std::string& of, const std::string& name,
-                                 const std::string& c_file, const std::string& made_by) {
-  if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
-  const std::string own = target_name(of);
-  const PlacedReadings readings = readings_of(places, kLongestPin);
-  std::vector<std::string> targets;
-  FailSafe safe = places.front().model.safe;
-  for (const PlacedModel& p : places) {
-    targets.push_back(fmt::format("{} at {:g} mm", p.model.model.target, p.at_mm));
-    safe.lowest_um = std::min(safe.lowest_um, p.model.safe.lowest_um);
-    safe.highest_um = std::max(safe.highest_um, p.model.safe.highest_um);
-    safe.most_rate_um_s = std::max(safe.most_rate_um_s, p.model.safe.most_rate_um_s);
-  }
-  safe.guards = readings.guards;
-  ComponentParts c = component_of(safe, readings.names, [&](std::size_t r) {
-    std::vector<std::string> doubts;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      for (std::size_t g = 0; g < readings.of_place[k].size(); ++g) {
-        if (readings.of_place[k][g] == r) doubts.push_back(fmt::format("model.place_{}.inputs[{}].is_doubted", k, g));
-      }
-    }
-    return fmt::format("{}", fmt::join(doubts, " || "));
-  });
-  const std::size_t n = places.size();
-  c.target = fmt::format("{}", fmt::join(targets, ", "));
-  c.kind = "one formula a place";
-  c.state = own + "_state";
-  c.files =
-      "drift_correction.c, axis_offset.c and\naxis_travel.c the code. They, with drift_correction.h, axis_offset.h and "
-      "axis_travel.h,";
-  c.nets =
-      "  net thermal-position joint.n.pos-cmd => thermal.position\n\n"
-      "(The joint n of that axis. Its correction is straight between the places, and held beyond them. Slew limit and "
-      "largest "
-      "offset are of\neach place.)\n";
-  c.pins = fmt::format(
-               "pin in float position \"of the axis, in units of the machine, from the zero of the positions ({} mm)\";\n",
-               fmt::join(positions_mm(places), ", ")) +
-           c.pins;
-  c.step = fmt::format("    {}_row(&model, {}waited_s);\n", own, c.values);
-  c.axis_state = "axis_travel_state";
-  c.axis_include = "include \"axis_travel.c\";\n";
-  c.watch = fmt::format("axis_travel_watch(&settings, &axis, {}, heartbeat, fperiod)", n);
-  c.apply = fmt::format(
-      "  correction_um = {0}_correction_um(&model, 1e-3 * machine_unit_um * position);\n"
-      "  axis_travel_step(&settings, &axis, {0}_at_mm, {1}, machine_is_on, enable, model.corrections_um,\n"
-      "                   1e-3 * machine_unit_um * position, fperiod);\n",
-      own, n);
-  c.trust = "model.trust";
-  return component_text(c, safe, name, c_file, made_by);
-}
-
-std::string linuxcnc_component(const DeployedModel& d, const std::string& name, const std::string& c_file,
-                               const std::string& made_by) {
-  if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
-  const std::string target = target_name(d.model.target);
-  ComponentParts c = component_of(d.safe, reading_names(d.safe.guards, kLongestPin),
-                                  [](std::size_t k) { return fmt::format("model.inputs[{}].is_doubted", k); });
-  c.target = d.model.target;
-  c.kind = d.model.kind;
-  c.state = target + "_state";
-  c.step = fmt::format("    correction_um = {}_correction_um(&model, {}waited_s);\n", target, c.values);
-  c.files = "drift_correction.c the code. Both, with\ndrift_correction.h, axis_offset.h and axis_offset.c,";
-  if (d.residual) {
-    c.files =
-        "drift_correction.c and\nprobe_feedback.c the code. They, with drift_correction.h, probe_feedback.h, axis_offset.h "
-        "and "
-        "axis_offset.c,";
-    const bool is_blend = !d.members.empty();
-    const ProbeCalls calls = probe_calls(d, is_blend ? "processes" : "process", "probing", "prediction_um");
-    const std::string state_type = is_blend ? target + "_probing_state" : "probe_state";
-    const std::string row = fmt::format(kProbeRow, calls.prefix, calls.arguments, calls.prediction);
-    c.probe_include = "include \"probe_feedback.c\";\n";
-    if (is_blend) {
-      c.files =
-          "drift_correction.c,\nprobe_feedback.c and probe_members.c the code. They, with drift_correction.h, "
-          "probe_feedback.h, probe_members.h,\naxis_offset.h and axis_offset.c,";
-      c.probe_include += "include \"probe_members.c\";\n";
-    }
-    c.probe_pins = kProbePins;
-    c.probe_parameters = fmt::format(
-        "param rw float probe_noise_um = {} \"of a probing, 1 sigma, um; above 0\";\n"
-        "param rw float probe_lag_s = {} \"from the touch until probe-strobe turns on, s; 0 or more\";\n",
-        c_number(d.probe.noise_um), c_number(d.probe.lag_s));
-    c.probe_variables = fmt::format(
-        "variable {} probing;\nvariable double prediction_um;\nvariable double probe_waited_s;\n"
-        "variable int strobe_was_on;\n",
-        state_type);
-    c.begin = fmt::format("  static const {} unprobed;\n  const probe_process process{} = {};\n", state_type,
-                          is_blend ? "es[]" : "", processes_text(d, "probe_noise_um", "probe_lag_s"));
-    c.step = fmt::format("    prediction_um = {}_correction_um(&model, {}waited_s);\n", target, c.values);
-    if (is_blend)
-      c.step += fmt::format("    {}_predictions_um(&model, prediction_um, waited_s, probing.predictions_um);\n", target);
-    c.step += row;
-    c.probe = fmt::format(kProbeCycle, fmt::arg("row", row), fmt::arg("prefix", calls.prefix),
-                          fmt::arg("arguments", calls.arguments), fmt::arg("corrected", calls.corrected),
-                          fmt::arg("lowest", c_number(d.safe.lowest_um)), fmt::arg("highest", c_number(d.safe.highest_um)));
-    c.outputs = fmt::format(kProbeOutputs, calls.prefix, calls.arguments, calls.said, calls.refused);
-    c.is_wrong = fmt::format("axis.is_wrong || !probe_is_valid({})", is_blend ? "&processes[0]" : "&process");
-    c.wait = "  probe_waited_s += fperiod;\n";
-    c.forget = "    probing = unprobed;\n    probe_waited_s = 0.0;\n";
-  }
-  return component_text(c, d.safe, name, c_file, made_by);
 }
 
 }  // namespace driftwright::output

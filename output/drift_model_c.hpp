@@ -1,6 +1,6 @@
 #pragma once
-// A formula with its fail-safe as code for a control: tables for the same C code that the program itself judges by, and a
-// component for LinuxCNC. Both need the files of compensation/control beside them, unchanged (control_files()).
+// A formula with its fail-safe as C: tables for the same code that the program itself judges by. The files of
+// compensation/control must lie beside it, unchanged (control_files()); linuxcnc_component makes a component of it.
 
 #include <span>
 #include <string>
@@ -25,19 +25,5 @@ namespace driftwright::output {
 /// @throws InputError  for more places
 [[nodiscard]] std::string c_over_travel(std::span<const PlacedModel> places, const std::string& name,
                                         const std::string& made_by);
-
-/// The component of such a correction: it has a pin for the position of the axis, and no probe. @param of  as of c_over_travel()
-[[nodiscard]] std::string linuxcnc_over_travel(std::span<const PlacedModel> places, const std::string& of,
-                                               const std::string& name, const std::string& c_file,
-                                               const std::string& made_by);
-
-/// A component for LinuxCNC's halcompile. It includes the file of c_function() and sends its correction to an axis as an
-/// external offset: inputs are readings, enable and heartbeat; outputs are counts and scale. A model whose residual is known
-/// has pins for a probe, too. Its file must not be called `name`.c, which halcompile would overwrite.
-/// @param name    name of the component, and of its file without ".comp"; a valid C name
-/// @param c_file  name of the file of c_function(), in the same folder
-/// @throws std::logic_error  when `name`.c is `c_file`
-[[nodiscard]] std::string linuxcnc_component(const DeployedModel& deployed, const std::string& name,
-                                             const std::string& c_file, const std::string& made_by);
 
 }  // namespace driftwright::output

@@ -96,6 +96,7 @@ Eigen::VectorXd remaining_of(const scenarios::MachineModel& machine, const Cyclo
 struct NumbersBand {
   std::map<std::string, BandLimits> limits;  ///< by channel, in its unit; not of one that they do not change
   std::vector<Knob> numbers;                 ///< that are uncertain; none: there are no limits
+  bool are_fitted = false;                   ///< some of them together (`known_together`)
   std::size_t n_draws = 0, n_left_out = 0;
 };
 
@@ -103,8 +104,9 @@ std::string words_of_band(const NumbersBand& drawn, std::size_t n_learned) {
   std::string words, without = "nor what the model itself lacks";
   if (!drawn.numbers.empty())
     words = fmt::format(
-        "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} (`known_to`, one sigma). ",
-        drawn.numbers.size(), drawn.numbers.size() == 1 ? "" : "s", known_words(drawn.numbers));
+        "The bands hold 95 % of the machines that the scenario allows: {} number{} known to {} ({}, one sigma). ",
+        drawn.numbers.size(), drawn.numbers.size() == 1 ? "" : "s", known_words(drawn.numbers),
+        drawn.are_fitted ? "`known_together` and `known_to`" : "`known_to`");
   if (n_learned > 0) {
     words += fmt::format(
         "The bands of {} channel{} contain what the effects `learned` still miss (`misses`, one sigma), more beyond the "
@@ -122,12 +124,54 @@ RecordBand no_band(const std::string& why) {
   return {.limits = {}, .words = fmt::format("There are no bands: {}", why.substr(0, why.find('\n')))};
 }
 
+/// The numbers that are uncertain and how: independent scores times the transposed factor are their deviations. A number of
+/// `known_together` deviates as its fit says, others with a `known_to` each by itself.
+/// @throws SolveError  if `known_together` names a number that the machine does not have
+struct UncertainNumbers {
+  std::vector<Knob> knobs;
+  Eigen::MatrixXd factor;
+};
+UncertainNumbers uncertain_numbers(const Twin& twin, const scenarios::KnownTogether& together) {
+  std::vector<Knob> all = diagnosis::scatter(twin, diagnosis::Unsaid::kUsual);
+  const std::vector<std::string> names = diagnosis::number_names(twin, all);
+  UncertainNumbers uncertain;
+  for (const std::string& name : together.numbers) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+      throw SolveError(
+          fmt::format("`known_together` names '{}', which the scenario does not have or has as `fixed`. Calibrate it "
+                      "again, or delete `known_together`.",
+                      name));
+    uncertain.knobs.push_back(std::move(all[static_cast<std::size_t>(at - names.begin())]));
+  }
+  const auto n_together = together.factor.rows();
+  std::vector<Knob> said = diagnosis::scatter(twin, diagnosis::Unsaid::kExact);
+  const std::vector<std::string> said_names = diagnosis::number_names(twin, said);
+  for (std::size_t k = 0; k < said.size(); ++k) {
+    const bool is_fitted =
+        std::find(together.numbers.begin(), together.numbers.end(), said_names[k]) != together.numbers.end();
+    if (!is_fitted) uncertain.knobs.push_back(std::move(said[k]));
+  }
+  const auto n = static_cast<Eigen::Index>(uncertain.knobs.size());
+  uncertain.factor.setZero(n, n);
+  uncertain.factor.topLeftCorner(n_together, n_together) = together.factor;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    double& sd = uncertain.knobs[static_cast<std::size_t>(k)].prior_sd;
+    if (k < n_together)
+      sd = together.factor.row(k).norm();
+    else
+      uncertain.factor(k, k) = sd;
+  }
+  return uncertain;
+}
+
 /// Readings of one machine at the rows, n_outputs x n_rows.
 using Readings = Eigen::MatrixXd;
 
 /// Differences of the drawn machines' readings from those of the machine as written; none for one without a solution.
+/// @param deviations  of the numbers, a row for each machine
 std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs,
-                                                       const Eigen::MatrixXd& scores, const diagnosis::MeasuredRun& run,
+                                                       const Eigen::MatrixXd& deviations, const diagnosis::MeasuredRun& run,
                                                        const Listener& listener) {
   Twin::Workspace own(twin);
   const std::shared_ptr<const solver::KeptStates> kept = twin.kept_run(twin.as_written(), run, own, false);
@@ -135,14 +179,13 @@ std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const s
     return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
   };
   const Readings as_written = readings(twin.as_written(), own);
-  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(scores.rows()));
+  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(deviations.rows()));
   for_each_index(
       drawn.size(), [&] { return Twin::Workspace(twin); },
       [&](std::size_t d, Twin::Workspace& workspace) {
         diagnosis::TwinState state = twin.as_written();
         for (std::size_t k = 0; k < knobs.size(); ++k)
-          knobs[k].set(
-              state, knobs[k].value(knobs[k].prior_sd * scores(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
+          knobs[k].set(state, knobs[k].value(deviations(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
         try {
           drawn[d] = readings(state, workspace) - as_written;
         } catch (const SolveError&) {
@@ -189,7 +232,9 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const Twin twin(augmented, made ? *made : *run.model.reduced(), tolerances);
-  NumbersBand band{.limits = {}, .numbers = diagnosis::scatter(twin, diagnosis::Unsaid::kExact)};
+  UncertainNumbers uncertain = uncertain_numbers(twin, machine.known_together);
+  NumbersBand band{
+      .limits = {}, .numbers = std::move(uncertain.knobs), .are_fitted = !machine.known_together.numbers.empty()};
   const std::vector<Knob>& knobs = band.numbers;
   if (knobs.empty()) return band;
   listener.begin(fmt::format("computing the band of {} numbers", knobs.size()));
@@ -198,7 +243,7 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
   const std::vector<std::optional<Readings>> drawn =
-      drawn_differences(twin, knobs, scores, banded_run_of(run, rows), listener);
+      drawn_differences(twin, knobs, scores * uncertain.factor.transpose(), banded_run_of(run, rows), listener);
   std::vector<Eigen::Index> kept;
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));

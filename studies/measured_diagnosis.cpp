@@ -119,6 +119,12 @@ std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagno
   return head;
 }
 
+/// What the written file says of its numbers together: nothing after a diagnosis, whose causes have numbers of their own.
+std::optional<scenarios::KnownTogether> known_after(const Diagnosis& d) {
+  if (!d.written.keeps_numbers) return std::nullopt;
+  return d.known_together;
+}
+
 /// Predicts all rows with the effects of the written scenario.
 void predict_as_written(const MeasuredTwin& m, const WrittenScenario& written, Diagnosis& d) {
   if (!written.is_readable()) return;
@@ -145,7 +151,8 @@ MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& reques
   const Eigen::VectorXd x = diagnosis::written_x(result.found, request.causes_only);
   std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only, x);  // the fit's order
   for (StatedChange& cause : stated_causes(result.found, x)) changes.push_back(std::move(cause));
-  result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file);
+  result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file,
+                                    known_after(result.found));
   predict_as_written(m, result.written, result.found);
   return result;
 }
@@ -155,7 +162,8 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
       diagnosis::calibrate(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener), {}};
   listener.begin("writing");
   const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
-  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file);
+  result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file,
+                                    known_after(result.found));
   predict_as_written(m, result.written, result.found);
   return result;
 }

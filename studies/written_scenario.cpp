@@ -13,10 +13,11 @@
 namespace driftwright::studies {
 
 WrittenScenario written_scenario(const MeasuredTwin& m, const std::vector<diagnosis::StatedChange>& changes,
-                                 std::vector<std::string> head, const std::filesystem::path& file) {
+                                 std::vector<std::string> head, const std::filesystem::path& file,
+                                 const std::optional<scenarios::KnownTogether>& known_together) {
   const std::filesystem::path folder = file.parent_path();
   WrittenScenario written{
-      diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, std::move(head), folder), {}, {}};
+      diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, std::move(head), folder, known_together), {}, {}};
   const std::string name = file.filename().string();
   try {
     std::vector<effects::FormerWord> former;  // in the user's text; they are kept

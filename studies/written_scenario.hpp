@@ -21,9 +21,11 @@ struct WrittenScenario {
 /// @param head  comment lines for the top of the scenario
 /// @param file  path that the text will be written to, which its paths become relative to, and its name in messages and in
 ///              the difference; without a folder paths become absolute, for a text that is not written
+/// @param known_together  as in diagnosis::extended_scenario()
 /// @throws InputError  if the user's file was removed or changed in the meantime
 [[nodiscard]] WrittenScenario written_scenario(const MeasuredTwin& m, const std::vector<diagnosis::StatedChange>& changes,
-                                               std::vector<std::string> head, const std::filesystem::path& file);
+                                               std::vector<std::string> head, const std::filesystem::path& file,
+                                               const std::optional<scenarios::KnownTogether>& known_together = {});
 
 /// A file in the comments of such a text, which may be sent to somebody: its name without folders.
 [[nodiscard]] std::string name_in_comments(const std::string& path);

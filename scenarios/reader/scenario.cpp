@@ -136,6 +136,7 @@ MachineModel read_machine(const ConfigMap& in) {
                           "tilts", "start"}) {
     m.written += fmt::format("{}: {}\n", key, in.written(key));
   }
+  if (const auto known = in.optional_map("known_together")) m.known_together = read_known_together(*known);
   find_screws(m);
   read_moving_bodies(in, m);
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
@@ -449,7 +450,7 @@ bool says_known_to(const MachineModel& model) {
   const auto says = [](const auto& entry) {
     return std::any_of(entry.known_to.begin(), entry.known_to.end(), [](const auto& said) { return said.second > 0.0; });
   };
-  return std::any_of(model.effects.begin(), model.effects.end(), says) ||
+  return !model.known_together.numbers.empty() || std::any_of(model.effects.begin(), model.effects.end(), says) ||
          std::any_of(model.materials.begin(), model.materials.end(), says);
 }
 

@@ -16,6 +16,7 @@
 #include "base/machine_limits.hpp"
 #include "compensation/sensors/grey_relational.hpp"
 #include "effects/effect.hpp"
+#include "scenarios/reader/known_together.hpp"
 #include "scenarios/reader/programme.hpp"
 #include "scenarios/reader/read_axes.hpp"
 #include "scenarios/reader/read_axis_loop.hpp"
@@ -62,12 +63,13 @@ struct MachineModel {
   Start start = Start::kReference;
   double start_K = 293.15;  ///< for Start::kUniform
   TimeSeries ambient;       ///< minus reference_K [K]
+  KnownTogether known_together;  ///< what a fit left open of the numbers above
   Where where;
   std::string
       written;  ///< the keys that determine mesh and matrices, as in the scenario; numbers of effects are not included
 };
 
-/// True if the scenario says with `known_to` how well some number is known. A number that is `fixed` says nothing.
+/// True if the scenario says with `known_to` or `known_together` how well some number is known. A number that is `fixed` says nothing.
 [[nodiscard]] bool says_known_to(const MachineModel& model);
 
 /// The model that a cyclogram is simulated on.

@@ -114,6 +114,8 @@ schema::Map machine_scenario_schema() {
            schema::optional("effects", list(one_of(effects::effect_schemas())),
                             "what heats, cools, connects and measures (below); every joint needs a `contact`"),
            ambient_key(),
+           schema::optional("known_together", schema::map(known_together_schema()),
+                            "how well numbers are known together; `calibrate` writes it"),
            schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
            schema::optional("displacements", schema::maps(displacement_schema()), "errors of the tool against the table"),
            schema::optional("tilts", schema::maps(tilt_schema()), "changes of angle"),

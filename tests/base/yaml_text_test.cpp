@@ -30,6 +30,15 @@ TEST(YamlText, SeveralNumbersOfALineAreReplacedInPlace) {
   EXPECT_EQ(y.text({"head"}), "# head\nm: {a: 100 W, b: 3 K}   # note   # why\n");
 }
 
+TEST(YamlText, AKeyAtTheTopIsRemovedWithItsLinesAndWhatIsBesideItStays) {
+  YamlText y = yaml("a: 1\nb:\n  c: [1,\n      2]\n# of d\nd: 3\n");
+  EXPECT_FALSE(y.remove("e"));
+  EXPECT_TRUE(y.remove("b"));
+  EXPECT_EQ(y.text({}), "a: 1\n# of d\nd: 3\n");
+  YamlText flow = yaml("{a: 1, b: 2}\n");
+  EXPECT_FALSE(flow.remove("b"));
+}
+
 TEST(YamlText, AnAnchoredValueThatStandsElsewhereTooIsLeftAlone) {
   YamlText y = yaml("a: &x 5 W\nb: *x\nlist:\n  - &e {c: 1}\n  - *e\n");
   EXPECT_FALSE(y.replace(*y.root().find("a"), "6 W"));

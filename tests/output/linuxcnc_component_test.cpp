@@ -12,6 +12,7 @@
 #include "base/errors.hpp"
 #include "compensation/control/control_files.hpp"
 #include "output/drift_model_c.hpp"
+#include "output/linuxcnc_component.hpp"
 #include "tests/shared/deployed_model.hpp"
 #include "tests/shared/temporary_file.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "compensation/control/control_files.hpp"
 #include "output/drift_model_c.hpp"
+#include "output/linuxcnc_component.hpp"
 #include "tests/shared/headless_linuxcnc.hpp"
 
 namespace driftwright::output::travel_on_linuxcnc_test {

@@ -11,6 +11,7 @@
 
 #include "studies/prediction.hpp"
 #include "tests/shared/edited_text.hpp"
+#include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::studies::known_band_test {
@@ -74,6 +75,36 @@ TEST(KnownBand, IsThereOnlyWhereTheScenarioSaysWhatIsKnown) {
   const scenarios::Scenario scenario = body("", ", known_to: 10 %", ", known_to: 30 %");
   EXPECT_FALSE(predict_drift(scenario, scenario.cyclogram("warm"), {}, {}, "test").band) << "nobody asked";
   EXPECT_THAT(predicted(scenario).band->words, HasSubstr("2 numbers known to 10 to 30 %"));
+}
+
+/// The body with how well its power and its conductance are known together.
+scenarios::Scenario fitted_body(const std::string& known_together) {
+  return scenarios::read_scenario(
+      write_file("fitted.yaml", read_text(body("", "", "").path) + "known_together: " + known_together + "\n"));
+}
+
+// ln power = 0.05 a, ln conductance = 0.05 a + 0.004 b with independent a, b: their quotient is known better than either.
+TEST(KnownBand, OfNumbersThatAreKnownTogetherIsThatOfLinearTheory) {
+  const Prediction p = predicted(
+      fitted_body("{numbers: [heat_source body power, \"link body,ambient conductance\"], factor: [0.05, 0.05, 0.004]}"));
+  ASSERT_TRUE(p.band);
+  const double t_s = p.record.time_s[120], steady_K = kPower_W / kConductance_W_K;
+  const double x = kConductance_W_K * t_s / kCapacity_J_K, decay = std::exp(-x), rise_K = steady_K * (1.0 - decay);
+  const double by_conductance = -rise_K + steady_K * x * decay;
+  const double sd_K = std::hypot(0.05 * (rise_K + by_conductance), 0.004 * by_conductance);
+  EXPECT_NEAR(0.5 * (high(p, "t_body", 120) - low(p, "t_body", 120)) / (1.96 * sd_K), 1.0, 0.01);  // each by itself: 13
+  EXPECT_THAT(p.band->words, HasSubstr("2 numbers known to 5 to 5.02 % (`known_together` and `known_to`"));
+}
+
+TEST(KnownBand, IsRefusedWhereWhatIsKnownTogetherDoesNotFitTheScenario) {
+  EXPECT_REFUSED(fitted_body("{numbers: [heat_source body power], factor: [0.1, 0.2]}"), "fitted.yaml", "factor",
+                 "1 numbers need 1 entries");
+  EXPECT_REFUSED(fitted_body("{numbers: [a, a], factor: [0.1, 0, 0.2]}"), "'a' is listed twice");
+  EXPECT_REFUSED(fitted_body("{numbers: [a, b], factor: [0.1, 0, 0]}"), "row 2", "'b' would be known exactly");
+  const Prediction p = predicted(fitted_body("{numbers: [heat_source shaft power], factor: [0.1]}"));
+  ASSERT_TRUE(p.band);
+  EXPECT_TRUE(p.band->limits.channels.empty());
+  EXPECT_THAT(p.band->words, HasSubstr("names 'heat_source shaft power', which the scenario does not have"));
 }
 
 /// The body with a part of its drift learned, which still misses 3 um (one sigma).

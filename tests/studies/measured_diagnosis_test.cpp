@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/errors.hpp"
+#include "studies/prediction.hpp"
 #include "tests/shared/lumped_records.hpp"
 #include "tests/shared/refused.hpp"
 
@@ -48,6 +50,57 @@ TEST(Calibrate, PredictsByTheScenarioThatItWritesAlsoInWordsOfAnEarlierRelease) 
     const diagnosis::Prediction by_file = read_of(m, again.machine->effects);
     ASSERT_EQ(by_file.size(), found.extended.size());
     for (std::size_t r = 0; r < by_file.size(); ++r) EXPECT_EQ(by_file[r], found.extended[r]);
+  }
+}
+
+int n_of(const std::string& text, const std::string& what) {
+  int n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+/// Half of the band at the end of the nose's course.
+double half_band_um(const scenarios::Scenario& s) {
+  const Prediction p = predict_drift(s, s.cyclogram("monday"), {.with_band = true}, {}, "test");
+  return p.band ? 0.5 * (p.band->high("nose")->values.back() - p.band->low("nose")->values.back()) : 0.0;
+}
+
+TEST(Calibrate, WritesWhatItsFitLeavesOpenOfAllNumbersTogether) {
+  const MeasuredTwin m = twin_of(diagnosis::kTwoNodes);
+  const auto [found, written] = calibrate(m, "calibrated.yaml", {});
+  ASSERT_TRUE(found.written.keeps_numbers) << found.written.why_nothing;
+  EXPECT_EQ(n_of(written.extended.text, "known_together:"), 1);
+  EXPECT_THAT(written.extended.text, Not(HasSubstr("written anew")));
+  scenarios::Scenario again = scenarios::read_scenario(write_file("calibrated.yaml", written.extended.text));
+  const scenarios::KnownTogether& known = again.machine->known_together;
+  const Eigen::MatrixXd covariance = known.factor * known.factor.transpose();
+  std::vector<Eigen::Index> own;
+  for (std::size_t i = 0; i < found.scatter.size(); ++i) {
+    if (found.scatter[i].effect != "ambient") own.push_back(static_cast<Eigen::Index>(i));
+  }
+  ASSERT_EQ(covariance.rows(), static_cast<Eigen::Index>(own.size()));
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    const double sd = std::sqrt(covariance(i, i));
+    for (Eigen::Index j = 0; j < covariance.rows(); ++j)
+      EXPECT_NEAR(covariance(i, j), found.search.fit.covariance(own[i], own[j]), 2e-3 * sd * std::sqrt(covariance(j, j)));
+  }
+  const double together_um = half_band_um(again);
+  again.machine->known_together.factor = covariance.diagonal().cwiseSqrt().asDiagonal().toDenseMatrix();
+  EXPECT_GT(together_um, 0.0);
+  EXPECT_LT(together_um, 0.3 * half_band_um(again));  // each number by itself
+}
+
+// The block is no prior, so the same records do not count twice; a second fit replaces it.
+TEST(Calibrate, TakesNoPriorFromWhatAnEarlierFitLeftOpen) {
+  const auto [found, written] = calibrate(twin_of(diagnosis::kTwoNodes), "calibrated.yaml", {});
+  const MeasuredTwin second = open_measured_twin(
+      scenarios::read_scenario(write_file("calibrated.yaml", written.extended.text)), "calibrate", records(), {});
+  const MeasuredDiagnosis twice = calibrate(second, "twice.yaml", {});
+  ASSERT_EQ(twice.found.scatter.size(), found.scatter.size());
+  for (std::size_t i = 0; i < found.scatter.size(); ++i)
+    EXPECT_EQ(twice.found.scatter[i].prior_sd, found.scatter[i].prior_sd);
+  if (twice.found.written.keeps_numbers) {
+    EXPECT_EQ(n_of(twice.written.extended.text, "known_together:"), 1);
   }
 }
 
