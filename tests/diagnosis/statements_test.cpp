@@ -54,13 +54,13 @@ cyclograms:
     rows: [[40 min, 15 m/min, 400 mm, 800 mm], [30 min, 0 m/min, 400 mm, 0 mm], [50 min, 10 m/min, 650 mm, 200 mm], [40 min, 6 m/min, 200 mm, 300 mm], [30 min, 0 m/min, 200 mm, 0 mm]]
 solver: {output_interval: 2 min}
 )";
-constexpr RecordNoise kAxisNoise{.row_s = 120.0, .noise_K = 0.05};
+constexpr RecordNoise kAxisNoise{.row_s = 120.0, .noise_K = 0.05, .noise_um = 1.0};
 
 /// A fitter of the scenario's numbers beside records, its noise known.
 struct Ground {
   std::unique_ptr<Fitter> fitter;
 
-  explicit Ground(const Beside& b) {
+  explicit Ground(const Beside& b, const RecordNoise& as = kNoise) {
     std::vector<Knob> numbers = scatter(*b.twin);
     for (Knob& k : ambient_scatter(b.runs)) numbers.push_back(std::move(k));
     fitter = std::make_unique<Fitter>(*b.twin, b.runs, numbers,
@@ -68,7 +68,7 @@ struct Ground {
     std::map<std::string, NoiseModel> noise;
     for (const MeasuredRun& run : b.runs) {
       for (const MeasuredChannel& c : run.channels)
-        noise[c.name] = {.white = c.unit == "K" ? kNoise.noise_K : 1e-6 * kNoise.noise_um};
+        noise[c.name] = {.white = c.unit == "K" ? as.noise_K : 1e-6 * as.noise_um};
     }
     fitter->set_noise(noise);
   }
@@ -268,7 +268,7 @@ TEST(Statements, WhatAllThermometersHaveInCommonIsOneStatement) {
 // Faults of a feed axis: a nut heats whatever section it is at, a scale's reference point moves nothing but its reading.
 struct AxisFault {
   const char *name, *was, *is;  ///< parts of the scenario's text
-  const char *says, *law;
+  const char *says, *law, *effect;
 };
 class FaultOfAnAxis : public testing::TestWithParam<AxisFault> {};
 
@@ -281,27 +281,32 @@ TEST_P(FaultOfAnAxis, IsStatedWithItsPlaceAndWhatItFollows) {
   const std::string name = fault.name;
   const Beside beside(write_file(name + "_plain.yaml", kAxis),
                       noisy_records(write_file(name + "_truth.yaml", truth), name + "_", kAxisNoise));
-  const Posterior p = Ground(beside).stated();
+  const Posterior p = Ground(beside, kAxisNoise).stated();
   EXPECT_EQ(first(p), fault.says);
   EXPECT_LT(p.nothing, 0.1);
   ASSERT_FALSE(p.stated.empty());
   EXPECT_GT(p.stated[0].probability, 0.5);
   EXPECT_THAT(words(p.stated[0].says), testing::HasSubstr(fault.law));
+  const auto names = named_by(p, candidates(*beside.twin, beside.runs, {}), *beside.twin, beside.runs, {});
+  EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const Candidate& c) {
+    return c.effect == fault.effect && c.where == p.stated[0].says.place[0];
+  })) << fault.effect;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Statements, FaultOfAnAxis,
-    ::testing::Values(AxisFault{"a_tight_nut", "torque: 1.2 N m", "torque: 2.4 N m", "heat nut own heat", "at position_x"},
+    ::testing::Values(AxisFault{"a_tight_nut", "torque: 1.2 N m", "torque: 2.4 N m", "heat nut own heat", "at position_x",
+                                "feed_axis"},
                       AxisFault{"a_warm_bearing", "ambient: [[",
                                 "  - {type: servo_loss, node: far, axis: x, power: 20 W, at_feed: 15 m/min}\nambient: [[",
-                                "heat far power of feed_x", "feed_x"},
+                                "heat far power of feed_x", "feed_x", "heat_source"},
                       AxisFault{"a_scale_fixed_at_its_end", "fixed_at: 400 mm", "fixed_at: 800 mm",
-                                "displacement by_scale temperature of glass", "glass"}),
+                                "displacement by_scale temperature of glass", "glass", "linear_scale"}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST(Statements, NothingIsStatedOfAnAxisThatIsAsTheScenarioSays) {
   const std::string path = write_file("axis_plain.yaml", kAxis);
-  EXPECT_GT(Ground(Beside(path, noisy_records(path, "axis_none_", kAxisNoise))).stated().nothing, 0.5);
+  EXPECT_GT(Ground(Beside(path, noisy_records(path, "axis_none_", kAxisNoise)), kAxisNoise).stated().nothing, 0.5);
 }
 
 // The course of any shape at the place of a window: more than half of its 25 W in the window, less than half elsewhere.
