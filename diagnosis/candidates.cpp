@@ -163,7 +163,8 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     const effects::Effect& e = twin.as_written()[i];
     for (std::size_t p = 0; p < e.values.size(); ++p) {
       const effects::Parameter& parameter = e.kind->parameters[p];
-      if (parameter.doubted == effects::Doubted::kNo || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
+      if (parameter.doubted == effects::Doubted::kNo || std::isnan(e.values[p])) continue;
+      if (e.values[p] == 0.0 && parameter.doubted == effects::Doubted::kFactor) continue;
       candidate(list, parameter.finding, effects::where_of(e)).variants.push_back(other_value(twin, i, p));
     }
   }

@@ -1,8 +1,10 @@
 #include "diagnosis/linear_operator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/dense.hpp"
+#include "effects/feed_axis.hpp"
 #include "effects/reading_chain.hpp"
 
 namespace driftwright::diagnosis {
@@ -50,6 +52,8 @@ LinearOperator::LinearOperator(const Twin& twin, const MeasuredRun& run, const T
   predicted_ = observe_.transpose() * z_;
   for (Eigen::Index c = 0; c < predicted_.rows(); ++c)
     predicted_.row(c) += twin_.outputs().ambient[run_.channels[static_cast<std::size_t>(c)].output] * ambient_K_;
+  if (std::any_of(state.begin(), state.end(), effects::follows_positions))
+    read_at_positions(state, twin.outputs_of(state, run, all));
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const double middle_s = 0.5 * (time_s_[static_cast<std::size_t>(i)] + time_s_[static_cast<std::size_t>(i + 1)]);
     effects::Inputs u{
@@ -84,6 +88,43 @@ LinearOperator::LinearOperator(const Twin& twin, const MeasuredRun& run, const T
       modes_.push_back(std::move(m));
     }
     of_interval_.push_back(modes_.size() - 1);
+  }
+}
+
+void LinearOperator::read_at_positions(const TwinState& state, const Eigen::MatrixXd& outputs) {
+  constexpr double kStep_K = 1e-3;  // the readings are linear in the temperatures, but for a screw that loses its stretch
+  TwinState alone;                  // without other effects on readings, as the rest of the operator
+  std::vector<effects::Body> bodies;
+  for (const effects::Effect& e : state) {
+    if (effects::changes_readings(e) && !effects::follows_positions(e)) continue;
+    alone.push_back(e);
+    if (!effects::follows_positions(e)) continue;
+    for (const effects::Body& body : effects::bodies_read(e)) {
+      if (!(body == effects::ambient_node()) && std::find(bodies.begin(), bodies.end(), body) == bodies.end())
+        bodies.push_back(body);
+    }
+  }
+  const Eigen::MatrixXd read = twin_.read(alone, run_, outputs);
+  const auto& names = twin_.outputs().name;
+  const auto n_channels = static_cast<Eigen::Index>(run_.channels.size());
+  for (Eigen::Index c = 0; c < n_channels; ++c)
+    predicted_.row(c) = read.row(run_.channels[static_cast<std::size_t>(c)].output);
+  for (const effects::Body& body : bodies) {
+    const auto found = std::find(names.begin(), names.end(), effects::mean_output(body.name));
+    if (found == names.end()) continue;  // a body without heat capacity has no mean temperature
+    const auto o = static_cast<Eigen::Index>(found - names.begin());
+    Eigen::MatrixXd warmer = outputs;
+    warmer.row(o).array() += kStep_K;
+    const Eigen::MatrixXd slope = (twin_.read(alone, run_, std::move(warmer)) - read) / kStep_K;
+    const Eigen::Index seen = observe_.cols();
+    for (Eigen::Index c = 0; c < n_channels; ++c) {
+      const Eigen::Index output = run_.channels[static_cast<std::size_t>(c)].output;
+      if (output != o && slope.row(output).cwiseAbs().maxCoeff() > 0.0) at_position_.push_back({c, seen, slope.row(output)});
+    }
+    if (at_position_.empty() || at_position_.back().seen != seen) continue;
+    observe_.conservativeResize(Eigen::NoChange, seen + 1);
+    observe_.col(seen).setZero();
+    observe_.col(seen).head(weights_.rows()) = weights_.col(o);
   }
 }
 
@@ -263,11 +304,13 @@ void LinearOperator::run_modes(const Load& load, const Eigen::RowVectorXd& cours
 }
 
 Eigen::MatrixXd LinearOperator::response(const Load& load, const Eigen::RowVectorXd& course, double before) const {
-  Eigen::MatrixXd readings(static_cast<Eigen::Index>(run_.channels.size()), n_rows());
+  Eigen::MatrixXd seen(observe_.cols(), n_rows());
   run_modes(load, course, before, [&](const Modes& m, const Eigen::MatrixXd& a, Eigen::Index first, Eigen::Index n) {
-    readings.middleCols(first, n).noalias() = m.observe.transpose() * a.middleCols(first, n);
+    seen.middleCols(first, n).noalias() = m.observe.transpose() * a.middleCols(first, n);
   });
-  return readings;
+  if (at_position_.empty()) return seen;
+  for (const AtPosition& at : at_position_) seen.row(at.channel) += at.per_K.cwiseProduct(seen.row(at.seen));
+  return seen.topRows(static_cast<Eigen::Index>(run_.channels.size()));
 }
 
 }  // namespace driftwright::diagnosis

@@ -42,8 +42,8 @@ class LinearOperator {
   /// body's own
   [[nodiscard]] Load capacity(const effects::Body& body, double lag_s) const;
 
-  /// The effect of a load on the channels. @param course  over the intervals. @param before  the course before the run,
-  /// for a machine that starts at rest; 0: nothing
+  /// The effect of a load on the channels, also where a channel reads bodies at the recorded position of an axis. @param
+  /// course  over the intervals. @param before  the course before the run, for a machine that starts at rest; 0: nothing
   /// @return n_channels x n_rows
   [[nodiscard]] Eigen::MatrixXd response(const Load& load, const Eigen::RowVectorXd& course, double before = 0.0) const;
   [[nodiscard]] Eigen::Index n_rows() const { return static_cast<Eigen::Index>(time_s_.size()); }
@@ -69,6 +69,13 @@ class LinearOperator {
   /// row, number of rows.
   template <class Of>
   void run_modes(const Load& load, const Eigen::RowVectorXd& course, double before, Of of) const;
+  /// What a channel reads of a body's mean temperature by an effect that follows positions (effects/feed_axis.hpp).
+  struct AtPosition {
+    Eigen::Index channel = 0, seen = 0;  ///< row of the channel, and of the body among what observe_ sees
+    Eigen::RowVectorXd per_K;            ///< at the rows: slope of the reading
+  };
+  /// Adds these channels and bodies to observe_, and their part to predicted_. @param outputs  at the run's grid
+  void read_at_positions(const TwinState& state, const Eigen::MatrixXd& outputs);
   [[nodiscard]] Load in_modes(const Eigen::MatrixXd& load) const;
   /// Courses of all sources [W], n_sources x n_rows - 1, as one load.
   [[nodiscard]] Load of_sources(const Eigen::MatrixXd& courses_W) const;
@@ -79,7 +86,8 @@ class LinearOperator {
   const MeasuredRun& run_;
   std::vector<double> time_s_;
   std::vector<Drive> drive_;
-  Eigen::MatrixXd z_, weights_, observe_, predicted_, coefficients_, middle_;
+  Eigen::MatrixXd z_, weights_, observe_, predicted_, coefficients_, middle_;  // observe_: of channels, then of bodies
+  std::vector<AtPosition> at_position_;
   Eigen::RowVectorXd ambient_K_, ambient_middle_K_;
   Eigen::MatrixXd heats_, standing_;  // of each source, n_sources x n_rows - 1
   std::vector<Modes> modes_;

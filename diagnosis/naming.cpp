@@ -50,6 +50,8 @@ const std::map<std::string, std::vector<StatedQuantity>>& quantities() {
                                                                          {"displacement_path", {kDisplacement}},
                                                                          {"scale_expansion", {kDisplacement}},
                                                                          {"probe_lag", {kDisplacement}},
+                                                                         {"linear_scale", {kDisplacement}},
+                                                                         {"feed_axis", {kHeat}},
                                                                          {"ambient", {kAmbient}},
                                                                          {"stratification", {kAmbient}},
                                                                          {"speed_override", {kSpeed, kHeat}},

@@ -57,6 +57,7 @@ class StatementBuilder {
   void by_a_third(const Statement& of_both, const Body& a, const Body& b, double loss_a_W_K, double loss_b_W_K);
   void conductivities();
   void capacities();
+  void numbers_at_positions();  ///< statement_numbers.cpp
 
   // of its instruments (statement_instruments.cpp)
   Row predicted(std::size_t r, const std::string& name) const;

@@ -14,6 +14,16 @@ constexpr double kBetween_s[] = {0.0, 600.0, 2400.0};
 constexpr double kGuard_s = 600.0;  // time constant of enclosed air, if it follows slowly
 constexpr double kBodyLags_s[] = {0.0, 300.0, 1200.0, 3600.0, 14400.0};
 
+/// Whether one effect of the scenario makes both nodes, as the sections of a screw: they exchange heat where it says so.
+bool are_of_one_effect(const std::vector<effects::HeatBalance>& alone, const effects::Body& a, const effects::Body& b) {
+  return std::any_of(alone.begin(), alone.end(), [&](const effects::HeatBalance& of) {
+    const auto has = [&](const effects::Body& body) {
+      return std::any_of(of.nodes.begin(), of.nodes.end(), [&](const auto& n) { return effects::node(n.name) == body; });
+    };
+    return has(a) && has(b);
+  });
+}
+
 /// A law, with the surface or joint that it belongs to.
 std::string law_at(const Statement& s, const std::string& law) {
   return s.at.empty() ? law : law.empty() ? "at " + s.at : law + ", at " + s.at;
@@ -135,16 +145,23 @@ void StatementBuilder::exchanges() {
     }
     return sum;
   };
+  std::vector<effects::HeatBalance> alone;
+  for (const effects::Effect& e : scene_.own) {
+    if (!e.kind->contribute) continue;
+    alone.push_back(effects::heat_balance({e}));
+    if (alone.back().nodes.size() < 2) alone.pop_back();
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j <= bodies.size(); ++j) {
       const Body other = j < bodies.size() ? bodies[j] : effects::ambient_node();
       const bool solid = bodies[i].kind == effects::BodyKind::kRegion && other.kind == effects::BodyKind::kRegion;
       if (solid) continue;                                                                             // covered by joints
       if (other == effects::ambient_node() && bodies[i].kind == effects::BodyKind::kRegion) continue;  // covered by surfaces
+      const double is = own(bodies[i], other.name);
+      if (is == 0.0 && are_of_one_effect(alone, bodies[i], other)) continue;
       auto loads = std::make_shared<Loads>();
       for (const LinearOperator& m : machine_) loads->push_back(m.conductance(bodies[i], other));
       if (loads->front().size() == 0) continue;
-      const double is = own(bodies[i], other.name);
       const Statement says{.quantity = StatedQuantity::kExchange,
                            .place = {bodies[i].name, other.name},
                            .unit_size = is > 0.0 ? is : typical,

@@ -51,6 +51,7 @@ void StatementBuilder::build() {
   exchanges();
   conductivities();
   capacities();
+  numbers_at_positions();
   readings();
   exchanged_channels();
   expansions();

@@ -2,6 +2,8 @@
 
 namespace driftwright::effects::linear_scale {
 
+constexpr double kShift_mm = 500.0;  // from an end of a usual travel, 0.5 to 1 m, to its middle or its other end
+
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kGrowth, [e](Readings& r) {
     const std::string& position = e.words.at("position");
@@ -38,8 +40,12 @@ EffectKind kind() {
                           1e-4,
                           {},
                           "of the scale as mounted; glass 8e-6, steel tape 10.5e-6, or "
-                          "that of what it is glued to"},
-                         {"fixed_at", "mm", -1e5, 1e5, 0.0, "position of the axis at which the scale is fixed"},
+                          "that of what it is glued to",
+                          0.1,
+                          "linear_scale",
+                          Doubted::kFactor},
+                         {"fixed_at", "mm", -1e5, 1e5, 0.0, "position of the axis at which the scale is fixed", 0.0,
+                          "linear_scale", Doubted::kShift, kShift_mm},
                          {"at", "mm", -1e5, 1e5, kNotGiven, "a place of the axis"}},
           .timing = Timing::kInRecord,
           .change_readings = change_readings,

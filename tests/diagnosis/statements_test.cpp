@@ -1,6 +1,7 @@
 // What is missing in words of the grammar: columns are what the machine does, evidence is what its formula says, and what
 // is hidden is stated.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -16,11 +17,50 @@ namespace {
 
 constexpr RecordNoise kNoise{.noise_K = 0.05};
 
+/// A feed axis with its screw in five sections, whose error is read at two places, at the nut, and by a scale.
+constexpr const char* kAxis = R"(name: axis
+reference_temperature: 20 degC
+start: ambient
+machine: {generator: lumped}
+effects:
+  - {type: node, node: nut, capacity: 2.6 kJ/K}
+  - {type: node, node: fixed, capacity: 3.3 kJ/K}
+  - {type: node, node: far, capacity: 1.2 kJ/K}
+  - {type: node, node: bed, capacity: 25 kJ/K}
+  - {type: node, node: glass, capacity: 0.9 kJ/K}
+  - {type: feed_axis, node: nut, screw: s, axis: x, position: position_x, stroke: stroke_x, mounting: fixed_supported, travel: 800 mm, fixed_gap: 140 mm, far_gap: 160 mm, section_length: 220 mm, diameter: 38 mm, lead: 20 mm, nut_length: 120 mm, torque: 1.2 N m, nut_conductance: 4 W/K, fixed_bearing: fixed, fixed_conductance: 3 W/K, far_bearing: far, far_conductance: 1.5 W/K}
+  - {type: servo_loss, node: fixed, axis: x, power: 25 W, at_feed: 15 m/min}
+  - {type: link, node: nut, to: bed, conductance: 9 W/K}
+  - {type: link, node: fixed, to: bed, conductance: 12 W/K}
+  - {type: link, node: far, to: bed, conductance: 8 W/K}
+  - {type: link, node: glass, to: bed, conductance: 0.7 W/K}
+  - {type: link, node: glass, to: ambient, conductance: 0.4 W/K}
+  - {type: link, node: bed, to: ambient, conductance: 8 W/K}
+  - {type: linear_scale, displacement: by_scale, body: glass, expansion: 8e-6 1/K, fixed_at: 400 mm, position: position_x}
+ambient: [[0 min, 20 degC], [100 min, 21 degC], [300 min, 20.5 degC]]
+sensors:
+  - {name: t_nut, node: nut}
+  - {name: t_fixed, node: fixed}
+  - {name: t_far, node: far}
+  - {name: t_bed, node: bed}
+  - {name: t_glass, node: glass}
+displacements:
+  - {name: x, screw: s, at: [0 mm, 800 mm]}
+  - {name: at_nut, screw: s}
+  - {name: by_scale, sensitivities: [{node: bed, sensitivity: 0.3 um/K}]}
+cyclograms:
+  parts:
+    columns: [duration, feed_x, position_x_mm, stroke_x_mm]
+    rows: [[40 min, 15 m/min, 400 mm, 800 mm], [30 min, 0 m/min, 400 mm, 0 mm], [50 min, 10 m/min, 650 mm, 200 mm], [40 min, 6 m/min, 200 mm, 300 mm], [30 min, 0 m/min, 200 mm, 0 mm]]
+solver: {output_interval: 2 min}
+)";
+constexpr RecordNoise kAxisNoise{.row_s = 120.0, .noise_K = 0.05, .noise_um = 1.0};
+
 /// A fitter of the scenario's numbers beside records, its noise known.
 struct Ground {
   std::unique_ptr<Fitter> fitter;
 
-  explicit Ground(const Beside& b) {
+  explicit Ground(const Beside& b, const RecordNoise& as = kNoise) {
     std::vector<Knob> numbers = scatter(*b.twin);
     for (Knob& k : ambient_scatter(b.runs)) numbers.push_back(std::move(k));
     fitter = std::make_unique<Fitter>(*b.twin, b.runs, numbers,
@@ -28,7 +68,7 @@ struct Ground {
     std::map<std::string, NoiseModel> noise;
     for (const MeasuredRun& run : b.runs) {
       for (const MeasuredChannel& c : run.channels)
-        noise[c.name] = {.white = c.unit == "K" ? kNoise.noise_K : 1e-6 * kNoise.noise_um};
+        noise[c.name] = {.white = c.unit == "K" ? as.noise_K : 1e-6 * as.noise_um};
     }
     fitter->set_noise(noise);
   }
@@ -58,8 +98,8 @@ Posterior stated_of(const std::string& hidden, const std::string& prefix, std::u
 
 class ColumnTest : public testing::Test {
  protected:
-  ColumnTest()
-      : path_(write_file("plain.yaml", kTwoNodes)),
+  explicit ColumnTest(const char* machine = kTwoNodes)
+      : path_(write_file("plain.yaml", machine)),
         beside_(path_, noisy_records(path_, "column_", kNoise)),
         ground_(beside_),
         space_(*ground_.fitter, beside_.twin->as_written()) {}
@@ -127,6 +167,20 @@ TEST_F(ColumnTest, OfAnAmbientIsWhatAnOffsetDoes) {
   EXPECT_LT(misses(effects::make_effect("ambient", effects::Place::kAmbient, effects::kAmbientName, {{"offset", 1.0}}), 1.0,
                    [](const Statement& s) { return s.quantity == StatedQuantity::kAmbient && s.follows == "constant"; }),
             1e-3);
+}
+
+class AxisColumnTest : public ColumnTest {
+ protected:
+  AxisColumnTest() : ColumnTest(kAxis) {}
+};
+
+// What a displacement reads at the recorded position of an axis is part of the machine's answer.
+TEST_F(AxisColumnTest, OfHeatInASectionMovesTheNutWhereItIs) {
+  EXPECT_LT(misses(effects::make_effect("heat_source", effects::node("s_2"), {{"power", 5.0}}), 5.0,
+                   [](const Statement& s) {
+                     return s.quantity == StatedQuantity::kHeat && s.place[0] == "s_2" && s.follows == "constant";
+                   }),
+            5e-3);
 }
 
 /// log N(r; 0, 1 + A A' + w² x x') - log N(r; 0, 1 + A A'), by the covariances themselves.
@@ -211,6 +265,50 @@ TEST(Statements, WhatAllThermometersHaveInCommonIsOneStatement) {
   EXPECT_EQ(p.stated[0].says.follows, "difference to ambient");
 }
 
+// Faults of a feed axis: a nut heats whatever section it is at, a scale's reference point moves nothing but its reading.
+struct AxisFault {
+  const char *name, *was, *is;  ///< parts of the scenario's text
+  const char *says, *law, *effect;
+};
+class FaultOfAnAxis : public testing::TestWithParam<AxisFault> {};
+
+TEST_P(FaultOfAnAxis, IsStatedWithItsPlaceAndWhatItFollows) {
+  const AxisFault& fault = GetParam();
+  std::string truth = kAxis;
+  const auto at = truth.find(fault.was);
+  ASSERT_NE(at, std::string::npos);
+  truth.replace(at, std::string(fault.was).size(), fault.is);
+  const std::string name = fault.name;
+  const Beside beside(write_file(name + "_plain.yaml", kAxis),
+                      noisy_records(write_file(name + "_truth.yaml", truth), name + "_", kAxisNoise));
+  const Posterior p = Ground(beside, kAxisNoise).stated();
+  EXPECT_EQ(first(p), fault.says);
+  EXPECT_LT(p.nothing, 0.1);
+  ASSERT_FALSE(p.stated.empty());
+  EXPECT_GT(p.stated[0].probability, 0.5);
+  EXPECT_THAT(words(p.stated[0].says), testing::HasSubstr(fault.law));
+  const auto names = named_by(p, candidates(*beside.twin, beside.runs, {}), *beside.twin, beside.runs, {});
+  EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const Candidate& c) {
+    return c.effect == fault.effect && c.where == p.stated[0].says.place[0];
+  })) << fault.effect;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Statements, FaultOfAnAxis,
+    ::testing::Values(AxisFault{"a_tight_nut", "torque: 1.2 N m", "torque: 2.4 N m", "heat nut own heat", "at position_x",
+                                "feed_axis"},
+                      AxisFault{"a_warm_bearing", "ambient: [[",
+                                "  - {type: servo_loss, node: far, axis: x, power: 20 W, at_feed: 15 m/min}\nambient: [[",
+                                "heat far power of feed_x", "feed_x", "heat_source"},
+                      AxisFault{"a_scale_fixed_at_its_end", "fixed_at: 400 mm", "fixed_at: 800 mm",
+                                "displacement by_scale temperature of glass", "glass", "linear_scale"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
+TEST(Statements, NothingIsStatedOfAnAxisThatIsAsTheScenarioSays) {
+  const std::string path = write_file("axis_plain.yaml", kAxis);
+  EXPECT_GT(Ground(Beside(path, noisy_records(path, "axis_none_", kAxisNoise)), kAxisNoise).stated().nothing, 0.5);
+}
+
 // The course of any shape at the place of a window: more than half of its 25 W in the window, less than half elsewhere.
 TEST(Statements, TheCourseAtAPlaceIsWhatActedThere) {
   const Posterior p =
@@ -255,6 +353,9 @@ TEST(Naming, IsByQuantityAndPlace) {
   EXPECT_TRUE(says(all, "run_state", "monday"));
   EXPECT_FALSE(says(heat, "run_state", "monday"));
   EXPECT_TRUE(says(heat, "a_kind_of_somebody_else", "head"));
+  EXPECT_TRUE(says(heat, "feed_axis", "head"));
+  EXPECT_FALSE(says(path, "feed_axis", "head"));
+  EXPECT_TRUE(says(statement(StatedQuantity::kDisplacement, {"nose"}), "linear_scale", "nose"));
 }
 
 // A window of a statement becomes a window of the catalogue, at its times; candidates elsewhere are gone.
