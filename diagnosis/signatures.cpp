@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kTurnsOfWidth = 3;       // iterations for the width of heavy tails; then the size is constant
 constexpr double kLeastGrowth = 0.01;  // of a size relative to its trial, with which other numbers grow
-constexpr double kBeside = 1.0;     // prior sigmas of the scenario's numbers where a fit begins
+constexpr double kBeside = 1.0;        // prior sigmas of the scenario's numbers where a fit begins
 
 }  // namespace
 

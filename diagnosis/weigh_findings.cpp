@@ -123,7 +123,8 @@ void weigh_findings(Fitter& fitter, const SearchOptions& options, SearchResult& 
   listener.begin("looking for other explanations");
   Ground ground{
       .fitter = fitter, .candidates = result.candidates, .names = result.names, .said = result.said, .columns = {}};
-  ground.columns = signatures(fitter, ground.candidates, laws_of(ground.candidates), result.hypothesis, result.fit, listener);
+  ground.columns =
+      signatures(fitter, ground.candidates, laws_of(ground.candidates), result.hypothesis, result.fit, listener);
   std::vector<std::pair<Hypothesis, Fit>> without_one;
   std::vector<InItsPlace> in_place;
   for (std::size_t i = 0; i < result.findings.size(); ++i) {
