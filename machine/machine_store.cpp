@@ -30,47 +30,66 @@ std::vector<int> as_vector(const Eigen::MatrixXi& column) {
   return {column.data(), column.data() + column.size()};
 }
 
-void write_mesh(const mesh::Mesh& mesh, const FileOf& file) {
-  std::vector<int> shapes;
-  for (mesh::CellShape s : mesh.cells.shape) shapes.push_back(static_cast<int>(s));
-  write_npy(file("mesh_coords.npy"), Eigen::MatrixXd(mesh.coords));
-  write_npy(file("mesh_shape.npy"), as_column(shapes));
-  write_npy(file("mesh_offset.npy"), as_column(mesh.cells.offset));
-  write_npy(file("mesh_node.npy"), as_column(mesh.cells.node));
-  write_npy(file("mesh_group.npy"), as_column(mesh.cells.group));
-}
-
-mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file) {
-  mesh::Mesh mesh;
-  mesh.regions = regions;
-  const Eigen::MatrixXd coords = read_npy<double>(file("mesh_coords.npy"));
-  if (coords.rows() != 3) throw InputError(fmt::format("{}: no points", file("mesh_coords.npy").string()));
-  mesh.coords = coords;
-  for (int s : as_vector(read_npy<int>(file("mesh_shape.npy")))) mesh.cells.shape.push_back(static_cast<mesh::CellShape>(s));
-  mesh.cells.offset = as_vector(read_npy<int>(file("mesh_offset.npy")));
-  mesh.cells.node = as_vector(read_npy<int>(file("mesh_node.npy")));
-  mesh.cells.group = as_vector(read_npy<int>(file("mesh_group.npy")));
-  const std::size_t n_cells = mesh.cells.shape.size();
-  const auto beyond = [](const std::vector<int>& indices, int n) {
-    return std::any_of(indices.begin(), indices.end(), [n](int i) { return i < 0 || i >= n; });
-  };
-  if (beyond(mesh.cells.node, mesh.n_nodes()) || beyond(mesh.cells.group, static_cast<int>(regions.size())) ||
-      mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
-      mesh.cells.offset.back() != static_cast<int>(mesh.cells.node.size())) {
-    throw InputError(fmt::format("{}: cells of another mesh", file("mesh_offset.npy").string()));
-  }
-  return mesh;
-}
-
 /// Paths of files in a folder; their names get a prefix.
 FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix = "") {
   return [folder, prefix](const std::string& name) { return folder / (prefix + name); };
 }
 
+void write_cells(const mesh::Cells& cells, const FileOf& file) {
+  std::vector<int> shapes;
+  for (mesh::CellShape s : cells.shape) shapes.push_back(static_cast<int>(s));
+  write_npy(file("shape.npy"), as_column(shapes));
+  write_npy(file("offset.npy"), as_column(cells.offset));
+  write_npy(file("node.npy"), as_column(cells.node));
+  write_npy(file("group.npy"), as_column(cells.group));
+}
+
+/// @param n_groups  regions or surfaces of the mesh
+mesh::Cells read_cells(const FileOf& file, int n_nodes, std::size_t n_groups) {
+  mesh::Cells cells;
+  for (int s : as_vector(read_npy<int>(file("shape.npy")))) cells.shape.push_back(static_cast<mesh::CellShape>(s));
+  cells.offset = as_vector(read_npy<int>(file("offset.npy")));
+  cells.node = as_vector(read_npy<int>(file("node.npy")));
+  cells.group = as_vector(read_npy<int>(file("group.npy")));
+  const std::size_t n_cells = cells.shape.size();
+  const auto beyond = [](const std::vector<int>& indices, int n) {
+    return std::any_of(indices.begin(), indices.end(), [n](int i) { return i < 0 || i >= n; });
+  };
+  if (beyond(cells.node, n_nodes) || beyond(cells.group, static_cast<int>(n_groups)) || cells.offset.size() != n_cells + 1 ||
+      cells.group.size() != n_cells || cells.offset.back() != static_cast<int>(cells.node.size())) {
+    throw InputError(fmt::format("{}: cells of another mesh", file("offset.npy").string()));
+  }
+  return cells;
+}
+
+/// The whole mesh but its notes: a diagnosis asks which bodies a surface or a joint belongs to.
+Json write_mesh(const mesh::Mesh& mesh, const std::filesystem::path& folder) {
+  const auto& [coords, cells, facets, regions, surfaces, joints, notes] = mesh;  // a further member must be kept, too
+  write_npy(folder / "mesh_coords.npy", Eigen::MatrixXd(coords));
+  write_cells(cells, in_folder(folder, "mesh_"));
+  write_cells(facets, in_folder(folder, "mesh_facets_"));
+  Json json = {{"regions", regions}, {"surfaces", surfaces}, {"joints", Json::array()}};
+  for (const mesh::Joint& j : joints) json["joints"].push_back({j.name, j.side_a, j.side_b});
+  return json;
+}
+
+mesh::Mesh read_mesh(const Json& json, const std::filesystem::path& folder) {
+  mesh::Mesh mesh;
+  mesh.regions = json.at("regions").get<std::vector<std::string>>();
+  mesh.surfaces = json.at("surfaces").get<std::vector<std::string>>();
+  for (const Json& j : json.at("joints")) mesh.joints.push_back({j.at(0), j.at(1), j.at(2)});
+  const Eigen::MatrixXd coords = read_npy<double>(folder / "mesh_coords.npy");
+  if (coords.rows() != 3) throw InputError(fmt::format("{}: no points", (folder / "mesh_coords.npy").string()));
+  mesh.coords = coords;
+  mesh.cells = read_cells(in_folder(folder, "mesh_"), mesh.n_nodes(), mesh.regions.size());
+  mesh.facets = read_cells(in_folder(folder, "mesh_facets_"), mesh.n_nodes(), mesh.surfaces.size());
+  return mesh;
+}
+
 void write_machine(const std::filesystem::path& work, const std::string& key, const ReducedMachine& machine) {
   Json json = {{"n_unknowns", machine.n_unknowns},
                {"has_fields", machine.displacement_m.size() > 0},
-               {"regions", machine.mesh.regions},
+               {"mesh", write_mesh(machine.mesh, work)},
                {"error_K", machine.error.temperature_K},
                {"error_m", machine.error.displacement_m},
                {"error_rad", machine.error.angle_rad},
@@ -84,7 +103,6 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
     write("bare", machine.modal->bare);
     write("completed", machine.modal->completed);
   }
-  write_mesh(machine.mesh, in_folder(work));
   write_npy(work / "temperature.npy", machine.temperature);
   write_npy(work / "displacement_m.npy", machine.displacement_m);
   write_bytes(work / "model.json", json.dump());
@@ -136,7 +154,7 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     const Json json = parse_json(read_bytes(folder / "model.json"));
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
-    machine.mesh = read_mesh(json.at("regions"), in_folder(folder));
+    machine.mesh = read_mesh(json.at("mesh"), folder);
     machine.system = solver::read_system(json.at("system"), balance, from_npy(in_folder(folder)), machine.start);
     machine.error = {json.at("error_K"), json.at("error_m"), json.at("error_rad")};
     if (json.contains("modal")) {

@@ -272,11 +272,23 @@ TEST_P(RoundTrips, GiveTheSameBits) {
   EXPECT_EQ(found->temperature, kept.temperature);
   EXPECT_EQ(found->displacement_m, kept.displacement_m);
   EXPECT_EQ(found->mesh.coords, kept.mesh.coords);
-  EXPECT_EQ(found->mesh.cells.shape, kept.mesh.cells.shape);
-  EXPECT_EQ(found->mesh.cells.offset, kept.mesh.cells.offset);
-  EXPECT_EQ(found->mesh.cells.node, kept.mesh.cells.node);
-  EXPECT_EQ(found->mesh.cells.group, kept.mesh.cells.group);
+  for (auto which : {&mesh::Mesh::cells, &mesh::Mesh::facets}) {
+    const mesh::Cells &read = found->mesh.*which, &written = kept.mesh.*which;
+    EXPECT_GT(written.size(), 0);
+    EXPECT_EQ(read.shape, written.shape);
+    EXPECT_EQ(read.offset, written.offset);
+    EXPECT_EQ(read.node, written.node);
+    EXPECT_EQ(read.group, written.group);
+  }
   EXPECT_EQ(found->mesh.regions, kept.mesh.regions);
+  EXPECT_EQ(found->mesh.surfaces, kept.mesh.surfaces);
+  ASSERT_EQ(found->mesh.joints.size(), kept.mesh.joints.size());
+  ASSERT_FALSE(kept.mesh.joints.empty());
+  for (std::size_t j = 0; j < kept.mesh.joints.size(); ++j) {
+    EXPECT_EQ(found->mesh.joints[j].name, kept.mesh.joints[j].name);
+    EXPECT_EQ(found->mesh.joints[j].side_a, kept.mesh.joints[j].side_a);
+    EXPECT_EQ(found->mesh.joints[j].side_b, kept.mesh.joints[j].side_b);
+  }
   ASSERT_EQ(found->modal.has_value(), kept.modal.has_value());
   if (!kept.modal) return;
   for (auto which : {&compensation::ModalPredictors::bare, &compensation::ModalPredictors::completed}) {
