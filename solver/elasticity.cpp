@@ -123,8 +123,8 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
   ElasticReport& report = p.report;
   report.n_unknowns = static_cast<int>(std::count(p.held.begin(), p.held.end(), 0));
   if (share) {
-    report.method = ElasticMethod::kMultigrid;
-    report.text = fmt::format("elastic displacements by multigrid of PETSc: {} unknowns", report.n_unknowns);
+    report.method = ElasticMethod::kFactor;
+    report.text = fmt::format("elastic displacements by a factor over all processes: {} unknowns", report.n_unknowns);
     const std::vector<char> held = std::move(p.held);
     p.held.clear();
     for (int node : share->whole_node) p.held.insert(p.held.end(), &held[3 * node], &held[3 * node] + 3);

@@ -58,7 +58,8 @@ Pcg::Sums Pcg::of_all(const Sums& own, const double* r, bool by_diagonal) const 
   const auto n = static_cast<Eigen::Index>(n_held());
   const Eigen::Map<const Eigen::VectorXd> held(r, n);
   const double rz = by_diagonal ? held.cwiseAbs2().dot(inverse_diagonal_.head(n)) : held.dot(z_.head(n));
-  return {share_->sum(rz), share_->largest(own.largest)};
+  const auto [sum, largest] = share_->sum_and_largest(rz, own.largest);
+  return {sum, largest};
 }
 
 Pcg::Sums Pcg::sum_blocks(bool with_rz) const {

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -94,6 +95,8 @@ class Share {
   /// @param held     of the whole machine, 3 per node
   [[nodiscard]] virtual std::unique_ptr<SharedElasticSolver> elastic_solver(
       NodeMatrix cells, const std::vector<std::vector<SpringPoint>>& springs, const std::vector<char>& held) const = 0;
+  /// The sum of one number and the largest of another, in one message.
+  [[nodiscard]] virtual std::pair<double, double> sum_and_largest(double summed, double value) const = 0;
 };
 
 /// The processes, before a machine is split between them.

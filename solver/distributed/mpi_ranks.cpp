@@ -67,8 +67,6 @@ void on_all_ranks(const std::string& build, const std::function<void(const Ranks
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "1");  // a signal ends the process, and mpirun the others
     if (PetscInitializeNoArguments() != 0) throw SolveError("PETSc cannot be started");
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-    PetscOptionsSetValue(nullptr, "-driftwright_mg_levels_ksp_type", "chebyshev");
-    PetscOptionsSetValue(nullptr, "-driftwright_mg_levels_pc_type", "jacobi");
     work(ranks);
   } catch (...) {
     // Most failures are those of all processes: the first one says it for them.

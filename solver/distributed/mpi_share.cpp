@@ -64,14 +64,30 @@ int MpiShare::row_of_unknown(int unknown) const {
   return row_of_node_[node] + (holder[node] > 0 ? n_lumped : 0);
 }
 
+// Each process adds in the same order, so that all have the same bits and take the same decisions.
 void MpiShare::sum(double* values, int n) const {
-  MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, comm_);
+  std::vector<double> of_all(static_cast<std::size_t>(n * size_));
+  MPI_Allgather(values, n, MPI_DOUBLE, of_all.data(), n, MPI_DOUBLE, comm_);
+  for (int i = 0; i < n; ++i) {
+    values[i] = 0.0;
+    for (int r = 0; r < size_; ++r) values[i] += of_all[static_cast<std::size_t>(r * n + i)];
+  }
 }
 
 double MpiShare::largest(double value) const {
-  if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
-  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm_);
-  return value;
+  return sum_and_largest(0.0, value).second;
+}
+
+std::pair<double, double> MpiShare::sum_and_largest(double summed, double value) const {
+  const double own[2] = {summed, std::isnan(value) ? std::numeric_limits<double>::infinity() : value};
+  std::vector<double> of_all(2 * static_cast<std::size_t>(size_));
+  MPI_Allgather(own, 2, MPI_DOUBLE, of_all.data(), 2, MPI_DOUBLE, comm_);
+  std::pair<double, double> all = {0.0, own[1]};
+  for (std::size_t r = 0; r < of_all.size(); r += 2) {
+    all.first += of_all[r];
+    all.second = std::max(all.second, of_all[r + 1]);
+  }
+  return all;
 }
 
 void MpiShare::add_copies(double* x, int width) const {

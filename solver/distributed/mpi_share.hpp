@@ -14,6 +14,7 @@ class MpiShare : public Share {
   void sum(double* values, int n) const override;
   using Share::sum;
   [[nodiscard]] double largest(double value) const override;
+  [[nodiscard]] std::pair<double, double> sum_and_largest(double summed, double value) const override;
   void add_copies(double* x, int width) const override;
   using Share::add_copies;
   [[nodiscard]] Eigen::VectorXd whole(const double* x, int width) const override;
@@ -25,7 +26,7 @@ class MpiShare : public Share {
 
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] int rank() const { return rank_; }
-  /// Place of a node, by its index in the whole mesh, in the order of PETSc's rows: those that process 0 holds, those of process 1, ...
+  /// Place of a node of the whole mesh in the order of rows of PETSc: those that process 0 holds, those of process 1, ...
   [[nodiscard]] int row_of_node(int node) const { return row_of_node_[static_cast<std::size_t>(node)]; }
   /// The same with the lumped nodes after the nodes of process 0, for an unknown of the part.
   [[nodiscard]] int row_of_unknown(int unknown) const;

@@ -1,4 +1,6 @@
-// Preconditioner of heat and solver of displacements by PETSc: conjugate gradients with smoothed aggregation (GAMG).
+// By PETSc: multigrid (GAMG) as preconditioner of heat, and displacements by conjugate gradients with a factor over all
+// processes (MUMPS), which need one or two iterations. GAMG with rigid motions needs more than 200 where joints are tied by
+// stiff springs. PETSC_OPTIONS may choose others (prefixes heat_ and elastic_).
 
 #include <fmt/format.h>
 #include <petscksp.h>
@@ -108,7 +110,7 @@ class HeatMultigrid : public Preconditioner {
     must(PCCreate(share.comm(), &pc_.object));
     must(PCSetOperators(pc_.object, matrix_.object, matrix_.object));
     must(PCSetType(pc_.object, PCGAMG));
-    must(PCSetOptionsPrefix(pc_.object, "driftwright_"));
+    must(PCSetOptionsPrefix(pc_.object, "heat_"));
     must(PCSetFromOptions(pc_.object));
     must(PCSetUp(pc_.object));
     must(MatCreateVecs(matrix_.object, &in_.object, &out_.object));
@@ -135,17 +137,6 @@ class PetscElasticSolver : public SharedElasticSolver {
                      const std::vector<char>& held)
       : share_(share) {
     make_matrix(std::move(cells), springs, held);
-    OwnedVec coords;
-    must(MatCreateVecs(matrix_.object, &coords.object, nullptr));
-    must(VecSetBlockSize(coords.object, 3));
-    double* x = nullptr;
-    must(VecGetArray(coords.object, &x));
-    std::copy(share.mesh.coords.data(), share.mesh.coords.data() + 3 * share.n_held_nodes(), x);
-    must(VecRestoreArray(coords.object, &x));
-    MatNullSpace rigid = nullptr;
-    must(MatNullSpaceCreateRigidBody(coords.object, &rigid));
-    must(MatSetNearNullSpace(matrix_.object, rigid));
-    must(MatNullSpaceDestroy(&rigid));
     must(KSPCreate(share.comm(), &ksp_.object));
     must(KSPSetOperators(ksp_.object, matrix_.object, matrix_.object));
     must(KSPSetType(ksp_.object, KSPCG));
@@ -153,8 +144,9 @@ class PetscElasticSolver : public SharedElasticSolver {
     must(KSPSetTolerances(ksp_.object, kElasticTolerance, 1e-300, 1e10, kMostIterations));
     PC pc = nullptr;
     must(KSPGetPC(ksp_.object, &pc));
-    must(PCSetType(pc, PCGAMG));
-    must(KSPSetOptionsPrefix(ksp_.object, "driftwright_"));
+    must(PCSetType(pc, PCCHOLESKY));
+    must(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    must(KSPSetOptionsPrefix(ksp_.object, "elastic_"));
     must(KSPSetFromOptions(ksp_.object));
     must(KSPSetUp(ksp_.object));
     must(MatCreateVecs(matrix_.object, &u_.object, &force_.object));
@@ -175,7 +167,7 @@ class PetscElasticSolver : public SharedElasticSolver {
     iterations = static_cast<int>(n);
     if (reason < 0) {
       throw SolveError(
-          fmt::format("elastic displacements: PETSc's multigrid stopped after {} iterations ({}), but an error of {:.0e} is "
+          fmt::format("elastic displacements: PETSc stopped after {} iterations ({}), but an error of {:.0e} is "
                       "required. Springs or materials differ too much in stiffness, or cells have almost no volume",
                       n, KSPConvergedReasons[reason], kElasticTolerance));
     }
@@ -184,7 +176,7 @@ class PetscElasticSolver : public SharedElasticSolver {
   }
 
  private:
-  static constexpr int kMostIterations = 2000;
+  static constexpr int kMostIterations = 2000;  // of another preconditioner than the factor
 
   void make_matrix(NodeMatrix cells, const std::vector<SpringLayer>& springs, const std::vector<char>& held) {
     const int n_held = share_.n_held_nodes();
