@@ -4,8 +4,10 @@ ranks that are killed.
 
     distributed_test.py PROGRAM OTHER_BUILD
 """
-import csv, json, os, re, signal, subprocess, sys, tempfile, time
+import csv, os, re, signal, subprocess, sys, tempfile, time, zlib
 from pathlib import Path
+
+import numpy as np
 
 TOP = Path(__file__).resolve().parents[2]
 MOST_K, MOST_UM = 1e-3, 1e-2  # what several processes may differ by
@@ -30,7 +32,7 @@ def edited(name, edits):
 def rows_of(path):
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     header, *rows = csv.reader(lines)
-    return header, [[float(x) for x in row] for row in rows]
+    return header, [[float(x or 0) for x in row] for row in rows]
 
 
 def largest_differences(one, other):
@@ -47,11 +49,27 @@ def largest_differences(one, other):
 
 
 def fields_of(folder):
-    import meshio
+    """The nodes of the last file of fields, and its fields of nodes: arrays of VTK, compressed and appended."""
+    data = sorted(folder.glob("fields/*.vtu"))[-1].read_bytes()
+    text, raw = data.split(b'<AppendedData encoding="raw">', 1)
+    raw = raw[raw.index(b"_") + 1:]
+    word = np.uint64 if b'header_type="UInt64"' in text else np.uint32
 
-    last = sorted(folder.glob("fields/*.vtu"))[-1]
-    mesh = meshio.read(last)
-    return mesh.points, {name: values for name, values in mesh.point_data.items()}
+    def array(tag):
+        key = dict(re.findall(r'(\w+)="([^"]*)"', tag))
+        at, size = int(key["offset"]), np.dtype(word).itemsize
+        n = int(np.frombuffer(raw, word, 1, at)[0])
+        lengths = np.frombuffer(raw, word, n, at + 3 * size)
+        at += (3 + n) * size
+        blocks = []
+        for length in lengths:
+            blocks.append(zlib.decompress(raw[at:at + int(length)]))
+            at += int(length)
+        return key["Name"], np.frombuffer(b"".join(blocks), {"Float64": float, "Float32": np.float32}[key["type"]])
+
+    part = {name: re.search(rf"<{name}[ >].*?</{name}>", text.decode("latin1"), re.S)[0] for name in ("Points", "PointData")}
+    tags = {name: [t for t in re.findall(r"<DataArray[^>]*>", inner) if 'type="Float' in t] for name, inner in part.items()}
+    return array(tags["Points"][0])[1], dict(map(array, tags["PointData"]))
 
 
 def main():
@@ -70,10 +88,10 @@ def main():
 
         small = {
             "fp3_spindle": [(r"frame: 80 mm, spindle: 20 mm", "frame: 140 mm, spindle: 40 mm"), (r"model: reduced", "model: full"),
-                            (r"warm_up_2000: \[\[300 min", "warm_up_2000: [[40 min")],
+                            (r"warm_up_2000: \[\[300 min", "warm_up_2000: [[15 min")],
             "c_frame": [(r"default: 90 mm, head: 60 mm, spindle: 40 mm", "default: 160 mm, head: 110 mm, spindle: 70 mm"),
-                        (r"warm_up: \[\[60 min, 6000 rpm\]\]", "warm_up: [[12 min, 6000 rpm]]"),
-                        (r"fields_at: \[10 min, 15 min\]", "fields_at: [10 min]")],
+                        (r"warm_up: \[\[60 min, 6000 rpm\]\]", "warm_up: [[4 min, 6000 rpm]]"),
+                        (r"fields_at: \[10 min, 15 min\]", "fields_at: [2 min]")],
         }
         cyclogram = {"fp3_spindle": "warm_up_2000", "c_frame": "warm_up"}
         for name, edits in small.items():
@@ -95,7 +113,7 @@ def main():
                     continue
                 claim(sorted(p.relative_to(out) for p in out.rglob("*") if p.is_file()) == files, f"{words}: the same files")
                 apart = largest_differences(work / f"{name}-one/record.csv", out / "record.csv")
-                claim(apart["degC"][0] <= MOST_K and apart["degC"][1] > 21.0, f"{words}: temperatures differ by {apart['degC'][0]:.1e} K")
+                claim(apart["degC"][0] <= MOST_K and apart["degC"][1] > 20.5, f"{words}: temperatures differ by {apart['degC'][0]:.1e} K")
                 claim(apart["um"][0] <= MOST_UM and apart["um"][1] > 1.0, f"{words}: displacements differ by {apart['um'][0]:.1e} um")
                 heat = largest_differences(work / f"{name}-one/heat_flows.csv", out / "heat_flows.csv")["W"]
                 claim(heat[0] <= 1e-3 * heat[1], f"{words}: heat flows differ by {heat[0]:.1e} of {heat[1]:.0f} W")
