@@ -6,6 +6,7 @@
 #include <petscksp.h>
 
 #include <algorithm>
+#include <exception>
 #include <set>
 
 #include "base/errors.hpp"
@@ -29,7 +30,10 @@ struct Owned {
   Owned() = default;
   Owned(const Owned&) = delete;
   Owned& operator=(const Owned&) = delete;
-  ~Owned() { (void)destroy(&object); }
+  /// All processes destroy an object together; a failure ends them without.
+  ~Owned() {
+    if (std::uncaught_exceptions() == 0) (void)destroy(&object);
+  }
 };
 using OwnedMat = Owned<Mat, MatDestroy>;
 using OwnedVec = Owned<Vec, VecDestroy>;
