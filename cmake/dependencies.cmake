@@ -45,6 +45,8 @@ option(DRIFTWRIGHT_MPI "simulate --distributed, by MPI and PETSc" OFF)
 if(DRIFTWRIGHT_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)
   pkg_check_modules(petsc REQUIRED IMPORTED_TARGET PETSc>=3.18)
+  # Debian's flags of its own build (_FORTIFY_SOURCE) would not fit the precompiled headers.
+  set_target_properties(PkgConfig::petsc PROPERTIES INTERFACE_COMPILE_OPTIONS "")
   find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial nvecparallel)
 endif()
 
