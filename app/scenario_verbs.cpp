@@ -90,6 +90,8 @@ void add_simulate(CLI::App& cli, SimulateOptions& options) {
   verb->add_option("--pose", options.pose,
                    "position of an axis of the scenario, such as x=200mm or c=30deg; may be repeated [`at` of `axes`]")
       ->allow_extra_args(false);
+  verb->add_flag("--distributed", options.distributed,
+                 "the finite elements over the processes of mpirun, in a build with MPI (docs/how-to/distributed.md)");
   verb->callback([&] { app::simulate(options); });
 }
 

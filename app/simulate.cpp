@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "app/exit_code.hpp"
 #include "app/film_fields.hpp"
 #include "app/results.hpp"
 #include "base/file_name.hpp"
 #include "findings/plausibility.hpp"
 #include "findings/simulation_document.hpp"
+#include "machine/distributable.hpp"
 #include "machine/reduced_files.hpp"
+#include "solver/on_all_ranks.hpp"
 #include "studies/known_band.hpp"
 #include "studies/prediction.hpp"
 
@@ -31,21 +35,31 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
   return asked;
 }
 
-}  // namespace
-
-void simulate(const SimulateOptions& options) {
+/// @param ranks  the processes that compute together, of which the first one writes; null: this one alone
+void simulate_on(const solver::Ranks* ranks, const SimulateOptions& options) {
   scenarios::Scenario scenario = read_scenario(options, Told::kInDocument);
   (void)scenarios::require_machine(scenario, "simulate");
   const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
   for (const std::string& position : options.pose) scenarios::set_pose(scenario.machine->axes, position, asked);
   std::vector<const Cyclogram*> cyclograms;
   for (const Cyclogram& c : asked) cyclograms.push_back(&c);
-  output::ResultsFolder folder = open_results(options, scenario.name);
-  Progress progress(options.quiet);
+  if (ranks) scenarios::require_distributable(scenario, cyclograms);
+  const bool writes = !ranks || ranks->rank == 0;
+  const std::unique_ptr<output::ResultsFolder> results(
+      writes ? new output::ResultsFolder(open_results(options, scenario.name)) : nullptr);
+  Progress progress(options.quiet || !writes);
   // Whole fields of one cyclogram only: those of several would fill the disk, and one list of times would mix them.
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const bool writes_fields = wants_fields && cyclograms.size() == 1;
-  const scenarios::Model machine = scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields);
+  const scenarios::Model machine =
+      scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields, nullptr, ranks);
+  if (!writes) {  // it computes its part of what the first process writes
+    scenarios::FieldSink computed{.cyclogram = 0, .take = [](const scenarios::WholeFields&) {}};
+    (void)scenarios::simulate_cyclograms(scenario, machine, cyclograms, progress.listener(),
+                                         writes_fields ? computed : scenarios::FieldSink{});
+    return;
+  }
+  output::ResultsFolder& folder = *results;
   std::optional<output::FieldSeries> fields;
   findings::WorstMoment worst;
   const bool has_mesh = machine.mesh().n_nodes() > 0;
@@ -89,6 +103,15 @@ void simulate(const SimulateOptions& options) {
                      : !has_mesh || !wants_fields ? ""
                                                   : "name one cyclogram to get fields, too\n",
                      fields ? fields_note(*fields) : ""));
+}
+
+}  // namespace
+
+void simulate(const SimulateOptions& options) {
+  if (!options.distributed) return simulate_on(nullptr, options);
+  solver::on_all_ranks(
+      scenarios::build_name(), [&](const solver::Ranks& ranks) { simulate_on(&ranks, options); },
+      [](const std::exception_ptr& failure) { return static_cast<int>(exit_code_of(failure)); });
 }
 
 }  // namespace driftwright::app

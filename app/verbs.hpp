@@ -49,6 +49,7 @@ void init(const InitOptions& options);
 struct SimulateOptions : CommonOptions {
   std::vector<std::string> cyclograms;  ///< names, or record CSVs; empty: all of the scenario
   std::vector<std::string> pose;        ///< positions of axes, "x=200mm"; empty: those of the scenario
+  bool distributed = false;             ///< the finite elements over the processes of mpirun
 };
 void simulate(const SimulateOptions& options);
 

@@ -40,6 +40,16 @@ driftwright_import(Ceres::ceres ceres ceres/ceres.h "")
 find_library(GLOG_LIBRARY glog REQUIRED)  # its headers call it
 set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${GLOG_LIBRARY}")
 
+# Finite elements over several processes (packages-mpi.txt).
+option(DRIFTWRIGHT_MPI "simulate --distributed, by MPI and PETSc" OFF)
+if(DRIFTWRIGHT_MPI)
+  find_package(MPI REQUIRED COMPONENTS CXX)
+  pkg_check_modules(petsc REQUIRED IMPORTED_TARGET PETSc>=3.18)
+  # Debian's flags of its own build (_FORTIFY_SOURCE) would not fit the precompiled headers.
+  set_target_properties(PkgConfig::petsc PROPERTIES INTERFACE_COMPILE_OPTIONS "")
+  find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial nvecparallel)
+endif()
+
 # GoogleTest compiles the tests; the program does without.
 find_package(GTest 1.12)
 if(NOT TARGET GTest::gmock)

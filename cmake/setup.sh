@@ -2,7 +2,8 @@
 # only, asks nothing, and costs a few hundredths of a second when there is nothing to do.
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build="$top/build/release"
+preset=${driftwright_preset:-release}
+build="$top/build/$preset"
 
 say() { printf '%s\n' "$*" >&2; }
 
@@ -64,7 +65,7 @@ configure() {
     ninja -C "$build" build.ninja >"$log" 2>&1 && return 0
   else
     say "driftwright: configuring (Release)"
-    (cd "$top" && cmake --preset release) >"$log" 2>&1 && return 0
+    (cd "$top" && cmake --preset "$preset") >"$log" 2>&1 && return 0
   fi
   tail -n 30 "$log" >&2
   say "driftwright: configuring failed; see $log"

@@ -18,6 +18,7 @@
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "solver/share.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/thermal_load.hpp"
 
@@ -105,11 +106,12 @@ void multiply(solver::Material& material, const effects::MaterialFactor& factor)
   material.expansion_1_K = {factor.expansion * e.x, factor.expansion * e.y, factor.expansion * e.z};
 }
 
-std::optional<solver::Elasticity> factorise(const MachineModel& model, const PlacedMachine& placed, int n_solves) {
+std::optional<solver::Elasticity> factorise(const MachineModel& model, const PlacedMachine& placed, int n_solves,
+                                            std::shared_ptr<const solver::Share> share = nullptr) {
   if (placed.mesh.n_nodes() == 0) return std::nullopt;
   try {
     return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints,
-                              solver::ElasticMethod::kAutomatic, n_solves);
+                              solver::ElasticMethod::kAutomatic, n_solves, std::move(share));
   } catch (const InputError& e) {
     throw located(model, e);
   }
@@ -134,15 +136,15 @@ std::vector<Eigen::VectorXd> responses(const MachineModel& model, const PlacedMa
   return all;
 }
 
-Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed,
+/// @param mesh  of the machine, or of the part of it that the responses are of
+Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed, const Mesh& mesh,
                            std::span<const Eigen::VectorXd> responses) {
-  Eigen::MatrixXd influence =
-      Eigen::MatrixXd::Zero(placed.mesh.n_nodes(), static_cast<Eigen::Index>(placed.functionals.size()));
+  Eigen::MatrixXd influence = Eigen::MatrixXd::Zero(mesh.n_nodes(), static_cast<Eigen::Index>(placed.functionals.size()));
   std::optional<solver::ThermalLoad> load;
   for (std::size_t i = 0; i < placed.functionals.size(); ++i) {
     if (!has_points(model, i)) continue;
     if (responses.empty()) throw std::logic_error("influences: a displacement without elasticity");
-    if (!load) load.emplace(placed.mesh, placed.materials);
+    if (!load) load.emplace(mesh, placed.materials);
     influence.col(static_cast<Eigen::Index>(i)) = load->transposed(responses[i]);
   }
   return influence;
@@ -249,16 +251,20 @@ Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& place
   const bool is_elastic = needs_elasticity(placed, false);
   const std::optional<solver::Elasticity> elasticity =
       is_elastic ? factorise(model, placed, n_functionals(placed)) : std::nullopt;
-  return influences(model, placed, elasticity ? responses(model, placed, *elasticity) : std::vector<Eigen::VectorXd>{});
+  return influences(model, placed, placed.mesh,
+                    elasticity ? responses(model, placed, *elasticity) : std::vector<Eigen::VectorXd>{});
 }
 
-Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity, int n_fields) {
+Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity, int n_fields,
+              const solver::Ranks* ranks) {
+  const std::shared_ptr<const solver::Share> share = ranks ? ranks->split(placed.mesh, placed.balance) : nullptr;
   std::optional<solver::Elasticity> elasticity =
-      with_elasticity ? factorise(model, placed, n_functionals(placed) + n_fields) : std::nullopt;
+      with_elasticity ? factorise(model, placed, n_functionals(placed) + n_fields, share) : std::nullopt;
   std::vector<Eigen::VectorXd> solved;
   if (elasticity) solved = responses(model, placed, *elasticity);
-  const Eigen::MatrixXd influence = influences(model, placed, solved);
-  Machine machine = build_with_influences(model, std::move(placed), influence);
+  const Eigen::MatrixXd influence = influences(model, placed, share ? share->mesh : placed.mesh, solved);
+  if (share) solved.clear();
+  Machine machine = build_with_influences(model, std::move(placed), influence, share);
   machine.responses = std::move(solved);
   if (elasticity) machine.elasticity.emplace(std::move(*elasticity));
   return machine;
@@ -300,38 +306,40 @@ solver::Outputs output_names(const MachineModel& model, const PlacedMachine& pla
   return out;
 }
 
-Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence) {
+Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence,
+                              std::shared_ptr<const solver::Share> share) {
   Machine machine{std::move(placed), std::nullopt, {}, {}};
-  machine.system =
-      solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
+  const Mesh& mesh = share ? share->mesh : machine.placed.mesh;
+  machine.system = solver::assemble_heat(mesh, machine.placed.materials, machine.placed.balance, model.reference_K, share);
   solver::Outputs& out = machine.system.outputs;
   const auto n_sensors = model.sensors.size();
   out = output_names(model, machine.placed);
   out.state = Eigen::MatrixXd::Zero(machine.system.size(), static_cast<Eigen::Index>(out.name.size()));
   for (std::size_t i = 0; i < n_sensors; ++i) {
     for (const auto& [unknown, weight] : machine.placed.sensor_weights[i]) {
-      out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
+      const int at = share ? share->held_index(unknown) : unknown;
+      if (at >= 0) out.state(at, static_cast<Eigen::Index>(i)) += weight;
     }
   }
   const std::vector<effects::MaterialFactor> factors = effects::material_factors(model.effects);
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
     auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
-    if (has_points(model, i)) output.head(machine.placed.mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
+    if (has_points(model, i)) output.head(mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
     if (i >= model.displacements.size() || !model.displacements[i].by_sensitivity) continue;
     for (const auto& [body, sensitivity_m_K] : model.displacements[i].by_sensitivity->terms) {
       output += effects::sensitivity_factor(factors, body, model.displacements[i].name) * sensitivity_m_K *
-                solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
+                solver::mean_weights(mesh, machine.placed.balance, body, share.get());
     }
   }
   Eigen::Index mean = out.state.cols() - static_cast<Eigen::Index>(bodies_of_readings(model).size());
   for (const effects::Body& body : bodies_of_readings(model)) {
-    out.state.col(mean++) = solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
+    out.state.col(mean++) = solver::mean_weights(mesh, machine.placed.balance, body, share.get());
   }
   return machine;
 }
 
 Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
-  const int n = machine.system.size();
+  const int n = machine.n_unknowns();
   const double ambient_K = felt_ambient_at_start_K(model);
   switch (model.start) {
     case Start::kReference:

@@ -12,6 +12,10 @@
 #include "solver/elasticity.hpp"
 #include "solver/thermal_system.hpp"
 
+namespace driftwright::solver {
+class Ranks;
+}
+
 namespace driftwright::scenarios {
 
 /// A machine whose names and points have all been found in the mesh.
@@ -66,10 +70,15 @@ struct Machine {
   /// elasticity.
   std::vector<Eigen::VectorXd> responses;
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
+
+  /// Temperature unknowns of the whole machine, also where this process has a part of them.
+  [[nodiscard]] int n_unknowns() const { return static_cast<int>(system.ones.size()); }
 };
 /// @param with_elasticity  result of needs_elasticity(), or true
 /// @param n_fields         approximate number of displacement fields to be solved for
-[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true, int n_fields = 10);
+/// @param ranks            the processes that compute the machine together (`responses` stays empty); null: this one alone
+[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true, int n_fields = 10,
+                            const solver::Ranks* ranks = nullptr);
 /// True if the outputs contain displacements or tilts of a mesh, or whole fields.
 [[nodiscard]] bool needs_elasticity(const PlacedMachine& placed, bool with_fields);
 
@@ -78,7 +87,8 @@ struct Machine {
 [[nodiscard]] Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed);
 /// build() with known influences(): no factorisation, and no displacement fields.
 [[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
-                                            const Eigen::MatrixXd& influence);
+                                            const Eigen::MatrixXd& influence,
+                                            std::shared_ptr<const solver::Share> share = nullptr);
 
 /// Bodies whose mean temperature is used by effects on readings, each once, without the ambient.
 [[nodiscard]] std::vector<effects::Body> bodies_of_readings(const MachineModel& model);

@@ -14,15 +14,9 @@
 
 namespace driftwright::scenarios {
 
-namespace {
-
-/// A name of this build. Other sources, or another build of them, may reduce a machine differently. Program and library of
-/// one build share machines.
 std::string build_name() {
   return fmt::format("{} {}", kVersion, kSourcesOfMachines);
 }
-
-}  // namespace
 
 int n_fields(const Scenario& scenario) {
   if (!scenario.solver.fields_at_s.empty()) return static_cast<int>(scenario.solver.fields_at_s.size()) + 2;
@@ -54,12 +48,12 @@ compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenar
 }
 
 scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields,
-                                 const mesh::Mesh* drawn) {
+                                 const mesh::Mesh* drawn, const solver::Ranks* ranks) {
   listener.begin("meshing");
   scenarios::PlacedMachine placed = drawn ? scenarios::place(model, *drawn) : scenarios::place(model);
   const bool is_elastic = scenarios::needs_elasticity(placed, n_fields > 0);
   listener.begin(is_elastic ? fmt::format("solving {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
-  return scenarios::build(model, std::move(placed), is_elastic, n_fields);
+  return scenarios::build(model, std::move(placed), is_elastic, n_fields, ranks);
 }
 
 scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, const scenarios::ReductionPlan& plan,
@@ -84,7 +78,7 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
 }
 
 Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                 const Listener& listener, bool with_fields, const mesh::Mesh* drawn) {
+                 const Listener& listener, bool with_fields, const mesh::Mesh* drawn, const solver::Ranks* ranks) {
   const scenarios::MachineModel& model = *scenario.machine;
   effects::HeatBalance balance = effects::heat_balance(model.effects);
   if (scenario.solver.model == scenarios::ModelKind::kFull) {
@@ -94,7 +88,7 @@ Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cy
       for (const Cyclogram& c : scenario.cyclograms) moving.push_back(&c);
     }
     std::erase_if(moving, [&](const Cyclogram* c) { return !moves_axes(model.axes, *c); });
-    if (moving.empty()) return {build_machine(model, listener, fields, drawn), std::move(balance), false};
+    if (moving.empty()) return {build_machine(model, listener, fields, drawn, ranks), std::move(balance), false};
     const mesh::Mesh own = drawn ? mesh::Mesh{} : build_mesh(model.mesh);
     if (!drawn) drawn = &own;
     Model opened{build_machine(model, listener, fields, drawn), std::move(balance), false};

@@ -29,7 +29,7 @@ struct Model {
   [[nodiscard]] const solver::Outputs& outputs() const {
     return full() ? full()->system.outputs : reduced()->system.outputs;
   }
-  [[nodiscard]] int n_unknowns() const { return full() ? full()->system.size() : reduced()->n_unknowns; }
+  [[nodiscard]] int n_unknowns() const { return full() ? full()->n_unknowns() : reduced()->n_unknowns; }
   /// True if coefficients and powers depend on the drive alone.
   [[nodiscard]] bool is_linear() const { return full() ? full()->system.is_linear() : reduced()->system.is_linear(); }
   /// For terminal and report: which model was run, and its distance from the full model. Without a full stop.
@@ -43,14 +43,19 @@ struct Model {
 
 /// Typical number of states of a reduced model [-]; building it takes as many displacement fields.
 inline constexpr int kStates = 50;
+/// A name of this build. Other sources, or another build of them, may compute a machine differently. Program and library of
+/// one build have the same.
+[[nodiscard]] std::string build_name();
+
 /// Number of fields to be written for the longest cyclogram.
 [[nodiscard]] int n_fields(const Scenario& scenario);
 
 /// Meshes, places and factorises the machine, and reports each step to the listener.
 /// @param n_fields  approximate number of whole fields to be written; each needs displacements of all nodes
 /// @param drawn     mesh of build_mesh(); null: it is made
+/// @param ranks     as build()
 [[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields,
-                                               const mesh::Mesh* drawn = nullptr);
+                                               const mesh::Mesh* drawn = nullptr, const solver::Ranks* ranks = nullptr);
 
 /// The reduced machine of a plan: read from disk if it is stored there, else made and stored. @param was_known receives
 /// which, unless null
@@ -63,8 +68,10 @@ inline constexpr int kStates = 50;
 /// @param cyclograms  that it will run; those of the scenario are always included in a reduced model, and in a full one if
 ///                    there are none here. A full one follows those that move axes
 /// @param drawn       mesh of build_mesh(); null: it is made
+/// @param ranks       as build(); for scenarios that require_distributable() lets pass
 /// @throws InputError  for a reduced model and a cyclogram that moves axes
 [[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                               const Listener& listener, bool with_fields, const mesh::Mesh* drawn = nullptr);
+                               const Listener& listener, bool with_fields, const mesh::Mesh* drawn = nullptr,
+                               const solver::Ranks* ranks = nullptr);
 
 }  // namespace driftwright::scenarios

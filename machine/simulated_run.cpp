@@ -15,6 +15,7 @@
 #include "scenarios/reader/unusual.hpp"
 #include "solver/energy_balance.hpp"
 #include "solver/reduced_transient.hpp"
+#include "solver/share.hpp"
 #include "solver/stage_ode.hpp"
 
 namespace driftwright::scenarios {
@@ -94,6 +95,11 @@ void sum_parts(solver::Trajectory& run) {
   run.heat_J.conservativeResize(n, Eigen::NoChange);
 }
 
+double heat_capacity_J_K(const solver::FullSystem& system) {
+  if (system.share) return system.share->sum(system.mass.sum());
+  return system.ones.dot(system.mass * system.ones);
+}
+
 /// The largest source of heat or cooling when temperatures leave all bounds: "heat_source spindle is 1.5e+05 W at 6000 rpm;
 /// "; "" if there is none.
 std::string largest_heat(const effects::HeatBalance& balance, const Cyclogram& felt, const MachineModel& machine,
@@ -134,9 +140,8 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
   };
   SimulatedRun simulated{.record = {},
                          .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
-  const double capacity_J_K = model.reduced()
-                                  ? model.reduced()->system.ones.squaredNorm()  // M = 1
-                                  : model.full()->system.ones.dot(model.full()->system.mass * model.full()->system.ones);
+  const double capacity_J_K = model.reduced() ? model.reduced()->system.ones.squaredNorm()  // M = 1
+                                              : heat_capacity_J_K(model.full()->system);
   sum_parts(simulated.trajectory);
   solver::require_balance(simulated.trajectory, capacity_J_K);
   simulated.record = as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
@@ -185,7 +190,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
   double done_s = 0.0;
   // Runs are independent, so each runs on one core, including the loops inside it: no thread waits for
   // another, which matters on a busy machine. A single run uses all cores.
-  parallel_for(cyclograms.size(), [&](std::size_t i) {
+  const auto simulate_one = [&](std::size_t i) {
     const Cyclogram& cyclogram = *cyclograms[i];
     FieldTimes field_times(settings, cyclogram.duration_s());
     const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
@@ -210,7 +215,12 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
         machine, settings.transient, model, start + warmer_start_K(machine, cyclogram) * ones_of(model), cyclogram);
     runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
     runs[i].bodies = watch.bodies();
-  });
+  };
+  if (model.full() && model.full()->system.share) {  // the processes must meet in the same run
+    for (std::size_t i = 0; i < cyclograms.size(); ++i) simulate_one(i);
+  } else {
+    parallel_for(cyclograms.size(), simulate_one);
+  }
   return runs;
 }
 

@@ -10,6 +10,7 @@
 #include "solver/conjugate_gradients.hpp"
 #include "solver/multigrid.hpp"
 #include "solver/rigid_motion.hpp"
+#include "solver/share.hpp"
 #include "solver/springs.hpp"
 #include "solver/stiffness_assembly.hpp"
 #include "solver/stiffness_factor.hpp"
@@ -75,10 +76,18 @@ struct Elasticity::Parts {
   std::unique_ptr<StiffnessFactor> factor;  // either this or the following members
   NodeMatrix k;
   std::unique_ptr<Multigrid> multigrid;
+  std::shared_ptr<const Share> share;  // with it, all of the above but the report are of its part, and this one solves
+  std::unique_ptr<SharedElasticSolver> shared;
 
   Eigen::VectorXd solve(Eigen::VectorXd force) const {  // full length in, full length out, zero where fixed
     for (Eigen::Index i = 0; i < force.size(); ++i) {
       if (held[i]) force[i] = 0.0;
+    }
+    if (shared) {
+      int iterations = 0;
+      Eigen::VectorXd u = shared->solve(std::move(force), iterations);
+      report.most_iterations = std::max(report.most_iterations, iterations);
+      return u;
     }
     if (factor) return factor->solve(force);
     Eigen::VectorXd u(force.size());
@@ -101,19 +110,29 @@ Elasticity::~Elasticity() = default;
 Elasticity::Elasticity(Elasticity&&) noexcept = default;
 
 Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
-                       const std::vector<JointMechanics>& joints, ElasticMethod method, int n_solves) {
+                       const std::vector<JointMechanics>& joints, ElasticMethod method, int n_solves,
+                       std::shared_ptr<const Share> share) {
   check_materials(mesh, materials);
-  parts_ = std::make_unique<Parts>(mesh, materials);
+  parts_ = std::make_unique<Parts>(share ? share->mesh : mesh, materials);
   Parts& p = *parts_;
   const auto [fixed, layers] = holding(mesh, materials, supports, joints);
   p.held.assign(fixed.size(), 1);  // nodes in no cell have no stiffness
   for (int node : mesh.cells.node) {
     for (int i = 0; i < 3; ++i) p.held[3 * static_cast<std::size_t>(node) + i] = fixed[3 * node + i] ? 1 : 0;
   }
-  p.k = assemble_stiffness(mesh, materials, layers, p.held);
-
   ElasticReport& report = p.report;
   report.n_unknowns = static_cast<int>(std::count(p.held.begin(), p.held.end(), 0));
+  if (share) {
+    report.method = ElasticMethod::kFactor;
+    report.text = fmt::format("elastic displacements by a factor over all processes: {} unknowns", report.n_unknowns);
+    const std::vector<char> held = std::move(p.held);
+    p.held.clear();
+    for (int node : share->whole_node) p.held.insert(p.held.end(), &held[3 * node], &held[3 * node] + 3);
+    p.shared = share->elastic_solver(assemble_stiffness(share->mesh, materials, {}, p.held), layers, held);
+    p.share = std::move(share);
+    return;
+  }
+  p.k = assemble_stiffness(mesh, materials, layers, p.held);
   report.method = method;
   if (method == ElasticMethod::kAutomatic) {
     report.method = factor_pays(report.n_unknowns, n_solves) ? ElasticMethod::kFactor : ElasticMethod::kMultigrid;
@@ -145,7 +164,10 @@ const ElasticReport& Elasticity::report() const {
 
 Eigen::VectorXd Elasticity::response(const DisplacementFunctional& functional) const {
   Eigen::VectorXd l = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts_->held.size()));
-  for (const auto& [node, weight] : functional.terms) l.segment<3>(3 * static_cast<Eigen::Index>(node)) += weight;
+  for (const auto& [node, weight] : functional.terms) {
+    const int at = parts_->share ? parts_->share->held_index(node) : node;
+    if (at >= 0) l.segment<3>(3 * static_cast<Eigen::Index>(at)) += weight;
+  }
   return parts_->solve(std::move(l));
 }
 Eigen::VectorXd Elasticity::influence(const DisplacementFunctional& functional) const {
@@ -153,7 +175,9 @@ Eigen::VectorXd Elasticity::influence(const DisplacementFunctional& functional) 
 }
 
 Eigen::Matrix3Xd Elasticity::displacement(const Eigen::VectorXd& theta) const {
-  const Eigen::VectorXd u = parts_->solve(parts_->thermal_load.forces_N(theta));
+  const Share* share = parts_->share.get();
+  Eigen::VectorXd u = parts_->solve(parts_->thermal_load.forces_N(share ? share->part_of(theta) : theta));
+  if (share) u = share->whole(u.data(), 3);
   return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
 }
 

@@ -55,19 +55,20 @@ class Elasticity {
  public:
   /// @param joints    those that are not tied
   /// @param n_solves  expected number of solves, influence vectors and fields; used to choose the method
+  /// @param share     the part of this process; null: it computes everything. The mesh is the whole one
   /// @throws SolveError  when the factorisation fails for lack of memory; later, when multigrid does not converge
   /// @throws InputError  when supports and joints leave a part free to move (it names part and motion), for unknown joints
   ///                     and joints whose sides do not touch, and for an invalid material: E > 0, -1 < nu < 0.5, finite
   ///                     expansion
   Elasticity(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
              const std::vector<JointMechanics>& joints = {}, ElasticMethod method = ElasticMethod::kAutomatic,
-             int n_solves = 3);
+             int n_solves = 3, std::shared_ptr<const Share> share = nullptr);
   ~Elasticity();
   Elasticity(Elasticity&&) noexcept;
 
   [[nodiscard]] const ElasticReport& report() const;
 
-  /// K⁻¹l, 3 n_nodes; ThermalLoad::transposed() turns it into an influence vector.
+  /// K⁻¹l, 3 n_nodes; ThermalLoad::transposed() turns it into an influence vector. With a share: of the nodes of its part.
   [[nodiscard]] Eigen::VectorXd response(const DisplacementFunctional& functional) const;
   /// Influence vector over the mesh's nodes [unit of the functional per K].
   [[nodiscard]] Eigen::VectorXd influence(const DisplacementFunctional& functional) const;

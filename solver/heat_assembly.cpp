@@ -12,6 +12,7 @@
 #include "solver/film_mapping.hpp"
 #include "solver/joint.hpp"
 #include "solver/radiation.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -25,10 +26,21 @@ int must_exist(int index, const std::string& name) {
   return index;
 }
 
-/// Maps names of the machine to unknowns and integrals.
+/// Maps names of the machine to unknowns and integrals. With a share the mesh is a part: vectors and matrices are then
+/// additive (share.hpp), sizes are those of the whole machine.
 class Places {
  public:
-  Places(const Mesh& mesh, const effects::HeatBalance& balance) : mesh_(mesh), balance_(balance) {}
+  Places(const Mesh& mesh, const effects::HeatBalance& balance, const Share* share)
+      : mesh_(mesh), balance_(balance), share_(share) {}
+
+  [[nodiscard]] double of_all(double own) const { return share_ ? share_->sum(own) : own; }
+  /// True on one process: for what is no integral over the mesh.
+  [[nodiscard]] bool is_first() const { return !share_ || share_->is_first; }
+  /// Own part of a sum over the machine, never zero if the sum of all is not: whether it is zero decides what a flow is.
+  [[nodiscard]] double own_part(double own) const {
+    const double all = of_all(own);
+    return own == 0.0 && all != 0.0 ? std::numeric_limits<double>::min() : own;
+  }
 
   [[nodiscard]] int n_unknowns() const { return mesh_.n_nodes() + static_cast<int>(balance_.nodes.size()); }
   [[nodiscard]] int unknown_of_node(const std::string& name) const {
@@ -54,13 +66,13 @@ class Places {
   [[nodiscard]] Eigen::VectorXd mean_weights(const Body& body) const {
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(n_unknowns());
     if (body.kind == BodyKind::kNode) {
-      weights[unknown_of_node(body.name)] = 1.0;
+      weights[unknown_of_node(body.name)] = is_first() ? 1.0 : 0.0;
       return weights;
     }
     for_each_point(body, [&](std::span<const int> nodes, const mesh::ShapeValues& s, double size, const Eigen::Vector3d&) {
       for (int i = 0; i < s.n; ++i) weights[nodes[i]] += size * s.N[i];
     });
-    return weights / weights.sum();
+    return weights / of_all(weights.sum());
   }
 
   /// Calls work(nodes, shape values, volume or area of the point, position) at each quadrature point of a region or surface.
@@ -81,6 +93,7 @@ class Places {
  private:
   const Mesh& mesh_;
   const effects::HeatBalance& balance_;
+  const Share* share_;
 };
 
 SparseRow from_entries(int n, const std::vector<Eigen::Triplet<double>>& entries) {
@@ -94,6 +107,7 @@ SparseRow body_matrix(const Places& places, const Body& body, int surrounding) {
   std::vector<Eigen::Triplet<double>> entries;
   if (body.kind == BodyKind::kNode) {
     const int i = places.unknown_of_node(body.name);
+    if (!places.is_first()) return from_entries(places.n_unknowns(), entries);
     entries.emplace_back(i, i, 1.0);
     if (surrounding >= 0) {
       entries.emplace_back(i, surrounding, -1.0);
@@ -134,24 +148,25 @@ Exchange<SparseRow> to_surrounding(const Places& places, const effects::Exchange
   if (spread) {
     size = 0.0;
     places.for_each_point(body, [&](auto, auto&, double point_size, auto&) { size += point_size; });
+    size = places.of_all(size);
     if (total) e.matrix /= size;
   }
   const double flow_size = spread && !total ? size : 1.0;
   e.flow *= flow_size;
   if (unknown >= 0) {
-    e.flow[unknown] -= flow_size;
+    if (places.is_first()) e.flow[unknown] -= flow_size;
     e.to_ambient = Eigen::VectorXd::Zero(places.n_unknowns());
     return e;
   }
   e.to_ambient = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
   if (exchange.medium_K) {
     e.medium = std::move(e.to_ambient);
-    e.medium_sum = e.medium.sum();
+    e.medium_sum = places.own_part(e.medium.sum());
     e.to_ambient = Eigen::VectorXd::Zero(places.n_unknowns());
     e.hold_medium(*exchange.medium_K - reference_K);
     return e;
   }
-  e.ambient_sum = e.to_ambient.sum();
+  e.ambient_sum = places.own_part(e.to_ambient.sum());
   if (!air.empty() && body.kind == BodyKind::kSurface) {
     e.offset = Eigen::VectorXd::Zero(places.n_unknowns());
     places.for_each_point(
@@ -240,7 +255,7 @@ Exchange<SparseRow> of_pattern(const Mesh& mesh, const Places& places, const Fil
   return e;
 }
 
-Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const mesh::Joint& joint,
+Exchange<SparseRow> across_joint(const std::vector<JointPoint>& points, const Places& places,
                                  const effects::Exchange& exchange, BoundLaw coefficient) {
   const int n = places.n_unknowns();
   Exchange<SparseRow> e{.name = exchange.name,
@@ -251,7 +266,7 @@ Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const m
                         .flow = Eigen::VectorXd::Zero(n),
                         .offset = {}};
   std::vector<Eigen::Triplet<double>> entries;
-  for (const JointPoint& p : joint_points(mesh, joint)) {
+  for (const JointPoint& p : points) {
     std::vector<int> node = p.node_a;
     node.insert(node.end(), p.node_b.begin(), p.node_b.end());
     std::vector<double> jump = p.weight_a;
@@ -306,6 +321,8 @@ class Binder {
       offset_K_m2 += point_m2 * ambient_offset_K(balance_.stratifications, position.z());
       area_m2 += point_m2;
     });
+    offset_K_m2 = places_.of_all(offset_K_m2);
+    area_m2 = places_.of_all(area_m2);
     bodies_.push_back({});  // an empty body, which probe() never asks for
     system_.probes.push_back(
         {effects::ambient_node(), surface.name, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
@@ -319,7 +336,7 @@ class Binder {
 };
 
 std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& places, const effects::HeatBalance& balance,
-                                                Binder& binder, double reference_K) {
+                                                Binder& binder, double reference_K, const Share* share) {
   std::vector<Exchange<SparseRow>> exchanges;
   std::map<std::tuple<std::string, const effects::SurfaceField*, double>, FilmMapping> mapped;  // patterns share them
   for (const effects::Exchange& e : balance.exchanges) {
@@ -332,9 +349,16 @@ std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& 
       exchanges.push_back(
           of_pattern(mesh, places, mapped.at(key), e, binder.bind(e.coefficient), balance.stratifications, reference_K));
     } else if (e.body.kind == BodyKind::kJoint) {
+      if (share) {
+        const auto own = std::find_if(share->joint_points.begin(), share->joint_points.end(),
+                                      [&](const auto& joint) { return joint.first == e.body.name; });
+        must_exist(own == share->joint_points.end() ? -1 : 0, e.body.name);
+        exchanges.push_back(across_joint(own->second, places, e, binder.bind(e.coefficient)));
+        continue;
+      }
       const mesh::Joint* joint = mesh.joint(e.body.name);
       must_exist(joint ? 0 : -1, e.body.name);
-      exchanges.push_back(across_joint(mesh, places, *joint, e, binder.bind(e.coefficient)));
+      exchanges.push_back(across_joint(joint_points(mesh, *joint), places, e, binder.bind(e.coefficient)));
     } else {
       const Body* before = e.body.kind == BodyKind::kSurface && e.per == effects::Per::kArea ? &e.body : nullptr;
       exchanges.push_back(
@@ -369,18 +393,18 @@ ExchangePlace place_of(const effects::Exchange& exchange) {
   return {exchange.body, has_surrounding ? exchange.surrounding : "", exchange.per, exchange.part.id};
 }
 
-Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body) {
-  return Places(mesh, balance).mean_weights(body);
+Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body, const Share* share) {
+  return Places(mesh, balance, share).mean_weights(body);
 }
 
 FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, const effects::HeatBalance& balance,
-                         double reference_K) {
-  const Places places(mesh, balance);
+                         double reference_K, std::shared_ptr<const Share> share) {
+  const Places places(mesh, balance, share.get());
   const int n = places.n_unknowns();
   FullSystem system;
   system.reference_K = reference_K;
   Binder binder(places, balance, system);
-  system.exchanges = make_exchanges(mesh, places, balance, binder, reference_K);
+  system.exchanges = make_exchanges(mesh, places, balance, binder, reference_K, share.get());
   for (const effects::HeatInput& heat : balance.heats) {
     system.sources.push_back({heat.name, heat.body, places.mean_weights(heat.body), binder.bind(heat.power_W)});
   }
@@ -431,9 +455,10 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
   add_cells(mesh, of_region, system.mass, system.conduction);
   for (std::size_t i = 0; i < balance.nodes.size(); ++i) {
     const int unknown = mesh.n_nodes() + static_cast<int>(i);
-    system.mass.coeffRef(unknown, unknown) = balance.nodes[i].capacity_J_K;
+    system.mass.coeffRef(unknown, unknown) = places.is_first() ? balance.nodes[i].capacity_J_K : 0.0;
   }
-  system.ones = Eigen::VectorXd::Ones(n);
+  system.ones = Eigen::VectorXd::Ones(share ? share->n_whole_unknowns() : n);
+  system.share = std::move(share);
   return system;
 }
 

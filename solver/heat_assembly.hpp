@@ -18,12 +18,14 @@ using RegionMaterials = std::vector<Material>;
 ///
 /// ρ, c and k are those at the reference temperature; if they vary, the system also contains the difference.
 /// Every name in the balance must exist in the mesh or among its nodes (the scenario reader checks this).
+/// @param share  the mesh is the part of this process; null: the whole
 /// @throws std::logic_error  for a name that does not exist
 [[nodiscard]] FullSystem assemble_heat(const mesh::Mesh& mesh, const RegionMaterials& materials,
-                                       const effects::HeatBalance& balance, double reference_K = 293.15);
+                                       const effects::HeatBalance& balance, double reference_K = 293.15,
+                                       std::shared_ptr<const Share> share = nullptr);
 
-/// Weights that give the mean temperature of a body from the unknowns; they sum to one.
+/// Weights that give the mean temperature of a body from the unknowns; they sum to one (over all processes, with a share).
 [[nodiscard]] Eigen::VectorXd mean_weights(const mesh::Mesh& mesh, const effects::HeatBalance& balance,
-                                           const effects::Body& body);
+                                           const effects::Body& body, const Share* share = nullptr);
 
 }  // namespace driftwright::solver

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -74,8 +75,10 @@ TemperatureOutOfBounds::TemperatureOutOfBounds(double temperature, double time)
 HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid)
     : system_(system),
       ambient_(ambient),
+      share_(system.share.get()),
       tolerance_K_(kPcgShareOfTolerance * absolute_K),
       n_(system.size()),
+      n_whole_(share_ ? share_->n_whole_unknowns() : n_),
       worth_multigrid_(worth_multigrid),
       is_affine_(is_affine(system)),
       rate_(system),
@@ -84,7 +87,7 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double abs
       mass_(system.mass),
       shifted_(system.mass),
       free_ones_(ones_where_free(system)),
-      mass_ones_(times(system.mass, system.ones)),
+      mass_ones_(times(system.mass, share_ ? Eigen::VectorXd::Ones(n_) : system.ones)),
       mass_free_ones_(times(system.mass, free_ones_)),
       base_(n_),
       gathered_(n_),
@@ -92,10 +95,10 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double abs
       x_(n_),
       residual_(n_),
       work_(n_),
-      space_(n_),
-      shifted_solver_(shifted_),
+      space_(n_, share_),
+      shifted_solver_(shifted_, share_),
       output_entries_(system.outputs.state.cols()),
-      watch_(absolute_K) {
+      watch_(absolute_K, share_) {
   for (const FixedUnknowns& f : system.fixed) {
     flows_.push_back({f.name, FlowKind::kPrescribed});
     is_fixed_.resize(n_, 0);
@@ -135,8 +138,20 @@ void HeatOde::zero_fixed(double* x) const {
   for (int i : fixed_unknowns_) x[i] = 0.0;
 }
 
+void HeatOde::add_copies(Eigen::VectorXd& x) const {
+  if (share_) share_->add_copies(x);
+}
+
+double HeatOde::of_all(double own) const {
+  return share_ ? share_->sum(own) : own;
+}
+
+Eigen::VectorXd HeatOde::state(const double* y) const {
+  return share_ ? share_->whole(y) : Eigen::Map<const Eigen::VectorXd>(y, n_);
+}
+
 void HeatOde::begin(const Eigen::VectorXd& start, double* y) {
-  std::copy(start.data(), start.data() + n_, y);
+  Eigen::Map<Eigen::VectorXd>(y, n_) = share_ ? share_->part_of(start) : start.head(n_);
   std::fill(y + n_, y + size(), 0.0);
   jump_J_ = Eigen::VectorXd::Zero(n_flows());
   auto flow = static_cast<Eigen::Index>(rate_.flows().size());
@@ -154,8 +169,9 @@ void HeatOde::begin(const Eigen::VectorXd& start, double* y) {
 }
 
 void HeatOde::tolerances(double absolute_K, double* tolerance) const {
-  std::fill(tolerance, tolerance + n_, absolute_K);
-  std::fill(tolerance + n_, tolerance + size(), 1e30);
+  const int n_held = share_ ? share_->n_held : n_;  // errors of copies count where they are held
+  std::fill(tolerance, tolerance + n_held, absolute_K);
+  std::fill(tolerance + n_held, tolerance + size(), 1e30);
 }
 
 bool HeatOde::begin_stretch(const LinearStretch& stretch, double*) {
@@ -193,7 +209,8 @@ void HeatOde::look(double t_s, const double* y) {
 }
 
 Eigen::VectorXd HeatOde::observe(const double* y, double ambient_K) const {  // outputs have few or many nonzero entries
-  Eigen::VectorXd outputs = ambient_K * system_.outputs.ambient;
+  const double own_K = share_ && !share_->is_first ? 0.0 : ambient_K;
+  Eigen::VectorXd outputs = own_K * system_.outputs.ambient;
   for (Eigen::Index j = 0; j < outputs.size(); ++j) {
     const double* column = system_.outputs.state.col(j).data();
     const std::vector<int>& entries = output_entries_[static_cast<std::size_t>(j)];
@@ -203,6 +220,7 @@ Eigen::VectorXd HeatOde::observe(const double* y, double ambient_K) const {  // 
     }
     for (int i : entries) outputs[j] += column[i] * y[i];
   }
+  if (share_) share_->sum(outputs.data(), static_cast<int>(outputs.size()));
   return outputs;
 }
 
@@ -253,10 +271,11 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   residual_ = heat_;
   if (!fixed_unknowns_.empty()) residual_ -= times(mass_here(), slope);
   zero_fixed(residual_.data());
+  add_copies(residual_);
   std::fill(x_.begin(), x_.end(), 0.0);
   // A slope counts by its contribution in the first step after a jump, some seconds.
   constexpr double kPerSecond = 0.1;
-  Pcg solver(*matrix);
+  Pcg solver(*matrix, share_);
   solver.refresh(free_ones_);
   count(solver.improve(residual_.data(), x_.data(), kPerSecond * tolerance_K_, kMostPcgIterations));
   slope += x_;
@@ -279,8 +298,10 @@ void HeatOde::refresh_shifted(double gamma) {
   // Residuals are scaled by the heat capacity: A's own diagonal would hide errors of smooth fields where γ K dominates. A
   // tenth of a per cent of the diagonal is added for bodies with almost no capacity.
   constexpr double kLeastShare = 1e-3;
-  const Eigen::VectorXd of_mass = mass_here().diagonal(), of_all = shifted_.diagonal();
-  residual_scale_ = of_mass.cwiseMax(kLeastShare * of_all);
+  Eigen::VectorXd of_mass = mass_here().diagonal(), of_sum = shifted_.diagonal();
+  add_copies(of_mass);
+  add_copies(of_sum);
+  residual_scale_ = of_mass.cwiseMax(kLeastShare * of_sum);
   decouple(shifted_);
   shifted_solver_.refresh(free_ones_, residual_scale_);
   gamma_ = gamma;
@@ -345,28 +366,29 @@ void HeatOde::solve_linear_stage(double gamma) {
     space_.guess(gamma, work_.data(), x_.data(), residual_.data());
     zero_fixed(residual_.data());
   }
-  const Multigrid* multigrid = multigrid_for(gamma);
+  add_copies(residual_);
+  const Preconditioner* multigrid = multigrid_for(gamma);
   const PcgOutcome outcome =
       shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostPcgIterations, multigrid);
   count(outcome);
-  if (!multigrid && outcome.iterations > kManyIterations && n_ > worth_multigrid_) {
+  if (!multigrid && outcome.iterations > kManyIterations && n_whole_ > worth_multigrid_) {
     least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);
   }
   if (multigrid && outcome.iterations > kManyIterations) multigrids_.clear();  // K has changed since they were made
   shifted_solver_.conserve(work_.data(), x_.data());
 }
 
-const Multigrid* HeatOde::multigrid_for(double gamma) {
+const Preconditioner* HeatOde::multigrid_for(double gamma) {
   if (gamma < least_multigrid_gamma_) return nullptr;
   constexpr double kBand =
       2.0;  // a multigrid made for a γ within this factor is almost as good; a new one costs some ten iterations
   constexpr std::size_t kMost = 4;  // stored: after each jump γ grows again through the same values
   for (const auto& [of_gamma, multigrid] : multigrids_) {
-    if (gamma <= kBand * of_gamma && of_gamma <= kBand * gamma) return &multigrid;
+    if (gamma <= kBand * of_gamma && of_gamma <= kBand * gamma) return multigrid.get();
   }
   if (multigrids_.size() == kMost) multigrids_.erase(multigrids_.begin());
-  multigrids_.emplace_back(gamma, Multigrid(shifted_));
-  return &multigrids_.back().second;
+  multigrids_.emplace_back(gamma, share_ ? share_->preconditioner(shifted_) : std::make_unique<Multigrid>(shifted_));
+  return multigrids_.back().second.get();
 }
 
 bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weight) {
@@ -384,6 +406,7 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
     multiply(mass_here(), work_.data(), residual_.data());
     residual_ += gamma * heat_;
     zero_fixed(residual_.data());
+    add_copies(residual_);
     step.setZero();
     // The first correction is computed even if it is below the tolerance, as that of a very short step is. Otherwise
     // close_balance() would spread its heat over the whole machine, step after step.
@@ -392,7 +415,7 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
     x_ += step;
     double sum = 0.0;
     for (int i = 0; i < n_; ++i) sum += step[i] * step[i] * weight[i] * weight[i];
-    const double size = std::sqrt(sum / n_);
+    const double size = std::sqrt(of_all(sum) / n_whole_);  // copies have no weight
     if (iteration > 0) rate = std::max(kSlowest * rate, size / last);
     if (size * std::min(rate, 1.0) <= kShareOfError) {
       close_balance(t_s, gamma);
@@ -407,16 +430,17 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
 /// Evaluates the flows at the state itself, then adds a constant to it until its heat equals theirs up to rounding.
 void HeatOde::close_balance(double t_s, double gamma) {
   constexpr int kMostPasses = 8;
-  const double of_stiffness = free_ones_.dot(times(*stiffness_, free_ones_));
-  const double least_K = 1e-15 * (1.0 + base_.cwiseAbs().maxCoeff());
+  const double of_stiffness = of_all(free_ones_.dot(times(*stiffness_, free_ones_)));
+  const double largest_K = base_.cwiseAbs().maxCoeff();
+  const double least_K = 1e-15 * (1.0 + (share_ ? share_->largest(largest_K) : largest_K));
   for (int pass = 0; pass < kMostPasses; ++pass) {
     work_ = base_ + x_;
     evaluate(t_s, work_.data());
     if (system_.capacity) mass_free_ones_ = times(mass_now_, free_ones_);
-    const double ones_a_ones = mass_free_ones_.dot(free_ones_) + gamma * of_stiffness;
+    const double ones_a_ones = of_all(mass_free_ones_.dot(free_ones_)) + gamma * of_stiffness;
     if (!(ones_a_ones > 0.0)) return;  // every unknown is prescribed
     work_ = gathered_ - x_;
-    const double shift_K = (gamma * free_ones_.dot(heat_) + mass_free_ones_.dot(work_)) / ones_a_ones;
+    const double shift_K = of_all(gamma * free_ones_.dot(heat_) + mass_free_ones_.dot(work_)) / ones_a_ones;
     x_ += shift_K * free_ones_;
     if (std::abs(shift_K) <= least_K) return;
   }
@@ -435,6 +459,7 @@ void HeatOde::count(const PcgOutcome& outcome) {
 Eigen::VectorXd HeatOde::heats_J(const double* y) const {
   const double* start = began_.data();
   Eigen::VectorXd heats = jump_J_ + Eigen::Map<const Eigen::VectorXd>(y + n_, n_flows());
+  if (share_) share_->sum(heats.data(), static_cast<int>(heats.size()));
   if (is_fixed_.empty()) return heats;
   const Eigen::VectorXd rise = Eigen::Map<const Eigen::VectorXd>(y, n_) - Eigen::Map<const Eigen::VectorXd>(start, n_);
   Eigen::VectorXd beyond_J = Eigen::VectorXd::Zero(system_.capacity ? n_ : 0);
@@ -449,7 +474,7 @@ Eigen::VectorXd HeatOde::heats_J(const double* y) const {
 }
 
 double HeatOde::stored_J(const double* y) const {
-  return jump_J_.sum() + stored_J(y, began_.data());
+  return of_all(jump_J_.sum() + stored_J(y, began_.data()));
 }
 
 double HeatOde::stored_J(const double* y, const double* start) const {

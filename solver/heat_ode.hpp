@@ -9,8 +9,12 @@
 //
 // Unknowns with a prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them at g is
 // ∫ -1'heat dt + 1'M (θ - θ_0) over those rows. Where heat capacity varies, M is M(θ).
+//
+// Where several processes share a system (share.hpp), each integrates the unknowns of its part, with copies, and its own
+// part of each flow; steps and iterations are the same on all.
 
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -52,9 +56,10 @@ class HeatOde : public StageOde {
   void look(double t_s, const double* y) override;
   [[nodiscard]] std::vector<Overshoot> overshoots() const override { return watch_.result(); }
   [[nodiscard]] Eigen::VectorXd observe(const double* y, double ambient_K) const override;
-  [[nodiscard]] Eigen::VectorXd state(const double* y) const override { return Eigen::Map<const Eigen::VectorXd>(y, n_); }
+  [[nodiscard]] Eigen::VectorXd state(const double* y) const override;
   [[nodiscard]] Eigen::VectorXd heats_J(const double* y) const override;
   [[nodiscard]] double stored_J(const double* y) const override;
+  [[nodiscard]] const Share* share() const override { return share_; }
   [[nodiscard]] int n_solves() const override { return n_solves_; }
   [[nodiscard]] int n_iterations() const override { return n_iterations_; }
 
@@ -77,7 +82,10 @@ class HeatOde : public StageOde {
   void refresh_shifted(double gamma);
   void solve_linear_stage(double gamma);
   /// The preconditioner for M + γ K; nullptr if its diagonal is used.
-  [[nodiscard]] const Multigrid* multigrid_for(double gamma);
+  [[nodiscard]] const Preconditioner* multigrid_for(double gamma);
+  /// An additive vector made consistent, and a sum over all processes.
+  void add_copies(Eigen::VectorXd& x) const;
+  [[nodiscard]] double of_all(double own) const;
   [[nodiscard]] bool solve_nonlinear_stage(double t_s, double gamma, const double* weight);
   void close_balance(double t_s, double gamma);
   /// Heat into the prescribed unknowns of set f at the state of the last evaluation plus x [W].
@@ -86,8 +94,9 @@ class HeatOde : public StageOde {
 
   const FullSystem& system_;
   const TimeSeries& ambient_;
+  const Share* share_;  ///< null: this process has the whole system. Else n_ is the number of unknowns of its part
   double tolerance_K_;
-  int n_;
+  int n_, n_whole_;
   int worth_multigrid_ = kWorthMultigrid;
   bool is_affine_;
   HeatRate rate_;
@@ -108,7 +117,7 @@ class HeatOde : public StageOde {
   Slope at_start_, latest_;
   SlopeSpace space_;
   Pcg shifted_solver_;
-  std::vector<std::pair<double, Multigrid>> multigrids_;  ///< γ, and the multigrid made for it
+  std::vector<std::pair<double, std::unique_ptr<Preconditioner>>> multigrids_;  ///< γ, and the multigrid made for it
   double least_multigrid_gamma_ = std::numeric_limits<double>::infinity();
   Eigen::VectorXd began_, jump_J_;                ///< the state at t = 0, and the heat of each flow in the jump to it
   std::vector<std::vector<int>> output_entries_;  ///< indices of the nonzero entries, per output

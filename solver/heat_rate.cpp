@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -116,11 +117,14 @@ bool HeatRate::set(const Drive& drive, double time_s, std::string_view run) {
   return true;
 }
 
+double HeatRate::of_probe(std::size_t probe, double mean_K, double ambient_K) const {
+  return system_.reference_K + mean_K + system_.probes[probe].ambient_share * ambient_K + system_.probes[probe].offset_K;
+}
+
 void HeatRate::look_at_state(const double* theta, double ambient_K) {
-  for (std::size_t p = 0; p < probes_.size(); ++p) {
-    probe_K_[p] = system_.reference_K + probes_[p].dot(theta) + system_.probes[p].ambient_share * ambient_K +
-                  system_.probes[p].offset_K;
-  }
+  for (std::size_t p = 0; p < probes_.size(); ++p) probe_K_[p] = probes_[p].dot(theta);
+  if (system_.share) system_.share->sum(probe_K_.data(), static_cast<int>(probe_K_.size()));
+  for (std::size_t p = 0; p < probes_.size(); ++p) probe_K_[p] = of_probe(p, probe_K_[p], ambient_K);
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     const HeatSource& source = system_.sources[s];
     if (source.power_W.looks_at_state()) sources_[s].power_W = named(source.name, [&] { return value_of(source.power_W); });
@@ -160,7 +164,8 @@ void HeatRate::evaluate(const double* theta, double ambient_K, double* heat_W) {
 }
 
 void HeatRate::flows_W(const double* theta, double ambient_K, double* flows_W) const {
-  for (const Source& s : sources_) *flows_W++ = s.power_W;
+  const bool has_powers = !system_.share || system_.share->is_first;  // every process knows all of them
+  for (const Source& s : sources_) *flows_W++ = has_powers ? s.power_W : 0.0;
   for (std::size_t e = 0; e < crossings_.size(); ++e) {
     const Exchange<SparseRow>& exchange = system_.exchanges[e];
     const double crossing_W =
@@ -206,9 +211,9 @@ const SparseRow& HeatRate::tangent(const double* theta, double ambient_K) {
 }
 
 double HeatRate::thermostat_probe_K(int i, const double* theta, double ambient_K) const {
-  const int probe = system_.thermostats[i].probe;
-  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].ambient_share * ambient_K +
-         system_.probes[probe].offset_K;
+  const auto probe = static_cast<std::size_t>(system_.thermostats[i].probe);
+  const double mean_K = probes_[probe].dot(theta);
+  return of_probe(probe, system_.share ? system_.share->sum(mean_K) : mean_K, ambient_K);
 }
 
 }  // namespace driftwright::solver

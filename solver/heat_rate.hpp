@@ -19,7 +19,7 @@ class HeatRate {
   /// @return true if a power or a coefficient that does not depend on the state has changed
   bool set(const Drive& drive, double time_s, std::string_view run = {});
 
-  /// Net heat into each unknown [W], n long, at θ.
+  /// Net heat into each unknown [W], n long, at θ. Additive, as all flows, where several processes share the system.
   void evaluate(const double* theta, double ambient_K, double* heat_W);
 
   /// Each flow of flows() [W] at the θ of the last evaluate().
@@ -60,6 +60,7 @@ class HeatRate {
     double coefficient = 0.0;
   };
   void look_at_state(const double* theta, double ambient_K);
+  [[nodiscard]] double of_probe(std::size_t probe, double mean_K, double ambient_K) const;
   [[nodiscard]] double value_of(const BoundLaw& law) const;
 
   const FullSystem& system_;

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "base/errors.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -128,6 +129,10 @@ void interpolate(double share, double step_s, const double* from, const double* 
   });
 }
 
+N_Vector new_vector(const StageOde& ode, SUNContext context) {
+  return ode.share() ? ode.share()->new_vector(ode.size(), context) : N_VNew_Serial(ode.size(), context);
+}
+
 /// Gives ARKODE the callbacks, the tolerances, the method and the limits of its steps.
 void configure(void* mem, Callee& callee, SUNNonlinearSolver stage, N_Vector tolerance, const TransientOptions& options,
                double from_s) {
@@ -173,7 +178,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   SUNContext raw_context = nullptr;
   SUNContext_Create(nullptr, &raw_context);
   const ContextPtr context(raw_context);
-  const VectorPtr y(N_VNew_Serial(ode.size(), context.get())), tolerance(N_VNew_Serial(ode.size(), context.get()));
+  const VectorPtr y(new_vector(ode, context.get())), tolerance(new_vector(ode, context.get()));
   ode.begin(start, out(y.get()));
   ode.tolerances(options.absolute_tolerance_K, out(tolerance.get()));
   Callee callee{ode, static_cast<int>(ode.thermostats().size()), nullptr, nullptr, {}};
@@ -192,8 +197,8 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   run.heat_J.resize(static_cast<Eigen::Index>(run.flows.size()), n_times);
   run.stored_J.resize(n_times);
 
-  const VectorPtr at_output(N_VNew_Serial(ode.size(), context.get()));
-  const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at the start of the last step
+  const VectorPtr at_output(new_vector(ode, context.get()));
+  const VectorPtr before(new_vector(ode, context.get()));  // the state at the start of the last step
   Eigen::Index next = 0;
   const auto take_output = [&](double t_s, N_Vector state_vector) {
     const Eigen::VectorXd outputs = ode.observe(in(state_vector), ambient.at(t_s));

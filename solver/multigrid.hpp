@@ -11,12 +11,13 @@
 #include <string>
 
 #include "solver/node_matrix.hpp"
+#include "solver/share.hpp"
 #include "solver/sparse.hpp"
 
 namespace driftwright::solver {
 
 /// The hierarchy of levels for one matrix.
-class Multigrid {
+class Multigrid : public Preconditioner {
  public:
   /// For heat: a constant temperature has zero energy inside.
   /// @param a  symmetric positive definite; the conduction matrix with its films, or M + γ K
@@ -25,7 +26,7 @@ class Multigrid {
   /// @param coords  3 x n_nodes [m]
   /// @param stiff   nodes with springs that are stiffer than the cells around them, ascending
   Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords, const std::vector<int>& stiff = {});
-  ~Multigrid();
+  ~Multigrid() override;
   Multigrid(Multigrid&&) noexcept;
   Multigrid& operator=(Multigrid&&) noexcept;
 
@@ -34,7 +35,7 @@ class Multigrid {
   void refresh(const SparseRow& a);
 
   /// z = B r, B close to A⁻¹. Not thread-safe.
-  void precondition(const double* r, double* z) const;
+  void precondition(const double* r, double* z) const override;
 
   /// Nodes of each level: "97329 / 5210 / 240".
   [[nodiscard]] std::string levels() const;

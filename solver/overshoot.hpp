@@ -15,7 +15,8 @@ namespace driftwright::solver {
 class OvershootWatch {
  public:
   /// @param least_K  smaller overshoots are not reported
-  explicit OvershootWatch(double least_K) : least_K_(least_K) {}
+  /// @param share    the unknowns are those of this process; null: all
+  explicit OvershootWatch(double least_K, const Share* share = nullptr) : least_K_(least_K), share_(share) {}
 
   /// Call when a power or coefficient has jumped, with this time and state.
   void begin(double time_s, const double* theta, int n);
@@ -27,6 +28,7 @@ class OvershootWatch {
 
  private:
   double least_K_;
+  const Share* share_;
   double low_K_ = 0.0, high_K_ = 0.0;
   Overshoot worst_;
   std::vector<Overshoot> found_;

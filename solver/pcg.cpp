@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/multigrid.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 
@@ -13,12 +13,15 @@ namespace driftwright::solver {
 
 void Pcg::refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale) {
   const int n = static_cast<int>(a_.rows());
-  inverse_diagonal_ = a_.diagonal().cwiseInverse();
+  inverse_diagonal_ = a_.diagonal();
+  if (share_) share_->add_copies(inverse_diagonal_);
+  inverse_diagonal_ = inverse_diagonal_.cwiseInverse().eval();
   inverse_scale_ = scale.size() > 0 ? scale.cwiseInverse() : inverse_diagonal_;
   a_ones_.resize(n);
   ones_ = ones;
   multiply(a_, ones.data(), a_ones_.data());
-  ones_a_ones_ = ones.dot(a_ones_);
+  ones_a_ones_ = of_all(ones.dot(a_ones_));
+  if (share_) share_->add_copies(a_ones_);
   r_.resize(n);
   z_.resize(n);
   p_.resize(n);
@@ -30,7 +33,7 @@ void Pcg::refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale) {
 void Pcg::project_constant(double* r, double* x) const {  // x += c so that r sums to zero: heat is conserved
   const int n = static_cast<int>(ones_.size());
   if (!(ones_a_ones_ > 0.0)) return;  // every unknown is prescribed
-  const double c = dot(ones_.data(), r, n) / ones_a_ones_;
+  const double c = of_all(dot(ones_.data(), r, n_held())) / ones_a_ones_;
   Eigen::Map<Eigen::VectorXd>(x, n) += c * ones_;
   Eigen::Map<Eigen::VectorXd>(r, n) -= c * a_ones_;
 }
@@ -38,8 +41,25 @@ void Pcg::project_constant(double* r, double* x) const {  // x += c so that r su
 void Pcg::conserve(const double* b, double* x) const {
   const int n = static_cast<int>(ones_.size());
   if (!(ones_a_ones_ > 0.0)) return;
-  const double c = (dot(ones_.data(), b, n) - dot(a_ones_.data(), x, n)) / ones_a_ones_;
+  const double c = of_all(dot(ones_.data(), b, n) - dot(a_ones_.data(), x, n_held())) / ones_a_ones_;
   Eigen::Map<Eigen::VectorXd>(x, n) += c * ones_;
+}
+
+int Pcg::n_held() const {
+  return share_ ? share_->n_held : static_cast<int>(ones_.size());
+}
+
+double Pcg::of_all(double own) const {
+  return share_ ? share_->sum(own) : own;
+}
+
+Pcg::Sums Pcg::of_all(const Sums& own, const double* r, bool by_diagonal) const {
+  if (!share_) return own;
+  const auto n = static_cast<Eigen::Index>(n_held());
+  const Eigen::Map<const Eigen::VectorXd> held(r, n);
+  const double rz = by_diagonal ? held.cwiseAbs2().dot(inverse_diagonal_.head(n)) : held.dot(z_.head(n));
+  const auto [sum, largest] = share_->sum_and_largest(rz, own.largest);
+  return {sum, largest};
 }
 
 Pcg::Sums Pcg::sum_blocks(bool with_rz) const {
@@ -70,10 +90,11 @@ double Pcg::multiply_p() {  // q = A p, and p . q
   });
   double sum = 0.0;
   for (double of_block : block_sum_) sum += of_block;
-  return sum;
+  if (share_) share_->add_copies(q_);
+  return of_all(sum);
 }
 
-Pcg::Sums Pcg::start(const double* r, const Multigrid* multigrid) {  // p = B r
+Pcg::Sums Pcg::start(const double* r, const Preconditioner* multigrid) {  // p = B r
   const int n = static_cast<int>(p_.size());
   if (multigrid) multigrid->precondition(r, z_.data());
   for_blocks(n, [&](int block, int begin, int end) {
@@ -88,10 +109,10 @@ Pcg::Sums Pcg::start(const double* r, const Multigrid* multigrid) {  // p = B r
     block_sum_[block] = sum;
     block_largest_[block] = largest;
   });
-  return sum_blocks(true);
+  return of_all(sum_blocks(true), r, multigrid == nullptr);
 }
 
-Pcg::Sums Pcg::advance(double alpha, double* r, double* x, const Multigrid* multigrid) {
+Pcg::Sums Pcg::advance(double alpha, double* r, double* x, const Preconditioner* multigrid) {
   const int n = static_cast<int>(p_.size());
   const double* p = p_.data();
   const double* q = q_.data();
@@ -115,10 +136,10 @@ Pcg::Sums Pcg::advance(double alpha, double* r, double* x, const Multigrid* mult
     multigrid->precondition(r, z_.data());
     sums.rz = dot(r, z_.data(), n);
   }
-  return sums;
+  return of_all(sums, r, multigrid == nullptr);
 }
 
-void Pcg::turn(double beta, const double* r, const Multigrid* multigrid) {
+void Pcg::turn(double beta, const double* r, const Preconditioner* multigrid) {
   const int n = static_cast<int>(p_.size());
   double* p = p_.data();
   const double* z = z_.data();
@@ -134,7 +155,7 @@ void Pcg::turn(double beta, const double* r, const Multigrid* multigrid) {
   });
 }
 
-PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iterations, const Multigrid* multigrid,
+PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iterations, const Preconditioner* multigrid,
                         int least_iterations) {
   project_constant(r, x);
   PcgOutcome outcome;
@@ -157,6 +178,7 @@ PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iteratio
 PcgOutcome Pcg::solve(const double* b, double* x, double tolerance, int max_iterations) {
   multiply(a_, x, q_.data());
   r_ = Eigen::Map<const Eigen::VectorXd>(b, r_.size()) - q_;
+  if (share_) share_->add_copies(r_);
   return improve(r_.data(), x, tolerance, max_iterations);
 }
 

@@ -8,7 +8,8 @@
 
 namespace driftwright::solver {
 
-class Multigrid;
+class Preconditioner;
+class Share;
 
 struct PcgOutcome {
   int iterations = 0;
@@ -19,24 +20,26 @@ struct PcgOutcome {
 /// The solver for one matrix.
 class Pcg {
  public:
-  /// @param a  symmetric positive definite; borrowed, and read again at each solve
-  explicit Pcg(const SparseRow& a) : a_(a) {}
+  /// @param a      symmetric positive definite; borrowed, and read again at each solve
+  /// @param share  a is the additive part of this process (share.hpp): residuals and solutions are then consistent; null: the
+  ///               whole
+  explicit Pcg(const SparseRow& a, const Share* share = nullptr) : a_(a), share_(share) {}
 
   /// Call when the values of the matrix have changed.
   /// @param ones   1 where heat is conserved, 0 at unknowns of prescribed temperature
-  /// @param scale  the unit of residuals, row by row [J/K, the unit of A]; empty: the diagonal of A
+  /// @param scale  the unit of residuals, row by row [J/K, the unit of A]; empty: the diagonal of A. Consistent
   void refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale = {});
 
-  /// Solves A x = b from the x given. Stops when |r_i| <= tolerance scale_i for every row.
+  /// Solves A x = b from the x given; b is additive. Stops when |r_i| <= tolerance scale_i for every row.
   [[nodiscard]] PcgOutcome solve(const double* b, double* x, double tolerance, int max_iterations);
   /// The same if b - A x is known.
   /// @param r  in: b - A x at the given x; out: at the solution
-  /// @param multigrid  of a matrix close to A, or nullptr for the diagonal
+  /// @param multigrid  or another preconditioner, of a matrix close to A; nullptr for the diagonal
   /// @param least_iterations  that are made however small the residual is, unless it is zero
   [[nodiscard]] PcgOutcome improve(double* r, double* x, double tolerance, int max_iterations,
-                                   const Multigrid* multigrid = nullptr, int least_iterations = 0);
+                                   const Preconditioner* multigrid = nullptr, int least_iterations = 0);
   /// Adds a constant to x such that the sum of A x equals the sum of b; this removes rounding errors of residuals that were
-  /// updated step by step.
+  /// updated step by step. @param b  additive
   void conserve(const double* b, double* x) const;
 
  private:
@@ -45,12 +48,17 @@ class Pcg {
   };
   void project_constant(double* r, double* x) const;
   [[nodiscard]] double multiply_p();
-  [[nodiscard]] Sums start(const double* r, const Multigrid* multigrid);
-  [[nodiscard]] Sums advance(double alpha, double* r, double* x, const Multigrid* multigrid);
-  void turn(double beta, const double* r, const Multigrid* multigrid);
+  [[nodiscard]] Sums start(const double* r, const Preconditioner* multigrid);
+  [[nodiscard]] Sums advance(double alpha, double* r, double* x, const Preconditioner* multigrid);
+  void turn(double beta, const double* r, const Preconditioner* multigrid);
   [[nodiscard]] Sums sum_blocks(bool with_rz) const;
+  /// Over all processes: r.z of what each one holds, the largest residual.
+  [[nodiscard]] Sums of_all(const Sums& own, const double* r, bool by_diagonal) const;
+  [[nodiscard]] int n_held() const;
+  [[nodiscard]] double of_all(double own) const;
 
   const SparseRow& a_;
+  const Share* share_;
   Eigen::VectorXd inverse_diagonal_, inverse_scale_, ones_, a_ones_;
   double ones_a_ones_ = 0.0;
   Eigen::VectorXd r_, z_, p_, q_;

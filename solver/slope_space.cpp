@@ -3,11 +3,17 @@
 #include <cmath>
 
 #include "base/dense.hpp"
+#include "solver/share.hpp"
 
 namespace driftwright::solver {
 
-SlopeSpace::SlopeSpace(int n)
-    : n_(n), slope_(n, kMost), mass_slope_(n, kMost), stiffness_slope_(n, kMost), block_sums_(2 * kMost, n_blocks(n)) {}
+SlopeSpace::SlopeSpace(int n, const Share* share)
+    : n_(n),
+      share_(share),
+      slope_(n, kMost),
+      mass_slope_(n, kMost),
+      stiffness_slope_(n, kMost),
+      block_sums_(2 * kMost, n_blocks(n)) {}
 
 void SlopeSpace::add(const SparseRow& mass, const SparseRow& stiffness, const double* slope) {
   newest_ = (newest_ + 1) % kMost;
@@ -35,7 +41,8 @@ void SlopeSpace::add(const SparseRow& mass, const SparseRow& stiffness, const do
       block_sums_(kMost + j, block) = slope_(rows, j).dot(stiffness_slope_(rows, newest_));
     }
   });
-  const Eigen::VectorXd sums = block_sums_.rowwise().sum();
+  Eigen::VectorXd sums = block_sums_.rowwise().sum();
+  if (share_) share_->sum(sums.data(), static_cast<int>(sums.size()));
   for (int j = 0; j < n_slopes_; ++j) {
     mass_products_(j, newest_) = mass_products_(newest_, j) = sums[j];
     stiffness_products_(j, newest_) = stiffness_products_(newest_, j) = sums[kMost + j];
@@ -48,7 +55,8 @@ void SlopeSpace::guess(double gamma, const double* b, double* x, double* residua
     const Eigen::Map<const Eigen::VectorXd> of_block(b + begin, end - begin);
     for (int j = 0; j < m; ++j) block_sums_(j, block) = slope_.col(j).segment(begin, end - begin).dot(of_block);
   });
-  const Eigen::VectorXd projected = block_sums_.topRows(m).rowwise().sum();
+  Eigen::VectorXd projected = block_sums_.topRows(m).rowwise().sum();
+  if (share_) share_->sum(projected.data(), m);
   const Eigen::MatrixXd a = (mass_products_ + gamma * stiffness_products_).topLeftCorner(m, m);
   // Slopes are almost parallel when little changes; combinations dominated by rounding are left out.
   constexpr double kLeastEigenvalue = 1e-9;

@@ -10,11 +10,14 @@
 
 namespace driftwright::solver {
 
+class Share;
+
 /// The recent slopes, with their products with M and K.
 class SlopeSpace {
  public:
-  /// @param n  number of unknowns
-  explicit SlopeSpace(int n);
+  /// @param n      number of unknowns
+  /// @param share  null: this process has all of them; else slopes are consistent, right-hand sides and residuals additive
+  explicit SlopeSpace(int n, const Share* share = nullptr);
 
   /// Call when K has changed.
   void clear() {
@@ -33,6 +36,7 @@ class SlopeSpace {
   using Small = Eigen::Matrix<double, kMost, kMost>;
 
   int n_, n_slopes_ = 0, newest_ = -1;
+  const Share* share_;
   Eigen::MatrixXd slope_, mass_slope_, stiffness_slope_;  ///< n x kMost
   Small mass_products_ = Small::Zero(), stiffness_products_ = Small::Zero();
   Eigen::MatrixXd block_sums_;  ///< 2 kMost x blocks

@@ -62,6 +62,8 @@ class StageOde {
   [[nodiscard]] virtual Eigen::VectorXd heats_J(const double* y) const = 0;
   [[nodiscard]] virtual double stored_J(const double* y) const = 0;
 
+  /// Of a state that several processes share; null: one has all of it.
+  [[nodiscard]] virtual const Share* share() const { return nullptr; }
   [[nodiscard]] virtual int n_solves() const { return 0; }
   [[nodiscard]] virtual int n_iterations() const { return 0; }
 };

@@ -136,6 +136,8 @@ struct Outputs {
   Eigen::VectorXd ambient;        ///< n_outputs; share of the ambient temperature
 };
 
+class Share;
+
 /// The whole system, full or reduced.
 template <class Matrix>
 struct ThermalSystem {
@@ -155,6 +157,9 @@ struct ThermalSystem {
   Outputs outputs;
   std::vector<BodyPart<Matrix>> parts;  ///< empty unless requested
   Eigen::VectorXd ones;  ///< the state "1 K everywhere" (projected in a reduced system), for the energy balance
+  /// Of a machine that several processes compute: this system is the part of this process. Its matrices and vectors are
+  /// additive (share.hpp), except `ones`, which is of the whole machine as all states outside of the solver. Else null.
+  std::shared_ptr<const Share> share = nullptr;
 
   [[nodiscard]] int size() const { return static_cast<int>(mass.rows()); }
 

@@ -1,6 +1,7 @@
 #include "solver/variable_material.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "mesh/shape.hpp"
 
@@ -62,11 +63,11 @@ std::shared_ptr<const NonlinearTerm> variable_conduction(const mesh::Mesh& mesh,
                                                          double reference_K) {
   auto term = std::make_shared<VariableConduction>(reference_K);
   for (const Material& m : materials) term->curves.push_back(m.conductivity_curve);
-  bool any = false;
+  if (std::all_of(materials.begin(), materials.end(), [](const Material& m) { return m.conductivity_curve.empty(); }))
+    return nullptr;
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const int group = mesh.cells.group[c];
     if (term->curves[group].empty()) continue;
-    any = true;
     const mesh::CellShape shape = mesh.cells.shape[c];
     const auto nodes = mesh.cells.nodes(c);
     const auto x = mesh::cell_coords(mesh, nodes);
@@ -81,11 +82,13 @@ std::shared_ptr<const NonlinearTerm> variable_conduction(const mesh::Mesh& mesh,
     }
     term->add(std::move(cell));
   }
-  return any ? term : nullptr;
+  return term;
 }
 
 std::shared_ptr<const VariableCapacity> VariableCapacity::of(const mesh::Mesh& mesh, const std::vector<Material>& materials,
                                                              double reference_K) {
+  if (std::all_of(materials.begin(), materials.end(), [](const Material& m) { return m.heat_capacity_curve.empty(); }))
+    return nullptr;
   auto capacity = std::make_shared<VariableCapacity>();
   capacity->reference_K_ = reference_K;
   for (const Material& m : materials) capacity->curves_.push_back(m.heat_capacity_curve);
@@ -104,7 +107,7 @@ std::shared_ptr<const VariableCapacity> VariableCapacity::of(const mesh::Mesh& m
     }
     capacity->cells_.push_back(std::move(cell));
   }
-  return capacity->cells_.empty() ? nullptr : capacity;
+  return capacity;
 }
 
 void VariableCapacity::add_to(const double* theta, SparseRow& mass) const {

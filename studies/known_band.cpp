@@ -275,6 +275,8 @@ std::optional<RecordBand> known_band(const scenarios::Scenario& scenario, const 
   const std::vector<std::size_t> rows = band_rows(run.record.n_samples());
   NumbersBand drawn;
   if (scenarios::says_known_to(machine)) {
+    if (const scenarios::Machine* full = run.model.full(); full && full->system.share)
+      return no_band("they need a reduced model, which --distributed does not make.");
     if (!can_be_reduced(machine)) return no_band("a temperature is prescribed over time, which no reduced model follows.");
     try {
       drawn = numbers_band(scenario, run, rows, listener);
