@@ -162,21 +162,27 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
     const auto first_column = static_cast<Eigen::Index>(next), n_columns = static_cast<Eigen::Index>(last - next);
     const std::span now_s = std::span(output_s).subspan(next, last - next);
     next = last;
-    // Sums at the outputs of this stretch, with the slow modes' share of the rows they were made of.
-    const auto write = [&](const SumsOfDecays& sums, const Eigen::MatrixXd& rows, auto slow_value, auto out) {
+    // Sums at the outputs of this stretch, with the slow modes' share of the rows they were made of. An output at its start
+    // is taken as it is: a machine at rest there has 0, and not what is left of sums that cancel.
+    const bool begins_here = n_columns > 0 && now_s.front() == stretch.start_s;
+    const auto write = [&](const SumsOfDecays& sums, const Eigen::MatrixXd& rows, auto slow_value, auto out, auto at_start) {
       d.decays.values(sums, d.lambda_1_s, now_s, stretch.start_s, out);
       for (Eigen::Index i : solution.slow) {
         for (Eigen::Index k = 0; k < n_columns; ++k)
           out.col(k) += slow_value(i, now_s[static_cast<std::size_t>(k)] - stretch.start_s) * rows.col(i);
       }
+      if (begins_here) out.col(0) = at_start();
     };
     const auto slow_state = [&](Eigen::Index i, double t_s) { return solution.slow_state(i, t_s); };
     const auto slow_integral = [&](Eigen::Index i, double t_s) { return solution.slow_integral(i, t_s); };
     SumsOfDecays outputs = solution.states_of(d.outputs);
     outputs.constant() += ambient_K * system_.outputs.ambient;
     outputs.slope() += ambient_slope * system_.outputs.ambient;
-    write(outputs, d.outputs, slow_state, run.outputs.middleCols(first_column, n_columns));
-    if (states) write(solution.states_of(d.vectors), d.vectors, slow_state, states->middleCols(first_column, n_columns));
+    write(outputs, d.outputs, slow_state, run.outputs.middleCols(first_column, n_columns),
+          [&] { return Eigen::VectorXd(d.outputs * solution.z0 + ambient_K * system_.outputs.ambient); });
+    if (states)
+      write(solution.states_of(d.vectors), d.vectors, slow_state, states->middleCols(first_column, n_columns),
+            [&] { return Eigen::VectorXd(d.vectors * solution.z0); });
     const Eigen::VectorXd e = solution.decay(length_s);
     if (with_heat) {
       const Eigen::MatrixXd flows = inwards.asDiagonal() * d.flows;
@@ -185,7 +191,8 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
       heats.constant() += heat_J.tail(n_exchanges);
       heats.slope() -= ambient_K * from_ambient + inwards.cwiseProduct(d.offset_W);
       heats.curve() -= 0.5 * ambient_slope * from_ambient;
-      write(heats, flows, slow_integral, run.heat_J.bottomRows(n_exchanges).middleCols(first_column, n_columns));
+      write(heats, flows, slow_integral, run.heat_J.bottomRows(n_exchanges).middleCols(first_column, n_columns),
+            [&] { return heat_J.tail(n_exchanges); });
       for (Eigen::Index k = 0; k < n_columns; ++k) {
         const double t_s = now_s[static_cast<std::size_t>(k)] - stretch.start_s;
         run.heat_J.col(first_column + k).head(n_sources) = heat_J.head(n_sources) + t_s * power_W;
@@ -196,7 +203,8 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
       SumsOfDecays stored = solution.states_of(d.stored_J_K);
       stored.constant().array() -= initial_J;
       Eigen::MatrixXd stored_J(1, n_columns);
-      write(stored, d.stored_J_K, slow_state, stored_J.middleCols(0, n_columns));
+      write(stored, d.stored_J_K, slow_state, stored_J.middleCols(0, n_columns),
+            [&] { return Eigen::VectorXd::Constant(1, (d.stored_J_K * solution.z0).value() - initial_J); });
       run.stored_J.segment(first_column, n_columns) = stored_J.transpose();
     }
     z = solution.state(length_s, e);

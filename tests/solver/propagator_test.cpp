@@ -195,6 +195,21 @@ TEST(Propagator, ManyOutputsAreThoseAskedOneByOne) {
   }
 }
 
+TEST(Propagator, AMachineAtRestBeginsAtExactlyZero) {
+  const FullSystem full = fixtures::two_blocks(1);
+  const ReducedSystem reduced =
+      project(full, orthonormalise(full.mass, Eigen::MatrixXd::Identity(full.size(), full.size())));
+  Eigen::MatrixXd states;
+  const TimeSeries ambient{{0, 7200}, {0.0, 2.0}};
+  const Trajectory run =
+      Propagator(reduced).run(kCycle, ambient, every(60), Eigen::VectorXd::Zero(reduced.size()), true, &states);
+  EXPECT_TRUE(run.outputs.col(0).isZero(0.0));
+  EXPECT_TRUE(states.col(0).isZero(0.0));
+  EXPECT_TRUE(run.heat_J.col(0).isZero(0.0));
+  EXPECT_EQ(run.stored_J[0], 0.0);
+  EXPECT_FALSE(run.outputs.col(1).isZero(1e-6));
+}
+
 TEST(Propagator, HeatsAddUpToWhatIsStored) {
   // With the uniform temperature in the basis, 1'(M z' + K z - f) = 0 holds in the small system, too.
   const FullSystem system = fixtures::two_blocks(1);
