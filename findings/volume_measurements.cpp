@@ -72,8 +72,7 @@ Section r_test_section(const studies::WorkVolume& volume, const VolumeSettings& 
             .title = "Errors that the R-test shows",
             .caption =
                 "The axis of rotation against the path of the tool, positive along and about the axes of the machine, at "
-                "the point "
-                "`through`. The ball in the work: away from the axis, ahead in a positive turn, and along `about` "
+                "the point `through`. The ball in the work: away from the axis, ahead in a positive turn, and along `about` "
                 "together with the axis. What is left are error motions of the turn, and errors of the linear axes.",
             .columns = {time_column()}};
   add_location_columns(fit, test.direction, letter);
