@@ -59,12 +59,12 @@ Table volume_table(const studies::WorkVolume& volume, const std::vector<MovingAx
 
 /// The points along one axis, the others at the positions of the grid nearest to the scenario's pose.
 std::vector<const studies::VolumePoint*> line_along(const studies::WorkVolume& volume, const VolumeSettings& settings,
-                                                    std::size_t axis) {
+                                                    const std::vector<MovingAxis>& axes, std::size_t axis) {
   scenarios::Pose middle;
   for (std::size_t i = 0; i < settings.positions_SI.size(); ++i) {
-    middle.push_back(*std::min_element(
-        settings.positions_SI[i].begin(), settings.positions_SI[i].end(),
-        [&](double a, double b) { return std::abs(a - volume.own.pose[i]) < std::abs(b - volume.own.pose[i]); }));
+    const auto apart_SI = [&](double at_SI) { return axes[i].apart_SI(at_SI, volume.own.pose[i]); };
+    middle.push_back(*std::min_element(settings.positions_SI[i].begin(), settings.positions_SI[i].end(),
+                                       [&](double a, double b) { return apart_SI(a) < apart_SI(b); }));
   }
   std::vector<const studies::VolumePoint*> line;
   for (const studies::VolumePoint& p : volume.points) {
@@ -79,7 +79,7 @@ std::vector<const studies::VolumePoint*> line_along(const studies::WorkVolume& v
 /// that turns are at its axis of rotation, where an angle makes no shift.
 void add_axis(Section& body, const studies::WorkVolume& volume, const VolumeSettings& settings,
               const std::vector<MovingAxis>& axes, std::size_t axis) {
-  const std::vector<const studies::VolumePoint*> line = line_along(volume, settings, axis);
+  const std::vector<const studies::VolumePoint*> line = line_along(volume, settings, axes, axis);
   if (line.size() < 2) return;
   const std::string letter = axis_letter(axes[axis]), unit = axes[axis].unit();
   Section section{.key = "axes", .title = "Axis " + letter, .item = output::Item{"axis", axes[axis].name}};
@@ -91,6 +91,7 @@ void add_axis(Section& body, const studies::WorkVolume& volume, const VolumeSett
                              "the scenario.") +
                  (axes[axis].way.turns ? " At the point `through` of the axis of rotation." : ""),
       .columns = {{.key = "position_" + unit, .title = axes[axis].name, .unit = unit, .digits = output::decimals(1)}}};
+  if (axes[axis].way.turns) table.file = own_csv(axes[axis], "errors");  // its columns are not those of linear axes
   Plot plot{.title = fmt::format("Errors of axis {} after {:.0f} min", letter, volume.time_s.back() / 60.0),
             .x_label = fmt::format("{} [{}]", axes[axis].name, unit),
             .y_label = "error [µm]"};

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/file_name.hpp"
 #include "base/lists.hpp"
 #include "findings/columns.hpp"
 #include "findings/named_value.hpp"
@@ -70,9 +71,9 @@ Section r_test_section(const studies::WorkVolume& volume, const VolumeSettings& 
   Table fit{.key = "fit",
             .title = "Errors that the R-test shows",
             .caption =
-                "The axis of rotation against the tool, positive along and about the axes of the machine, at the point "
-                "`through`. The ball in the work: away from the axis, ahead in a positive turn, along the axis (with "
-                "the axis itself). What is left are error motions of the turn, and errors of the linear axes.",
+                "The axis of rotation against the path of the tool, positive along and about the axes of the machine, at "
+                "the point `through`. The ball in the work: away from the axis, ahead in a positive turn, and along `about` "
+                "together with the axis. What is left are error motions of the turn, and errors of the linear axes.",
             .columns = {time_column()}};
   add_location_columns(fit, test.direction, letter);
   fit.columns.push_back(um_column("radial_um", "ball outward", 2));
@@ -157,6 +158,10 @@ std::string axis_letter(const MovingAxis& axis) {
   return letter;
 }
 
+std::string own_csv(const MovingAxis& axis, const std::string& table) {
+  return "tables/" + file_name(fmt::format("axis_{}_{}", axis.name, table), ".csv");
+}
+
 Column urad_column(const std::string& key, const std::string& title) {
   return {.key = key, .title = title, .unit = "urad", .digits = output::decimals(1)};
 }
@@ -171,11 +176,13 @@ void add_axis_location(Section& section, const studies::WorkVolume& volume,
   Table table{
       .key = "location",
       .title = fmt::format("Place of the axis of rotation {} (ISO 230-7)", axis_letter(axes[axis])),
-      .caption = fmt::format("Of the axis against the {}, positive along and about the axes of the machine, at the point "
-                             "`through`: the part of the errors that does not turn with the body. Left: the longest "
-                             "remainder of the shifts.",
+      .caption = fmt::format("Of the axis against the {0}, positive along and about the axes of the machine, at the point "
+                             "`through`: the part of the errors that does not turn with the body. A tilt of the {0} counts, "
+                             "too; an R-test shows the axis against the linear axes. Left: the longest remainder of the "
+                             "shifts.",
                              turns_work ? "tool" : "work"),
-      .columns = {{.key = "time_min", .title = "time", .unit = "min", .digits = output::decimals(0)}}};
+      .columns = {time_column()},
+      .file = own_csv(axes[axis], "location")};  // its columns depend on the direction of the axis
   add_location_columns(table, direction, axis_letter(axes[axis]));
   table.columns.push_back(um_column("left_um", "left", 2));
   std::vector<double> angles_rad;

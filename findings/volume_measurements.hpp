@@ -8,6 +8,8 @@ namespace driftwright::findings {
 
 /// "C" of the axis c.
 [[nodiscard]] std::string axis_letter(const scenarios::MovingAxis& axis);
+/// The CSV of a table of one axis, whose columns other axes do not have: "tables/axis_c_location.csv".
+[[nodiscard]] std::string own_csv(const scenarios::MovingAxis& axis, const std::string& table);
 [[nodiscard]] output::Column urad_column(const std::string& key, const std::string& title);
 
 /// Where the axis of rotation is at each time (XOC, YOC, AOC, BOC of ISO 230-7), fitted to the points of a line along it.

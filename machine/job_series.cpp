@@ -37,7 +37,7 @@ class SeriesWriter {
     if (!(duration_s > 0.0)) return;
     for (Cyclogram::Column& column : series_.cyclogram.columns) {
       const double last = column.rows.value.empty() ? 0.0 : column.rows.value.back();
-      add_row(column.rows, end_s_, column.unit == "mm" ? last : 0.0);
+      add_row(column.rows, end_s_, column.unit == "mm" || column.unit == "deg" ? last : 0.0);
     }
     (void)add_sections({{duration_s, Drive{}}});
   }

@@ -10,8 +10,9 @@ namespace driftwright::scenarios {
 /// are continued along the way (mesh/joint_sides.hpp), so that the joint couples where its sides face each other at any pose.
 /// Numbers of nodes and cells stay. Without `axes` nothing is done.
 /// @throws InputError  at the axis: for a region that does not exist, that moves without another that shares nodes with it,
-///                     that turns and expands differently along x, y and z, and with a film from a file; for a pose at which bodies overlap, or a joint has lost its guide: its
-///                     sides face each other nowhere, or the axis moves them apart
+///                     or that turns and expands differently along x, y and z; with a film from a file; for a pose at which
+///                     bodies overlap, or a joint has lost its guide: its sides face each other nowhere, or the axis moves
+///                     them apart
 void move_bodies(const MachineModel& model, mesh::Mesh& mesh);
 
 /// The mechanics of a joint at the model's pose: the axis of a ring turns with its bodies.

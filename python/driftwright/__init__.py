@@ -40,7 +40,8 @@ def _table(record):
 
 
 # Longest first, so that mm_min is found before min; as in docs/reference/record.md.
-_UNITS = sorted(["rpm", "mm_min", "degC", "K", "um", "mm", "urad", "W", "W_m2", "V", "percent", "count", "1", "s", "min", "h"],
+_UNITS = sorted(["rpm", "mm_min", "degC", "K", "um", "mm", "urad", "deg", "W", "W_m2", "V", "percent", "count", "1", "s", "min",
+                 "h"],
                 key=len, reverse=True)
 
 

@@ -168,6 +168,10 @@ bool MovingAxis::allows(double position_SI) const {
   return is_endless || (position_SI >= low_SI - kRounding_SI && position_SI <= high_SI + kRounding_SI);
 }
 
+double MovingAxis::apart_SI(double a_SI, double b_SI) const {
+  return std::abs(is_endless ? std::remainder(a_SI - b_SI, kTurn_rad) : a_SI - b_SI);
+}
+
 std::string MovingAxis::words(double position_SI) const {
   const double position = position_SI / unit_SI();
   return fmt::format("{:g} {}", std::abs(position) < 1e-9 ? 0.0 : position, unit());

@@ -29,6 +29,8 @@ struct MovingAxis {
   [[nodiscard]] double unit_SI() const;
   /// True within the range, to rounding.
   [[nodiscard]] bool allows(double position_SI) const;
+  /// How far two positions are apart, >= 0; full turns of an endless axis do not count.
+  [[nodiscard]] double apart_SI(double a_SI, double b_SI) const;
   /// "200 mm", "30 deg"
   [[nodiscard]] std::string words(double position_SI) const;
 };

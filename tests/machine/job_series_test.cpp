@@ -78,9 +78,10 @@ TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
   }
 }
 
-/// The job with a place of an axis and a voltage, both stepping after 100 s.
+/// The job with places of a linear and a rotary axis and a voltage; place and voltage step after 100 s.
 Cyclogram with_columns(Cyclogram cyclogram, double place_mm) {
   cyclogram.columns = {{"position_x", "mm", {{0.0, 100.0}, {place_mm, place_mm + 50.0}}},
+                       {"position_c", "deg", {{0.0, 100.0}, {30.0, 30.0}}},
                        {"heater", "V", {{0.0, 100.0}, {5.0, 9.0}}}};
   return cyclogram;
 }
@@ -94,6 +95,7 @@ TEST(JobSeries, RecordedColumnsContinue) {
   const Cyclogram::Column& heater = *series.cyclogram.column("heater");
   EXPECT_THAT(place.rows.time_s, ElementsAre(0, 100, 120, 150, 250, 300, 310, 410));
   EXPECT_THAT(place.rows.value, ElementsAre(300, 350, 350, 10, 60, 60, 10, 60)) << "axes stay where they are";
+  EXPECT_THAT(series.cyclogram.column("position_c")->rows.value, ::testing::Each(30.0)) << "those that turn, too";
   EXPECT_THAT(heater.rows.value, ElementsAre(5, 9, 0, 5, 9, 0, 5, 9)) << "all else is off during a pause";
 }
 

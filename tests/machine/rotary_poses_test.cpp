@@ -96,6 +96,13 @@ TEST(RotaryRun, FollowsAColumnInDegrees) {
   EXPECT_EQ(turned.record.at("position_c").values[1], 90.0);
   EXPECT_EQ(turned.record.at("position_c").unit, "deg");
   EXPECT_LT(turned.trajectory.energy_gap(), 1e-9);
+  // Where the angle matters: the same as a machine that is held there, and unlike the one at rest.
+  const SimulatedRun at_45 = simulate(
+      read({.base_m = 0.2, .rows = "{columns: [duration, speed, position_c_deg], rows: [[60 min, 1000 rpm, 45 deg]]}"}));
+  const SimulatedRun held = simulate(
+      read({.base_m = 0.2, .axes = "axes: {c: {turns: [table], about: z, through: [0 mm, 0 mm, 0 mm], at: 45 deg}}\n"}));
+  EXPECT_NEAR(at_45.record.at("t_table").values.back(), held.record.at("t_table").values.back(), 1e-4);
+  EXPECT_GT(at_45.record.at("t_table").values.back(), resting.record.at("t_table").values.back() + 0.1);
 }
 
 TEST(RotaryAxes, CarryThoseBelowThem) {
@@ -133,6 +140,13 @@ TEST(RotaryAxes, WithoutARangeAreEndless) {
   ASSERT_EQ(half.size(), 2u);
   EXPECT_NEAR(half[0].pose[0], std::numbers::pi, 1e-12);
   EXPECT_NEAR(half[1].pose[0], -170.0 * kDegree, 1e-12);
+  MovingAxis axis{
+      .name = "c", .moves = {}, .way = {.direction = Eigen::Vector3d::UnitZ(), .turns = true}, .column = {}, .where = {}};
+  axis.is_endless = true;
+  EXPECT_NEAR(axis.apart_SI(270.0 * kDegree, -90.0 * kDegree), 0.0, 1e-12);
+  EXPECT_NEAR(axis.apart_SI(-170.0 * kDegree, 170.0 * kDegree), 20.0 * kDegree, 1e-12);
+  axis.is_endless = false;
+  EXPECT_NEAR(axis.apart_SI(-170.0 * kDegree, 170.0 * kDegree), 340.0 * kDegree, 1e-12);
 }
 
 TEST(RotaryAxes, AreRefusedWhereTheyCannotTurn) {

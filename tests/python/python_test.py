@@ -142,6 +142,10 @@ class Package(unittest.TestCase):
         self.assertEqual(dw.Machine(machine).calibrate(files).extended_scenario,
                          with_absolute_paths(self.folder / "calibration" / "calibrated.yaml"))
 
+    def test_angles_of_rotary_axes_are_columns(self):
+        table = pd.DataFrame({"position_c_deg": [0.0, 90.0]}, index=[0.0, 60.0])
+        self.assertEqual(self.as_csv(table), ["time_s,position_c_deg", "0,0", "60,90"])
+
     def test_errors_are_python_s(self):
         with self.assertRaisesRegex(dw.InputError, "no_such.yaml"):
             dw.Machine("no_such.yaml")
