@@ -130,7 +130,7 @@ std::vector<Eigen::MatrixXd> information_by_channel(const Twin& twin, const Doub
   const Comparison& comparison = fitter.comparison();
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(comparison.n_condensed(), doubts.question.n());
   columns.leftCols(fitter.n_nuisance()) = comparison.condensed(fitter.nuisance_slopes());
-  for (const Signature& s : signatures(fitter, doubts.candidates, laws_of(doubts.candidates), {}, at)) {
+  for (const Signature& s : signatures(fitter, doubts.candidates, laws_of(doubts.candidates), {}, at, Shapes::kOfGrid)) {
     const auto of = std::find_if(doubts.shapes.begin(), doubts.shapes.end(), [&](const Doubts::Shape& shape) {
       return shape.candidate == s.candidate && shape.variant == s.variant && shape.x == s.shape;
     });

@@ -66,7 +66,9 @@ bool has_time(const Claim& claim) {
 
 Fold ahead_of(const std::vector<MeasuredRun>& runs) {
   const double from_s = kFitted * runs[0].time_s.back();
-  return fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; });
+  Fold fold = fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; });
+  fold.is_ahead = true;
+  return fold;
 }
 
 Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace) {

@@ -91,7 +91,7 @@ bool SearchUnderWay::add(const SearchResult* former, Fit& former_fit) {
   const std::vector<Law> laws =
       ground.add(*stated, named_by(*stated, catalogue, fitter.twin(), fitter.runs(), options.without));
   listener.begin(fmt::format("fitting names of statements: {} candidates", ground.candidates.size()));
-  for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, listener))
+  for (Signature& s : signatures(fitter, ground.candidates, laws, best, best_fit, Shapes::kUpToTheBest, listener))
     ground.columns.push_back(std::move(s));
   std::vector<FittedClaim> additions = fit_names(ground, best, best_fit, options.refits, &known, listener);
   std::vector<std::pair<Hypothesis, Fit>> tried;
@@ -163,8 +163,8 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& catalogue, con
   for (int turn = 0; turn < 2 && !now.best.empty() && !listener.wants_end(); ++turn) {
     listener.begin("settling the numbers");
     now.settle();
-    now.ground.columns =
-        signatures(fitter, now.ground.candidates, laws_of(now.ground.candidates), now.best, now.best_fit, listener);
+    now.ground.columns = signatures(fitter, now.ground.candidates, laws_of(now.ground.candidates), now.best, now.best_fit,
+                                    Shapes::kUpToTheBest, listener);
     now.known = {};
     if (!now.exchange()) break;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
@@ -11,7 +13,37 @@ namespace {
 
 constexpr int kTurnsOfWidth = 3;       // iterations for the width of heavy tails; then the size is constant
 constexpr double kLeastGrowth = 0.01;  // of a size relative to its trial, with which other numbers grow
-constexpr double kBeside = 1.0;        // prior sigmas of the scenario's numbers where a fit begins
+// From the best shape of the grid, one number at a time, by this share of its prior, which is halved where no step gains:
+constexpr double kFirstTurn = 1.0, kLastTurn = 0.25;
+constexpr int kMostClimbs = 6;
+constexpr double kWidest = 2.5;     // prior sigmas of a number of the shape
+constexpr double kLeastRise = 0.5;  // nats
+constexpr double kBeside = 1.0;     // prior sigmas of the scenario's numbers where a fit begins
+
+/// Climbs from a shape to the one that gains most by linear theory. @param gain_of  a shape's gain [nats], as linear_gain()
+void climb_shape(const Variant& law, std::vector<double> shape, double most,
+                 const std::function<double(const std::vector<double>&)>& gain_of) {
+  double turn = kFirstTurn;
+  for (int round = 0; round < kMostClimbs && turn >= kLastTurn; ++round) {
+    bool is_better = false;
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      const Knob& knob = law.knobs[k + 1];
+      if (knob.is_time || knob.scale != Knob::Scale::kLog) continue;
+      for (double sign : {1.0, -1.0}) {
+        std::vector<double> tried = shape;
+        tried[k] += sign * turn * knob.prior_sd;
+        if (!knob.grows_with_size && std::abs(tried[k]) > kWidest * knob.prior_sd) continue;
+        const double gain = gain_of(tried);
+        if (!(gain > most + kLeastRise)) continue;
+        most = gain;
+        shape = std::move(tried);
+        is_better = true;
+        break;
+      }
+    }
+    if (!is_better) turn *= 0.5;
+  }
+}
 
 }  // namespace
 
@@ -48,10 +80,12 @@ std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
 }
 
 std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
+                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit, Shapes shapes,
                                   const Listener& listener) {
   if (laws.empty()) return {};
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
+  std::optional<Projection> projection;
+  if (shapes == Shapes::kUpToTheBest) projection = projection_of(fitter, hypothesis, fit);
   std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
   const TwinState known = fitter.state(hypothesis, fit.x);
@@ -75,7 +109,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
         const Hypothesis tried =
             with(hypothesis, {laws[j].candidate, laws[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
-        const auto take = [&](const std::vector<double>& shape) {
+        const auto gain_of = [&](const std::vector<double>& shape) {
           Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
           claim[0] = v.trial_x;
           for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
@@ -85,12 +119,20 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
                     ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
                     : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace, about);
           });
-          if (!is_solved) return;
+          if (!is_solved) return -1e300;
           const Eigen::VectorXd s = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
-          if (s.allFinite() && s.squaredNorm() > 1e-12)
-            lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), s});
+          if (!s.allFinite() || !(s.squaredNorm() > 1e-12)) return -1e300;
+          lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), s});
+          if (!projection) return -1e300;
+          const double ss = projection->square(s);
+          return ss > 1e-12 ? linear_gain(v, ss, s.dot(projection->rest)).gain : -1e300;
         };
-        for (const std::vector<double>& shape : v.grid) take(shape);
+        const std::vector<double>* best = nullptr;
+        double most = -1e300;
+        for (const std::vector<double>& shape : v.grid) {
+          if (const double gain = gain_of(shape); gain > most) most = gain, best = &shape;
+        }
+        if (best && !v.all_or_nothing && !reading_only) climb_shape(v, *best, most, gain_of);
       },
       listener);
   std::vector<Signature> all;

@@ -19,11 +19,14 @@ struct Law {
   std::size_t candidate = 0, variant = 0;
 };
 [[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
+/// Which shapes of a law get a signature: those of its grid; or with them, where there are readings, those on the way from
+/// the best of them to the shape that gains most by linear theory.
+enum class Shapes { kOfGrid, kUpToTheBest };
 /// The signatures of some laws, in addition to a fit. They depend little on the other claims.
-/// @param fit  its x and prediction
+/// @param fit  for kOfGrid its x and prediction are enough
 [[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                                 const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
-                                                const Listener& listener = {});
+                                                Shapes shapes, const Listener& listener = {});
 
 /// The evidence that a candidate would add to a fit, by linear theory.
 struct Score {
