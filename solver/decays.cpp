@@ -31,7 +31,7 @@ SumsOfDecays SumsOfDecays::from(double by_s, const Eigen::VectorXd& decay) const
 void Decays::require(const Eigen::VectorXd& lambda_1_s, double step_s, Eigen::Index n_columns) {
   const bool same = step_s == step_s_;
   if (same && n_columns <= table_.cols()) return;
-  if (same) n_columns = std::max(n_columns, 2 * table_.cols());
+  if (same) n_columns = std::max(n_columns, std::min(2 * table_.cols(), kMostTimes + 1));
   step_s_ = step_s;
   const Eigen::Index n = lambda_1_s.size();
   table_.setZero(SumsOfDecays::kPowers + n, n_columns);
@@ -62,7 +62,7 @@ void Decays::values(const SumsOfDecays& sums, const Eigen::VectorXd& lambda_1_s,
   for (Eigen::Index done = 0, end = 0; done < n_times; done = end) {
     const double first_s = at(done), step_s = done + 1 < n_times ? at(done + 1) - first_s : 0.0,
                  rounding_s = kSameTime * step_s;
-    for (end = done + 1; end < n_times; ++end) {
+    for (end = done + 1; end < n_times && end - done < kMostTimes; ++end) {
       if (std::abs(at(end) - first_s - static_cast<double>(end - done) * step_s) > rounding_s) break;
     }
     if (end - done < kFewest) {

@@ -35,6 +35,12 @@ class Decays {
   void values(const SumsOfDecays& sums, const Eigen::VectorXd& lambda_1_s, std::span<const double> times_s, double start_s,
               Eigen::Ref<Eigen::MatrixXd> out);
 
+  /// Columns of the table; kMostTimes + 1 at most, however long the run is.
+  [[nodiscard]] Eigen::Index n_columns() const { return table_.cols(); }
+  /// One table serves so many times; later ones begin it again, which costs one more exponential per mode. Each of 64 stored
+  /// decompositions of 50 states then takes 0.2 MB.
+  static constexpr Eigen::Index kMostTimes = 512;
+
  private:
   void require(const Eigen::VectorXd& lambda_1_s, double step_s, Eigen::Index n_columns);
 

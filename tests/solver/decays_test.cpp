@@ -62,6 +62,14 @@ TEST(Decays, ServeOtherIntervalsAndLongerRunsAfterwards) {
   EXPECT_LT(error(decays, two_sums(), even(0.0, 60.0, 90), 0.0), kRounding);
 }
 
+TEST(Decays, OfALongRunHaveATableOfBoundedSize) {
+  Decays decays;
+  EXPECT_LT(error(decays, two_sums(), even(0.0, 1.0, 400), 0.0), kRounding);
+  EXPECT_LT(error(decays, two_sums(), even(0.0, 1.0, 2000), 0.0), kRounding);
+  EXPECT_LT(error(decays, two_sums(), even(1.0, 1.0, 2 * Decays::kMostTimes + 1), 0.0), kRounding);  // one time is left over
+  EXPECT_LE(decays.n_columns(), Decays::kMostTimes + 1);
+}
+
 TEST(Decays, DoNotDependOnWhatWasAskedBefore) {
   Decays fresh, used;
   (void)error(used, two_sums(), even(0.0, 60.0, 7), 0.0);
