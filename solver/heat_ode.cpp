@@ -201,7 +201,14 @@ void HeatOde::restart(double t_s, const double* y) {
 }
 
 void HeatOde::look(double t_s, const double* y) {
-  require_sane(y, n_, system_.reference_K, t_s);
+  if (share_) {  // all processes fail alike, so that the first one can say why and remove what it has written
+    const Eigen::Map<const Eigen::VectorXd> theta(y, n_);
+    const double ends[] = {-share_->largest(-theta.minCoeff<Eigen::PropagateNaN>()),
+                           share_->largest(theta.maxCoeff<Eigen::PropagateNaN>())};
+    require_sane(ends, 2, system_.reference_K, t_s);
+  } else {
+    require_sane(y, n_, system_.reference_K, t_s);
+  }
   if (system_.is_stratified()) return;  // the air itself has a range
   const auto [low_K, high_K] = surroundings_K(system_, ambient_, t_s);
   const auto [least_W, most_W] = rate_.power_range_W();

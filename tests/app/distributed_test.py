@@ -147,6 +147,14 @@ def main():
         done = run(["mpirun", "-n", "1", *command(fp3, work / "refused", None, "--distributed"), ":", "-n", "1", other_build])
         claim(done.returncode == 2 and "one build" in done.stderr and "other sources" in done.stderr, f"another build: {done.stderr.strip()[:200]}")
 
+        # Temperatures that leave all bounds in the part of one rank: all fail alike, and the first one says it.
+        runs_away = work / "runs_away.yaml"
+        runs_away.write_text(fp3.read_text().replace("power: 85 W", "power: 1e6 W", 1))
+        one, two = (run(command(runs_away, work / "too_hot", ranks, "--cyclogram", cyclogram["fp3_spindle"])) for ranks in (None, 2))
+        claim(one.returncode not in (0, 2) and two.returncode == one.returncode, f"too hot: ends with {one.returncode} and {two.returncode}")
+        claim(two.stderr.count("error:") == 1 and "cyclogram 'warm_up_2000'" in two.stderr, f"too hot: said once: {two.stderr.strip()[:200]}")
+        claim(not list(work.glob("too_hot*")), "too hot: nothing is left")
+
         # A rank that is killed, early and late: mpirun says so, no results, nobody is left.
         def processes(marker):
             found = {}
