@@ -131,13 +131,15 @@ class Writer {
   }
 
  private:
-  /// Whether the effects of a text are those of the list; replaced entries are at another position.
+  /// Whether the effects of a text are those of the list, and what is known together is in it; replaced entries are at another
+  /// position.
   [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
     TwinState read;
     try {
       std::vector<effects::FormerWord> former;  // in the user's text; they are kept
       const ConfigMap root =
           ConfigMap::of_tree(effects::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
+      if (says_anew_ && root.has(kKnownTogether) == tail_.empty()) return false;  // as after a line "..."
       for (const ConfigMap& one : root.maps("effects")) {
         read.push_back(effects::read_effect(one));
         if (!to_.empty()) give_path(read.back(), to_);

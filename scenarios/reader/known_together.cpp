@@ -47,7 +47,7 @@ std::string yaml_of(const KnownTogether& known) {
   std::vector<std::string> rows;
   for (Eigen::Index i = 0; i < known.factor.rows(); ++i) {
     std::vector<std::string> row;
-    for (Eigen::Index j = 0; j <= i; ++j) row.push_back(fmt::format("{:.4g}", known.factor(i, j)));
+    for (Eigen::Index j = 0; j <= i; ++j) row.push_back(fmt::format("{:.7g}", known.factor(i, j)));
     rows.push_back(fmt::format("{}", fmt::join(row, ", ")));
   }
   std::vector<std::string> names;

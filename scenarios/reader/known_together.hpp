@@ -9,8 +9,8 @@
 
 namespace driftwright::scenarios {
 
-/// Numbers that records have fitted. The differences of their logarithms from the file's numbers are normal with mean 0 and
-/// covariance factor * factor^T; those of sensitivities and other numbers with a sign are differences in their unit.
+/// Numbers that records have fitted. The differences of their logarithms from those of the file's numbers are normal with
+/// mean 0 and covariance factor * factor^T.
 struct KnownTogether {
   std::vector<std::string> numbers;  ///< their names as diagnosis::number_name() gives them; none: nothing is said
   Eigen::MatrixXd factor;            ///< lower triangle, n x n
@@ -20,7 +20,8 @@ struct KnownTogether {
 [[nodiscard]] schema::Map known_together_schema();
 /// @throws InputError  for a name that comes twice, another number of factors than the names need, a row of zeros
 [[nodiscard]] KnownTogether read_known_together(const ConfigMap& in);
-/// The key with its value, on lines of their own, as the reader takes it; four digits.
+/// The key with its value, on lines of their own, as the reader takes it; seven digits, as fitted numbers have.
+/// A quotient may be known a thousand times better than its numbers: that is a difference of two rows.
 [[nodiscard]] std::string yaml_of(const KnownTogether& known);
 
 }  // namespace driftwright::scenarios

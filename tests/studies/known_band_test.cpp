@@ -107,6 +107,16 @@ TEST(KnownBand, IsRefusedWhereWhatIsKnownTogetherDoesNotFitTheScenario) {
   EXPECT_THAT(p.band->words, HasSubstr("names 'heat_source shaft power', which the scenario does not have"));
 }
 
+// Its rows differ by 1.118e-4, their numbers by a factor of two (`guess`).
+TEST(KnownTogether, KeepsAQuotientThatIsKnownMuchBetterThanItsNumbers) {
+  scenarios::KnownTogether known{.numbers = {"a", "b"}, .factor = Eigen::MatrixXd::Zero(2, 2)};
+  known.factor << 0.7123456, 0.0, 0.7123956, 1e-4;
+  const scenarios::Scenario again =
+      scenarios::read_scenario(write_file("fitted.yaml", read_text(body("", "", "").path) + scenarios::yaml_of(known)));
+  const Eigen::MatrixXd& factor = again.machine->known_together.factor;
+  EXPECT_NEAR((factor.row(1) - factor.row(0)).norm(), std::hypot(5e-5, 1e-4), 1e-6);
+}
+
 /// The body with a part of its drift learned, which still misses 3 um (one sigma).
 scenarios::Scenario learned_body(const std::string& power) {
   const std::string text = read_text(body("", power, "").path);

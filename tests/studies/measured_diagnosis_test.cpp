@@ -90,6 +90,15 @@ TEST(Calibrate, WritesWhatItsFitLeavesOpenOfAllNumbersTogether) {
   EXPECT_LT(together_um, 0.3 * half_band_um(again));  // each number by itself
 }
 
+// After the mark that ends a document, a further key would be in another one, which no reader takes.
+TEST(Calibrate, SaysWhatIsKnownTogetherAlsoWhereTheFileEndsByAMark) {
+  const scenarios::KnownTogether known{.numbers = {"heat_source head power"},
+                                       .factor = Eigen::MatrixXd::Constant(1, 1, 0.1)};
+  const MeasuredTwin m = twin_of(std::string(diagnosis::kTwoNodes) + "...\n");
+  const std::string text = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, {}, {}, {}, known).text;
+  EXPECT_EQ(scenarios::read_scenario(write_file("ended.yaml", text)).machine->known_together.numbers, known.numbers);
+}
+
 // The block is no prior, so the same records do not count twice; a second fit replaces it.
 TEST(Calibrate, TakesNoPriorFromWhatAnEarlierFitLeftOpen) {
   const auto [found, written] = calibrate(twin_of(diagnosis::kTwoNodes), "calibrated.yaml", {});
