@@ -149,7 +149,7 @@ def main():
 
         # Temperatures that leave all bounds in the part of one rank: all fail alike, and the first one says it.
         runs_away = work / "runs_away.yaml"
-        runs_away.write_text(fp3.read_text().replace("power: 85 W", "power: 85e6 W", 1))
+        runs_away.write_text(fp3.read_text().replace("power: 85 W", "power: 1e6 W", 1))
         one, two = (run(command(runs_away, work / "too_hot", ranks, "--cyclogram", cyclogram["fp3_spindle"])) for ranks in (None, 2))
         claim(one.returncode not in (0, 2) and two.returncode == one.returncode, f"too hot: ends with {one.returncode} and {two.returncode}")
         claim(two.stderr.count("error:") == 1 and "cyclogram 'warm_up_2000'" in two.stderr, f"too hot: said once: {two.stderr.strip()[:200]}")
