@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -46,7 +47,11 @@ TEST(RotaryPose, EqualsTheMeshBuiltThere) {
   EXPECT_LT((a.system.outputs.state - outputs).norm(), 1e-6 * outputs.norm());
   const MachineModel drawn = at({}, 0.0);
   const Machine c = build(drawn, place(drawn));
-  EXPECT_GT((c.system.outputs.state - outputs).norm(), 0.05 * outputs.norm());
+  double most = 0.0;  // the table lies on other faces of the base
+  for (std::size_t i = 0; i < b.system.exchanges.size(); ++i)
+    most = std::max(
+        most, (c.system.exchanges[i].matrix - b.system.exchanges[i].matrix).norm() / b.system.exchanges[i].matrix.norm());
+  EXPECT_GT(most, 0.05);
 }
 
 TEST(RotaryPose, DrawnElsewhereIsTheSamePose) {
