@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <random>
 
+#include "bench/timing.hpp"
 #include "machine/machine_key.hpp"
 #include "machine/machine_store.hpp"
 #include "machine/reduced_machine.hpp"
@@ -35,23 +35,10 @@ Cyclogram random_cyclogram(std::mt19937_64& engine) {
   return c;
 }
 
-/// Processor time of this thread [s]: other programs beside it do not count.
-double thread_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// The least processor time of some repetitions [us].
 template <class Work>
 double least_us(int times, const Work& work) {
-  double least_s = 1e9;
-  for (int i = 0; i < times; ++i) {
-    const double begin_s = thread_s();
-    work();
-    least_s = std::min(least_s, thread_s() - begin_s);
-  }
-  return 1e6 * least_s;
+  return 1e6 * least_s(times, work, thread_s);
 }
 
 }  // namespace
