@@ -55,7 +55,7 @@ struct ToolAndBall {
   Eigen::Vector3d tool_end_m, ball_m;
 };
 /// @param mesh  of place(), at the model's pose
-/// @param between  what the error is between; none: the tool's point, and the point of the work that is there
+/// @param between  the end of the tool and the ball on the work; none: both are at the tool's point
 /// @throws InputError  for a region that does not exist, and a tool that is not on its region
 [[nodiscard]] ToolAgainstWork tool_against_work(const MachineModel& model, const mesh::Mesh& mesh, const PointOnRegion& tool,
                                                 const std::string& work, const Where& where,
