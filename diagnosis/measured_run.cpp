@@ -373,6 +373,9 @@ double shortest_row_s(const std::vector<MeasuredRun>& runs) {
 
 void set_grid(MeasuredRun& run) {
   constexpr int kFiner = 4, kIntervals = 6;  // subdivision of this many intervals after a change
+  std::vector<Cyclogram::Section>& sections = run.cyclogram.sections;
+  while (!sections.empty() && run.cyclogram.duration_s() < run.time_s.back())
+    sections.back().duration_s += run.time_s.back() - run.cyclogram.duration_s();
   run.grid_s.clear();
   run.row_in_grid.clear();
   int since = 0;  // intervals since the last change

@@ -106,7 +106,9 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
   Eigen::VectorXd state = start;
   std::size_t next = 0;
   Loads loads(system, ambient);
-  for (const LinearStretch& stretch : stretches_of(system, cyclogram, ambient)) {
+  const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, ambient);
+  require_within(stretches, output_s);
+  for (const LinearStretch& stretch : stretches) {
     loads.enter(stretch);
     Stretch s;
     s.start_s = stretch.start_s;

@@ -12,6 +12,7 @@
 
 #include "base/errors.hpp"
 #include "solver/share.hpp"
+#include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -174,6 +175,7 @@ void toggle_reached(Callee& callee, double t_s, int most_switches, int& n_switch
 Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
                      const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                      const OutputCallback& callback) {
+  require_within(stretches, output_s);
   const double from_s = stretches.front().start_s;
   SUNContext raw_context = nullptr;
   SUNContext_Create(nullptr, &raw_context);

@@ -137,7 +137,9 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   Decomposition* decomposition = nullptr;
   Eigen::VectorXd z, load;  // state and load of everything except the ambient, in the eigenvectors
   std::size_t next = 0;
-  for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
+  const std::vector<LinearStretch> stretches = behind(from_s, stretches_of(system_, cyclogram, ambient));
+  require_within(stretches, output_s);
+  for (const LinearStretch& stretch : stretches) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),
                  ambient_slope = (ambient_in_order.at(stretch.end_s) - ambient_K) / length_s;
     if (changes.at(stretch)) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 #include "base/cyclogram.hpp"
 #include "solver/thermal_system.hpp"
@@ -25,6 +26,12 @@ template <class Matrix>
 [[nodiscard]] std::vector<LinearStretch> stretches_of(const ThermalSystem<Matrix>& system, const Cyclogram& cyclogram,
                                                       const TimeSeries& ambient) {
   return linear_stretches(cyclogram, knots_of(system, ambient));
+}
+
+/// @throws std::logic_error  for an output after the last stretch: no drive is known there
+inline void require_within(const std::vector<LinearStretch>& stretches, const std::vector<double>& output_s) {
+  if (!output_s.empty() && (stretches.empty() || output_s.back() > stretches.back().end_s))
+    throw std::logic_error("an output after the end of the cyclogram");
 }
 
 /// Call at() for each stretch of a run in order: true if a law that does not depend on the state may differ from the stretch

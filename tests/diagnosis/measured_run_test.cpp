@@ -382,6 +382,16 @@ TEST_F(MeasuredRunTest, TakesWhatALoggerWritesInBurstsForItsPace) {
   EXPECT_EQ(run.holes[0].end_s, 25 * 60.0 + 1200.0);
 }
 
+TEST(Grid, OfACyclogramThatEndsEarlyHoldsItsLastDriveToTheLastRow) {
+  MeasuredRun run;
+  run.time_s = {0.0, 600.0, 1200.0};
+  run.cyclogram.sections = {{300.1, {.speed_rpm = 1000.0}}, {0.3, {.speed_rpm = 2000.0}}};
+  set_grid(run);
+  EXPECT_GE(run.cyclogram.duration_s(), 1200.0);
+  EXPECT_NEAR(run.cyclogram.duration_s(), 1200.0, 1e-9);
+  EXPECT_EQ(run.cyclogram.sections[0].duration_s, 300.1);
+}
+
 TEST_F(MeasuredRunTest, LeavesOutAReadingThatLeapsAwayAndBack) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 100; ++i)

@@ -269,5 +269,11 @@ TEST(Propagator, RefusesWhatIsNotLinear) {
   EXPECT_THROW(Propagator{reduced}, std::logic_error);
 }
 
+TEST(Propagator, RefusesAnOutputAfterTheEnd) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
+  const Cyclogram hour{.name = "", .sections = {{3600, 1000}}};
+  EXPECT_THROW((void)evolved(one_body(4000, 0), hour, {{0}, {0}}, {1800, 3601}, zero), std::logic_error);
+}
+
 }  // namespace
 }  // namespace driftwright::solver::propagator_test

@@ -147,6 +147,13 @@ TEST(Multigrid, OfTheLongStepsGivesWhatTheDiagonalGivesInFewerIterations) {
 
 // --- changes ----------------------------------------------------------------------------------------------------
 
+TEST(Outputs, AfterTheEndAreRefused) {
+  const FullSystem system = machine(1);
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  const double end_s = kCycle.duration_s();
+  EXPECT_THROW((void)simulate(system, kCycle, kStillAmbient, {0.0, end_s, end_s + 1.0}, {}, start), std::logic_error);
+}
+
 TEST(Changes, AShortPulseWithinHoursOfRestIsNotSteppedOver) {
   // 30 s at 1000 rpm (100 W) between twice four hours at rest, nothing leaves: 3000 J stay.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}});
