@@ -21,12 +21,15 @@ using SharedNoise = std::vector<Eigen::MatrixXd>;
 /// Sums `together` neighbouring rows and divides by the root of their number. @returns  how many rows that are
 template <class In, class Out>
 Eigen::Index gather(const In& rows, Eigen::Index together, Out&& few) {
-  Eigen::Index k = 0;
-  for (Eigen::Index from = 0; from < rows.rows(); from += together, ++k) {
-    const Eigen::Index n = std::min(together, rows.rows() - from);
-    few.row(k) = rows.middleRows(from, n).colwise().sum() / std::sqrt(static_cast<double>(n));
+  const Eigen::Index n_few = (rows.rows() + together - 1) / together;
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+    const auto column = rows.col(c);
+    for (Eigen::Index k = 0; k < n_few; ++k) {
+      const Eigen::Index from = k * together, n = std::min(together, rows.rows() - from);
+      few(k, c) = column.segment(from, n).sum() / std::sqrt(static_cast<double>(n));
+    }
   }
-  return k;
+  return n_few;
 }
 
 class Comparison {

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -354,11 +355,11 @@ Eigen::VectorXd Twin::start(const TimeSeries& ambient, const Workspace& workspac
 }
 
 Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
-  TwinState acting;
-  for (const effects::Effect& e : state) {
-    if (e.acts_in(run.name)) acting.push_back(e);
-  }
-  effects::HeatBalance now = balance(acting);
+  const auto acts = [&](const effects::Effect& e) { return e.acts_in(run.name); };
+  TwinState some;
+  const bool all_act = std::all_of(state.begin(), state.end(), acts);
+  if (!all_act) std::copy_if(state.begin(), state.end(), std::back_inserter(some), acts);
+  effects::HeatBalance now = balance(all_act ? state : some);
   set_places(now, workspace);
   set_matrices(state, workspace);
   set_laws(std::move(now), workspace);

@@ -24,7 +24,7 @@ struct SumsOfDecays {
   [[nodiscard]] SumsOfDecays from(double by_s, const Eigen::VectorXd& decay) const;
 };
 
-/// The table for one set of λ, none of them changed later. Not thread-safe.
+/// The tables for one set of λ, none of them changed later: one an interval, of the latest intervals. Not thread-safe.
 class Decays {
  public:
   /// The sums at all times, one column each.
@@ -35,18 +35,23 @@ class Decays {
   void values(const SumsOfDecays& sums, const Eigen::VectorXd& lambda_1_s, std::span<const double> times_s, double start_s,
               Eigen::Ref<Eigen::MatrixXd> out);
 
-  /// Columns of the table; kMostTimes + 1 at most, however long the run is.
-  [[nodiscard]] Eigen::Index n_columns() const { return table_.cols(); }
+  /// Columns of the longest table; kMostTimes + 1 at most, however long the run is.
+  [[nodiscard]] Eigen::Index n_columns() const;
   /// One table serves so many times; later ones begin it again, which costs one more exponential per mode. Each of 64 stored
-  /// decompositions of 50 states then takes 0.2 MB.
+  /// decompositions of 50 states then takes 0.2 MB a table.
   static constexpr Eigen::Index kMostTimes = 512;
+  /// Rows of a run lie one interval apart, or a part of it after a change (diagnosis/measured_run.cpp).
+  static constexpr std::size_t kMostTables = 2;
 
  private:
-  void require(const Eigen::VectorXd& lambda_1_s, double step_s, Eigen::Index n_columns);
+  struct Table {
+    double step_s = -1.0;
+    Eigen::MatrixXd values;            ///< column j: j², 1, j, e^{-λ_i j h}
+    std::vector<Eigen::Index> n_used;  ///< rows of each column that are not negligible
+  };
+  const Table& require(const Eigen::VectorXd& lambda_1_s, double step_s, Eigen::Index n_columns);
 
-  double step_s_ = -1.0;
-  Eigen::MatrixXd table_;             ///< column j: j², 1, j, e^{-λ_i j h}
-  std::vector<Eigen::Index> n_used_;  ///< rows of each column that are not negligible
+  std::vector<Table> tables_;  ///< the one used last is the last
 };
 
 }  // namespace driftwright::solver
