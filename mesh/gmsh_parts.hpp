@@ -39,6 +39,9 @@ auto with_gmsh_errors(Work work) {
   }
 }
 
+/// Tetrahedra of edge h in a cube of edge h, as if regular ones filled it: 6 sqrt(2), rounded.
+inline constexpr double kCellsPerCube = 8.5;
+
 /// A part of the machine: its Gmsh volumes and its mesh size.
 struct Part {
   std::string region;
