@@ -3,7 +3,6 @@
 #include <cmath>
 
 namespace driftwright::identification {
-namespace {}  // namespace
 
 double Law::value(double of_channel) const {
   const double share = of_channel / top;

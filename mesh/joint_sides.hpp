@@ -12,7 +12,7 @@
 
 namespace driftwright::mesh {
 
-/// Largest sine between a face of a guide and the way along it. The ends of a facet of a turned guide rise by half its angle:
+/// Largest sine between a face of a guide and the way along it. Ends of a facet of a turned guide rise by half its angle:
 /// sin(180/n degrees) for n facets around, less than this from n = 32 on. A face across the way has 1.
 inline constexpr double kMostRise = 0.1;
 
