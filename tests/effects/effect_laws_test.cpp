@@ -100,7 +100,7 @@ TEST(BearingFriction, TightensWithoutLookingAtTheOil) {
 
 // --- bodies -----------------------------------------------------------------------------------------------------
 
-TEST(HiddenBody, IsANodeBehindItsBody) {
+TEST(HiddenBodyAlone, IsANodeBehindItsBody) {
   const HeatBalance b = balance_of("{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K}");
   ASSERT_EQ(b.nodes.size(), 1u);
   EXPECT_EQ(b.nodes[0].name, "head_hidden");
@@ -112,7 +112,7 @@ TEST(HiddenBody, IsANodeBehindItsBody) {
   EXPECT_EQ(b.exchanges[0].coefficient({}), 9.0);
 }
 
-TEST(HiddenBody, HasAWayToTheAmbientWhereGiven) {
+TEST(HiddenBodyAlone, HasAWayToTheAmbientWhereGiven) {
   const HeatBalance b =
       balance_of("{type: hidden_body, node: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 2 W/K}");
   ASSERT_EQ(b.exchanges.size(), 2u);
@@ -233,7 +233,7 @@ TEST(Windows, JointsAndLinksHaveThem) {
   EXPECT_EQ(link({.drive = {}, .time_s = 60.0}), 3.0);
 }
 
-TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
+TEST(HeatSourceInAWave, RisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
   const HeatBalance b = balance_of("{type: heat_source, node: n, power: 8 W, period: 40 min, delay: 5 min, until: 80 min}");
   const Law& power_W = b.heats.at(0).power_W;
   for (double time_s : {300.0, 320.0, 449.0})  // the same at all times of a step: as in its middle
