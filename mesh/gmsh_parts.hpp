@@ -13,9 +13,9 @@
 
 namespace driftwright::mesh {
 
-/// An open Gmsh session: quiet, single-threaded and therefore repeatable. The first one loads Gmsh. Gmsh has one model per process, so a session of
-/// another thread, and METIS, wait until this one ends. Call Gmsh only while a session exists, and never open two in one
-/// thread.
+/// An open Gmsh session: quiet, single-threaded and therefore repeatable. The first one loads Gmsh. Gmsh has one model per
+/// process, so a session of another thread, and METIS, wait until this one ends. Call Gmsh only while a session exists, and
+/// never open two in one thread.
 class GmshSession {
  public:
   GmshSession();
