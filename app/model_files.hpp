@@ -20,8 +20,8 @@ namespace driftwright::app {
                                                                    const std::string& as, const std::string& name,
                                                                    const output::ControlAxis& axis,
                                                                    const std::string& made_by);
-/// Formulas for places along the travel of an axis as one file: text, c, linuxcnc, st, siemens. Those of c and linuxcnc need the
-/// files of control_files() beside them.
+/// Formulas for places along the travel of an axis as one file: text, c, linuxcnc, st, siemens. Those of c and linuxcnc need
+/// the files of control_files() beside them.
 /// @param places  two or more, by rising position; @param name  of the files and functions
 /// @throws InputError  for formulas that this control cannot hold over a travel, such as heidenhain and fanuc
 [[nodiscard]] std::vector<compensation::ControlFile> travel_files(std::span<const output::PlacedModel> places,
@@ -31,8 +31,8 @@ namespace driftwright::app {
 /// True if control_files() belong to these files.
 [[nodiscard]] bool needs_control_files(const std::string& as);
 
-/// Writes <strategy>.json of each strategy into models_folder(), with its verdict and the conditions it was judged under, and also .txt
-/// and .c of strategies that are formulas.
+/// Writes <strategy>.json of each strategy into models_folder(), with its verdict and the conditions it was judged under,
+/// and also .txt and .c of strategies that are formulas.
 /// The file of an observer has the limits by which `follow` watches it, simulated here.
 void write_models(const compensation::StrategyMatrix& matrix, output::ResultsFolder& folder, const Listener& listener);
 

@@ -26,7 +26,7 @@ void plan_test(const PlanTestOptions& options) {
   studies::TestPlanOptions how{
       .interval_s = scenario.solver.output_interval_s, .n_programmes = options.n_programmes, .seed = options.seed};
   if (!options.time.empty()) how.duration_s = 3600.0 * option_quantity("--time", options.time, "h", 0.5, 168.0);
-  constexpr double kMostRows = 20000.0;  // each row has a column for each law in doubt
+  constexpr double kMostRows = 20000.0;  // by a column for each law in doubt: 16 MB for 100 laws
   const double finest_s = std::max(0.1, how.duration_s / kMostRows);
   how.interval_s = std::clamp(how.interval_s, finest_s, how.duration_s / 96.0);
   if (!options.interval.empty())

@@ -246,8 +246,8 @@ struct ExportOptions {
   int fmi = 2;                       ///< version of the standard, 2 or 3
   std::string of = "machine";        ///< or observer
   std::string type = "both";         ///< interfaces: both, me (model exchange), cs (co-simulation)
-  /// Files of predictors: an observer, with `of` = observer; or, without a scenario, a formula, or one for each of several places
-  /// of an axis' travel.
+  /// Files of predictors: an observer, with `of` = observer; or, without a scenario, a formula, or one for each of several
+  /// places of an axis' travel.
   std::vector<std::string> models;
 };
 void export_model(const ExportOptions& options);

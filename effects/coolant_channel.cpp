@@ -17,8 +17,8 @@ namespace driftwright::effects::coolant_channel {
 
 constexpr double kPer_L_min = 1e-3 / 60.0;  // m^3/s
 /// Where `along` is given without `sections`. In a wall of one temperature any number is exact, since the liquid follows it
-/// exponentially. What remains is where in a section its heat passes: a section has its mean film everywhere, and in a laminar
-/// entrance the film falls as x^(-1/3), so a share of n^(-2/3) of the heat is within the first section and too far
+/// exponentially. What remains is where in a section its heat passes: a section has its mean film everywhere, and in a
+/// laminar entrance the film falls as x^(-1/3), so a share of n^(-2/3) of the heat is within the first section and too far
 /// downstream. This share depends neither on the flow nor on the length. Conduction along the wall evens it out, and the
 /// error falls as n^(-1.3): 0.05 K for a wall 22 K warmer than its liquid with 40 (tests/solver/coolant_channel_test.cpp).
 constexpr double kSections = 40.0;

@@ -205,7 +205,8 @@ struct Effect {
 /// Reads one entry of the scenario's list `effects`: type, place, parameters.
 /// @throws InputError  for an unknown type or key, a wrong unit, a value out of range
 [[nodiscard]] Effect read_effect(const ConfigMap& in);
-/// Reads the list `effects` of a scenario. Names that a formula uses must be quantities or bodies: nodes of the list or ambient.
+/// Reads the list `effects` of a scenario. Names that a formula uses must be quantities or bodies: nodes of the list or
+/// ambient.
 /// @throws InputError  as read_effect()
 [[nodiscard]] std::vector<Effect> read_effects(const std::vector<ConfigMap>& entries);
 /// The entry as one line that read_effect() can read: "{type: convection, surface: nose, film: 8 W/(m^2 K)}". Values equal

@@ -311,7 +311,8 @@ double applied_to_finite(Op op, const double* a) {
   return 0.0;
 }
 
-/// NaN if an argument or the result is not finite, so that no later operation hides it: max(0, NaN), tanh(1/0) and NaN^0 would.
+/// NaN if an argument or the result is not finite, so that no later operation hides it: max(0, NaN), tanh(1/0) and NaN^0
+/// would.
 /// Only the part of an `if` that is not chosen may have no value.
 double applied(Op op, const double* a) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -66,11 +66,12 @@ struct Expression {
 
 /// Reads a formula: + - * / ^ < >, brackets, numbers, names and functions; ^ binds more closely than a sign.
 /// @param names  that may occur in it
-/// @throws FormulaError  for anything else, an unknown name (the message lists the known ones), a formula that is nested too deeply
+/// @throws FormulaError  for anything else, an unknown name (the message lists the known ones), a formula that is nested too
+/// deeply
 [[nodiscard]] Expression parse_expression(const std::string& text, const std::vector<std::string>& names);
 
-/// The value of an expression. @param values  by name, in the order of the list of names; not finite where the formula divides
-/// by zero or leaves the range of a function. Thread-safe.
+/// The value of an expression. @param values  by name, in the order of the list of names; not finite where the formula
+/// divides by zero or leaves the range of a function. Thread-safe.
 [[nodiscard]] double value_of(std::span<const Expression::Step> steps, const double* values);
 
 /// The same steps with each part that has no name as its number, unless that is not finite.

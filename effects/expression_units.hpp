@@ -10,8 +10,8 @@
 
 namespace driftwright::effects {
 
-/// What the value of a part is. Values are in base units of the SI, temperatures in K, angles in rad, speeds of the spindle as
-/// their number in rpm.
+/// What the value of a part is. Values are in base units of the SI, temperatures in K, angles in rad, speeds of the spindle
+/// as their number in rpm.
 struct ValueUnit {
   std::map<std::string, double> powers = {};  ///< of base units, as BaseUnits has them; empty: a number
   /// A temperature with a zero, as 20 degC: two of them make a difference in K, which has none.

@@ -33,8 +33,8 @@ namespace driftwright::effects {
 /// True of `feed_axis` and `linear_scale`.
 [[nodiscard]] bool follows_positions(const Effect& effect);
 
-/// What an effect that follows positions adds to a displacement [m]: sums over mean temperatures, whose weights are cubics of
-/// the position within each piece.
+/// What an effect that follows positions adds to a displacement [m]: sums over mean temperatures, whose weights are cubics
+/// of the position within each piece.
 struct ErrorAlong {
   std::string displacement, position;  ///< name and column
   std::vector<Body> bodies;

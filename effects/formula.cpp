@@ -281,38 +281,9 @@ void require_free(const ConfigMap& entry, const std::string& name) {
   }
 }
 
-/// Reads what the entry declares, without its values.
-DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry,
-                           const std::optional<std::vector<std::string>>& nodes) {
-  DeclaredKind kind{base, {}, {}, {}, {}, {}, {}};
-  for (const Result& r : results()) {
-    if (entry.has(r.key)) kind.result = r.key;
-  }
-  const Result& result = result_of(kind.result);
-  const bool is_at_joint = entry.has("joint");
-  if (std::none_of(result.places.begin(), result.places.end(), [&](Place p) { return entry.has(place_key(p)); })) {
-    std::vector<std::string> places;
-    for (const Place p : result.places) places.emplace_back(place_key(p));
-    entry.fail(result.key, fmt::format("a `{}` requires another place: {}", result.key, fmt::join(places, " or ")));
-  }
-  const bool has_other_end = !is_at_joint && (kind.result == "conductance" || kind.result == "film");
-  if (has_other_end) kind.to_key = base.references.front().name;
-  if (!has_other_end) {
-    if (entry.has(base.references.front().name))
-      entry.fail(base.references.front().name,
-                 "only a `film`, and a `conductance` that is not at a joint, have another end");
-    kind.references.clear();
-  }
-  std::vector<ValueUnit> units;
-  for (const Given& g : kGiven) {
-    kind.names.emplace_back(g.name);
-    units.push_back(value_unit(g.unit));
-  }
-  if (kind.result == "reading") {
-    kind.names.emplace_back(kOwn);
-    units.push_back(value_unit("degC"));
-  }
-  const std::vector<std::string> known = keys_of_description(entry);
+/// Numbers and bodies that the entry declares, with the units of their names. @param known  keys of its description
+void read_declared_names(const ConfigMap& entry, const std::optional<std::vector<std::string>>& nodes,
+                         const std::vector<std::string>& known, DeclaredKind& kind, std::vector<ValueUnit>& units) {
   std::vector<std::string> declared;
   for (const std::string& key : entry.keys()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) declared.push_back(key);
@@ -349,6 +320,71 @@ DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry,
     kind.names.push_back(name);
     units.push_back(value_unit("degC"));
   }
+}
+
+/// The formula of a reading may use temperatures of bodies, whose reference it cannot notice, and no temperature of its own.
+void require_differences(const ConfigMap& entry, const DeclaredKind& kind, const std::vector<ValueUnit>& units) {
+  for (const Expression::Step& s : kind.expression.steps) {
+    const bool has_zero = s.op == Op::kName && s.name >= kind.first_parameter() &&
+                          s.name < kind.first_parameter() + kind.parameters.size() && units[s.name].is_temperature;
+    if (has_zero || s.op == Op::kKelvin || s.op == Op::kCelsius)
+      fail_at(entry, kind.result, kind.expression.text,
+              FormulaError("the formula of a reading knows differences of the machine's temperatures alone; write the "
+                           "temperature as that of a body, and what is added to it in K",
+                           s.begin));
+  }
+}
+
+/// What a diagnosis may change of each number.
+void doubt_declared(const Result& result, DeclaredKind& kind) {
+  const std::vector<Expression::Step>& steps = kind.expression.steps;
+  for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
+    Parameter& parameter = kind.parameters[p];
+    const std::size_t name = kind.first_parameter() + p;
+    // A speed or a temperature at which something is stated is a condition, as `at_speed` is.
+    if (parameter.unit == "rpm" || parameter.unit == "degC") continue;
+    const bool is_exponent = is_in_exponent(steps, name);
+    parameter.scatter = is_exponent ? kExponentScatter : kScatter;
+    parameter.finding = is_exponent && kind.result == "power" ? "friction_law" : result.finding;
+    // Another size and another growth with speed of a written law are doubted for every law (changed_law).
+    const bool is_of_law = kind.result != "reading" && (is_exponent || is_factor(steps, steps.size() - 1, name));
+    if (!is_of_law) parameter.doubted = Doubted::kFactor;
+  }
+}
+
+/// Reads what the entry declares, without its values.
+DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry,
+                           const std::optional<std::vector<std::string>>& nodes) {
+  DeclaredKind kind{base, {}, {}, {}, {}, {}, {}};
+  for (const Result& r : results()) {
+    if (entry.has(r.key)) kind.result = r.key;
+  }
+  const Result& result = result_of(kind.result);
+  const bool is_at_joint = entry.has("joint");
+  if (std::none_of(result.places.begin(), result.places.end(), [&](Place p) { return entry.has(place_key(p)); })) {
+    std::vector<std::string> places;
+    for (const Place p : result.places) places.emplace_back(place_key(p));
+    entry.fail(result.key, fmt::format("a `{}` requires another place: {}", result.key, fmt::join(places, " or ")));
+  }
+  const bool has_other_end = !is_at_joint && (kind.result == "conductance" || kind.result == "film");
+  if (has_other_end) kind.to_key = base.references.front().name;
+  if (!has_other_end) {
+    if (entry.has(base.references.front().name))
+      entry.fail(base.references.front().name,
+                 "only a `film`, and a `conductance` that is not at a joint, have another end");
+    kind.references.clear();
+  }
+  std::vector<ValueUnit> units;
+  for (const Given& g : kGiven) {
+    kind.names.emplace_back(g.name);
+    units.push_back(value_unit(g.unit));
+  }
+  if (kind.result == "reading") {
+    kind.names.emplace_back(kOwn);
+    units.push_back(value_unit("degC"));
+  }
+  const std::vector<std::string> known = keys_of_description(entry);
+  read_declared_names(entry, nodes, known, kind, units);
   if (kind.names.size() > kMostNames)
     entry.fail(result.key,
                fmt::format("a formula may use {} names of its own at most", kMostNames - kind.first_parameter()));
@@ -368,29 +404,8 @@ DeclaredKind read_declared(const EffectKind& base, const ConfigMap& entry,
       entry.fail(kind.names[i], fmt::format("the formula does not use '{}'; other keys here are {}.{}", kind.names[i],
                                             fmt::join(known, ", "), did_you_mean(kind.names[i], known)));
   }
-  if (kind.result == "reading") {
-    for (const Expression::Step& s : steps) {
-      const bool has_zero = s.op == Op::kName && s.name >= kind.first_parameter() &&
-                            s.name < kind.first_parameter() + kind.parameters.size() && units[s.name].is_temperature;
-      if (has_zero || s.op == Op::kKelvin || s.op == Op::kCelsius)
-        fail_at(entry, result.key, text,
-                FormulaError("the formula of a reading knows differences of the machine's temperatures alone; write the "
-                             "temperature as that of a body, and what is added to it in K",
-                             s.begin));
-    }
-  }
-  for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
-    Parameter& parameter = kind.parameters[p];
-    const std::size_t name = kind.first_parameter() + p;
-    // A speed or a temperature at which something is stated is a condition, as `at_speed` is.
-    if (parameter.unit == "rpm" || parameter.unit == "degC") continue;
-    const bool is_exponent = is_in_exponent(steps, name);
-    parameter.scatter = is_exponent ? kExponentScatter : kScatter;
-    parameter.finding = is_exponent && kind.result == "power" ? "friction_law" : result.finding;
-    // Another size and another growth with speed of a written law are doubted for every law (changed_law).
-    const bool is_of_law = kind.result != "reading" && (is_exponent || is_factor(steps, steps.size() - 1, name));
-    if (!is_of_law) parameter.doubted = Doubted::kFactor;
-  }
+  if (kind.result == "reading") require_differences(entry, kind, units);
+  doubt_declared(result, kind);
   if (kind.result == "reading") {
     kind.change_readings = change_readings;
   } else {

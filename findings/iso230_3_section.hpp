@@ -9,8 +9,9 @@
 
 namespace driftwright::findings {
 
-/// Section `iso_230_3`: `test`, `spindle_running_period_min` (`axis_running_period_min`, `duration_min`) and the table `channels` with `name`, `unit`, `range_first_60_min`,
-/// `range_running_period`, `at_end_of_running_period`, `range_whole_record`; or `not_available`: why.
+/// Section `iso_230_3`: `test`, `spindle_running_period_min` (`axis_running_period_min`, `duration_min`) and the table
+/// `channels` with `name`, `unit`, `range_first_60_min`, `range_running_period`, `at_end_of_running_period`,
+/// `range_whole_record`; or `not_available`: why.
 [[nodiscard]] output::Section iso230_3_section(const compensation::Iso230Figures& figures);
 
 /// The figures of one run out of several.

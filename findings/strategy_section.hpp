@@ -16,8 +16,8 @@ namespace driftwright::findings {
 /// The name of a strategy's files in models/, without extension: "ridge_all_sensors".
 [[nodiscard]] std::string model_file_name(const std::string& strategy);
 
-/// The folder of a matrix' files in the results, "models/", or "models/x_400/" of one of several places of a screw; and the file of
-/// a strategy, "models/ridge_all_sensors.json".
+/// The folder of a matrix' files in the results, "models/", or "models/x_400/" of one of several places of a screw; and the
+/// file of a strategy, "models/ridge_all_sensors.json".
 [[nodiscard]] std::string models_folder(const compensation::StrategyMatrix& matrix);
 [[nodiscard]] std::string model_file(const compensation::StrategyMatrix& matrix,
                                      const compensation::JudgedStrategy& strategy);

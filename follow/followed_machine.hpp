@@ -1,6 +1,6 @@
 #pragma once
-// The machine of a scenario on a stream, driven by speed, ambient and positions of feed axes: the same drift as `predict`, for all its
-// displacements.
+// The machine of a scenario on a stream, driven by speed, ambient and positions of feed axes: the same drift as `predict`,
+// for all its displacements.
 
 #include <memory>
 

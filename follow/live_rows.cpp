@@ -5,12 +5,12 @@
 
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 namespace driftwright::follow {
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-constexpr double kJitter = 0.01;  // share of the top speed so far; a smaller change is no change of drive, as in records
 constexpr std::size_t kMostKept = 8 * kRowsBack;
 
 }  // namespace
@@ -52,7 +52,8 @@ void LiveRows::hear(double run_s, const std::vector<double>& values) {
     has_drive_ = true;
     speed_at_s_ = run_s;
     top_rpm_ = std::max(top_rpm_, rpm);
-    const bool is_jitter = drive_.speed_rpm > 0.0 && rpm > 0.0 && std::abs(rpm - drive_.speed_rpm) <= kJitter * top_rpm_;
+    const bool is_jitter =
+        drive_.speed_rpm > 0.0 && rpm > 0.0 && std::abs(rpm - drive_.speed_rpm) <= scenarios::kJitter * top_rpm_;
     if (!is_jitter) drive_.speed_rpm = rpm;
   }
   for (std::size_t a = 0; a < 3; ++a) {

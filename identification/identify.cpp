@@ -25,7 +25,7 @@ constexpr double kHottest = 3.0;         // rise of heated bodies over the large
 constexpr double kDefaultRise_K = 10.0;  // without a thermometer
 constexpr double kLagOfSign = 0.03;      // of a record: lag of a column before it is compared with thermometers
 constexpr std::size_t kFewestBlocks = 30;
-constexpr double kLeastChange = 1e-3;  // of a channel's deviation: an extension that changes less says nothing
+constexpr double kLeastChange = 1e-3;  // of a channel's deviation: 0.01 K of 10 K, which no thermometer resolves
 constexpr double kMostRows = 3000.0;   // of all records; more rows are averaged
 
 double top_of(std::span<const Record> records, const std::string& channel) {

@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace driftwright::identification {
-namespace {
-
-constexpr double kTurns = 0.01;  // of the top speed: smaller values are a tachometer's noise at rest
-
-}  // namespace
 
 double Law::value(double of_channel) const {
   const double share = of_channel / top;

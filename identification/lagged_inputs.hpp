@@ -9,6 +9,9 @@
 
 namespace driftwright::identification {
 
+/// Share of the top speed above which a spindle turns: smaller values are a tachometer's noise at rest.
+inline constexpr double kTurns = 0.01;
+
 /// Heating by a drive, scaled to between 0 and 1 (or -1 and 1) over the records.
 struct Law {
   enum class Kind { kTurning, kPower, kColumn };

@@ -24,7 +24,7 @@ BodyRangeWatch::BodyRangeWatch(const MachineModel& machine, const Model& model, 
     if (model.reduced()->temperature.size() == 0) return;
   }
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  for (const std::string& region : m.regions) bodies_.push_back({region, kNone, -kNone, 0.0});
+  for (const std::string& region : m.regions) bodies_.push_back({region, kNone, -kNone});
   body_of_unknown_.assign(static_cast<std::size_t>(m.n_nodes()), -1);
   for (int cell = 0; cell < m.cells.size(); ++cell) {
     for (int node : m.cells.nodes(cell)) body_of_unknown_[static_cast<std::size_t>(node)] = m.cells.group[cell];
@@ -32,11 +32,11 @@ BodyRangeWatch::BodyRangeWatch(const MachineModel& machine, const Model& model, 
   if (model.reduced()) return;
   for (const effects::LumpedNode& node : model.balance.nodes) {
     body_of_unknown_.push_back(static_cast<int>(bodies_.size()));
-    bodies_.push_back({node.name, kNone, -kNone, 0.0});
+    bodies_.push_back({node.name, kNone, -kNone});
   }
 }
 
-void BodyRangeWatch::take(double time_s, const Eigen::VectorXd& state) {
+void BodyRangeWatch::take(const Eigen::VectorXd& state) {
   const std::size_t index = n_taken_++;
   if (bodies_.empty() || (index % every_ != 0 && index + 1 != n_states_)) return;
   const ReducedMachine* reduced = model_.reduced();
@@ -46,7 +46,7 @@ void BodyRangeWatch::take(double time_s, const Eigen::VectorXd& state) {
     BodyRange& body = bodies_[static_cast<std::size_t>(body_of_unknown_[i])];
     const double temperature_K = reference_K_ + theta_K[static_cast<Eigen::Index>(i)];
     body.low_K = std::min(body.low_K, temperature_K);
-    if (temperature_K > body.high_K) body.high_K = temperature_K, body.highest_s = time_s;
+    body.high_K = std::max(body.high_K, temperature_K);
   }
 }
 

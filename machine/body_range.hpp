@@ -12,7 +12,6 @@ namespace driftwright::scenarios {
 struct BodyRange {
   std::string body;
   double low_K = 0.0, high_K = 0.0;
-  double highest_s = 0.0;  ///< time of the highest temperature
 };
 
 /// Collects these from the states of a run: from all states of the full model, from some states of a reduced one with a
@@ -22,7 +21,7 @@ class BodyRangeWatch {
  public:
   /// @param n_states  number of states in the run. The model must outlive the watch.
   BodyRangeWatch(const MachineModel& machine, const Model& model, std::size_t n_states);
-  void take(double time_s, const Eigen::VectorXd& state);
+  void take(const Eigen::VectorXd& state);
   [[nodiscard]] const std::vector<BodyRange>& bodies() const { return bodies_; }
 
  private:

@@ -42,8 +42,8 @@ struct JobSeries {
 /// so that it never jumps. It equals the scenario's ambient if the run was simulated with that. A run without an ambient had
 /// the scenario's.
 ///
-/// Recorded columns that the run before and the job both have continue, too. During a pause the axes stay where they are (columns
-/// in mm), and all other columns are 0. A pause before the first row has its axes at 0.
+/// Recorded columns that the run before and the job both have continue, too. During a pause the axes stay where they are
+/// (columns in mm), and all other columns are 0. A pause before the first row has its axes at 0.
 /// @param job            at least one section
 /// @param scenario_ambient  minus the reference temperature [K]
 /// @param interval_s     time between two outputs, > 0

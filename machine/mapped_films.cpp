@@ -30,8 +30,8 @@ void require_covered(const effects::Effect& e, const solver::FilmMapping& mappin
           1e4 * mapping.uncovered_m2, 100.0 * share, e.place, x_mm[0], x_mm[1], x_mm[2], 1e3 * mapping.reach_m));
 }
 
-/// How much larger than its surface a file may be. Metres read as millimetres, or the other way, are a factor of 1000; a file
-/// of a whole machine or its room for one of its surfaces is seldom beyond 30.
+/// How much larger than its surface a file may be. Metres read as millimetres, or the other way, are a factor of 1000; a
+/// file of a whole machine or its room for one of its surfaces is seldom beyond 30.
 constexpr double kLargestFile = 100.0;
 
 /// Points that are far apart count far away, so that a file in another unit would cover everything.

@@ -44,7 +44,6 @@ Carriers carriers_of_side(const std::vector<MovingAxis>& axes, const mesh::Mesh&
 
 /// @throws InputError  if the sides of a joint have lost each other, or the axis does not move along them
 void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const MovingAxis& axis, const mesh::Way& way) {
-  constexpr double kMostRise = 0.1;  // 6 degrees, as faces of a guide (mesh/joint_sides.cpp)
   const std::string lost =
       fmt::format("at {} = {} joint '{}' has lost its guide: ", axis.name, axis.words(axis.at_SI), joint.name);
   std::vector<solver::JointPoint> points;
@@ -54,7 +53,7 @@ void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const Movi
     throw InputError(axis.where, lost + "its two sides face each other nowhere. Narrow the `range`, or correct `drawn_at`");
   }
   if (std::any_of(points.begin(), points.end(),
-                  [&](const auto& p) { return std::abs(p.normal.dot(way.along(p.position_m))) > kMostRise; }))
+                  [&](const auto& p) { return std::abs(p.normal.dot(way.along(p.position_m))) > mesh::kMostRise; }))
     throw InputError(axis.where, lost + "the axis moves its two sides apart, not along each other; correct " +
                                      (way.turns ? "`about`, `through` or `turns`" : "`along` or `moves`"));
 }

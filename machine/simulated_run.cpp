@@ -197,7 +197,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
     BodyRangeWatch watch(machine, model, times_s.size());
     double last_s = 0.0;
     const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
-      watch.take(time_s, state);
+      watch.take(state);
       std::exception_ptr failure;  // no exception may leave the critical section
 #pragma omp critical(simulated)
       try {

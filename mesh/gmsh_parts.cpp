@@ -93,7 +93,7 @@ void straighten_folded_cells() {
 /// The expected number of cells. If a size is too small for its part, Gmsh would mesh for hours and then abort for lack of
 /// memory.
 double require_bearable(const std::vector<Part>& parts) {
-  constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // approximate number of tetrahedra of edge h in a cube of edge h
+  constexpr double kMostCells = 5e6;
   double n_all = 0.0;
   for (const Part& part : parts) {
     double n_cells = 0.0;

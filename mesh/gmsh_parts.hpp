@@ -13,9 +13,9 @@
 
 namespace driftwright::mesh {
 
-/// An open Gmsh session: quiet, single-threaded and therefore repeatable. The first one loads Gmsh. Gmsh has one model per process, so a session of
-/// another thread, and METIS, wait until this one ends. Call Gmsh only while a session exists, and never open two in one
-/// thread.
+/// An open Gmsh session: quiet, single-threaded and therefore repeatable. The first one loads Gmsh. Gmsh has one model per
+/// process, so a session of another thread, and METIS, wait until this one ends. Call Gmsh only while a session exists, and
+/// never open two in one thread.
 class GmshSession {
  public:
   GmshSession();
@@ -38,6 +38,9 @@ auto with_gmsh_errors(Work work) {
     throw SolveError("Gmsh could not mesh the geometry: " + message + "; try other dimensions or mesh sizes");
   }
 }
+
+/// Tetrahedra of edge h in a cube of edge h, as if regular ones filled it: 6 sqrt(2), rounded.
+inline constexpr double kCellsPerCube = 8.5;
 
 /// A part of the machine: its Gmsh volumes and its mesh size.
 struct Part {

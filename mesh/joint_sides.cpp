@@ -43,7 +43,7 @@ SweptStrip swept(const Mesh& mesh, const DescribedFacet& facet, const Way& way) 
 
 bool covers(const SweptStrip& strip, const SweptStrip& facet) {
   constexpr double kSameNormal = 0.99;  // 8 degrees, less than between two facets of a circle of 40
-  constexpr double kOff = 0.05;         // of the strip's width, as joint points may lie beside each other (solver/joint.cpp)
+  constexpr double kOff = 0.05;  // of the strip's width, as in solver/joint.cpp: circles of 16 facets bulge by tan(pi/32)/2
   if (facet.normal.dot(strip.normal) < kSameNormal) return false;
   const Eigen::Vector3d to_facet = facet.centre_m - strip.centre_m;
   const double width_m = strip.high_m - strip.low_m, at_m = strip.across.dot(to_facet);
@@ -70,7 +70,6 @@ std::vector<int> regions_of_surface(const Mesh& mesh, const std::string& surface
 }
 
 void continue_sides(Mesh& mesh, const Joint& joint, std::span<const DescribedFacet> outer, const Way& way) {
-  constexpr double kMostRise = 0.1;  // 6 degrees: coarse facets of a cylinder along the axis, and no face across it
   for (const std::string& side : {joint.side_a, joint.side_b}) {
     const int surface = mesh.surface(side);
     const std::set<FaceKey> keys = keys_of_surface(mesh, surface);

@@ -12,6 +12,10 @@
 
 namespace driftwright::mesh {
 
+/// Largest sine between a face of a guide and the way along it. Ends of a facet of a turned guide rise by half its angle:
+/// sin(180/n degrees) for n facets around, less than this from n = 32 on. A face across the way has 1.
+inline constexpr double kMostRise = 0.1;
+
 /// Adds to both sides of a joint the outer faces of their own regions that continue them along a way: the whole guide on
 /// which one body slides or turns on the other. A face continues a side if one of the side's faces, moved along the way,
 /// covers the centre of the face, with the same normal. Faces that the way crosses are not continued.

@@ -170,8 +170,7 @@ void note_lost_volume(const std::vector<Part>& parts, Mesh& mesh) {
 }  // namespace
 
 std::vector<double> suggested_mesh_sizes_m(const std::vector<PartExtent>& parts) {
-  // Approximate number of tetrahedra of edge h in a cube of edge h.
-  constexpr double kMostCells = 15000, kCellsPerCube = 8.5;
+  constexpr double kMostCells = 15000;
   std::vector<double> sizes_m;
   double n_cells = 0.0;
   for (const PartExtent& part : parts) {  // V/A is a sixth of a cube's edge and half of a plate's thickness

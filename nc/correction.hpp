@@ -44,9 +44,9 @@ struct CorrectedNcProgram {
 /// @param initial_m  correction in force from the beginning [m]
 /// @param changes  in their order; each at a place that nc_entries() or why_not_divisible() allow
 /// @throws InputError  with the line: for inches, unless the language writes them; for what NcLanguage::check() refuses.
-///                     Where lines are inserted also: without a unit before them; with cutter compensation, mirror, rotation or a
-///                     modal cycle active at the end; for a last block that cuts; for a block that runs several times and
-///                     removes different corrections; for what NcLanguage::check_written() refuses
+///                     Where lines are inserted also: without a unit before them; with cutter compensation, mirror, rotation
+///                     or a modal cycle active at the end; for a last block that cuts; for a block that runs several times
+///                     and removes different corrections; for what NcLanguage::check_written() refuses
 [[nodiscard]] CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                                       const std::array<double, 3>& initial_m,
                                                       const std::vector<NcOffsetChange>& changes,

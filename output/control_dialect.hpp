@@ -1,6 +1,6 @@
 #pragma once
-// The language of a control, as the formula of a correction is written in it (control_program.hpp). One file a language; each
-// makes its Dialect, without lines yet.
+// The language of a control, as the formula of a correction is written in it (control_program.hpp). One file a language;
+// each makes its Dialect, without lines yet.
 
 #include <cmath>
 #include <memory>

@@ -1,5 +1,6 @@
 #pragma once
-// A formula with its limits as a program in a control's own language. (drift_model_c writes it as C, linuxcnc_component for LinuxCNC.)
+// A formula with its limits as a program in a control's own language. (drift_model_c writes it as C, linuxcnc_component for
+// LinuxCNC.)
 
 #include <span>
 
@@ -7,9 +8,9 @@
 
 namespace driftwright::output {
 
-/// kStructuredText (IEC 61131-3, for any PLC) and kSiemens (synchronized actions) run in a cycle, and contain lags, trust and
-/// slew limit. A program of kHeidenhain or kFanuc runs when an NC program calls it, and knows no time: it contains formulas
-/// without lags, their ranges and the clamp.
+/// kStructuredText (IEC 61131-3, for any PLC) and kSiemens (synchronized actions) run in a cycle, and contain lags, trust
+/// and slew limit. A program of kHeidenhain or kFanuc runs when an NC program calls it, and knows no time: it contains
+/// formulas without lags, their ranges and the clamp.
 enum class ControlLanguage { kStructuredText, kSiemens, kHeidenhain, kFanuc };
 
 /// The axis that is corrected.
@@ -35,11 +36,11 @@ struct ControlProgram {
 [[nodiscard]] ControlProgram control_program(const DeployedModel& deployed, ControlLanguage language,
                                              const std::string& name, const ControlAxis& axis, const std::string& made_by);
 
-/// The same for an axis whose correction depends on where it is, in every cycle of the control: kStructuredText has the position
-/// as an input, kSiemens writes SD43900, SD43910 and SD43920 by the machine position of the axis.
+/// The same for an axis whose correction depends on where it is, in every cycle of the control: kStructuredText has the
+/// position as an input, kSiemens writes SD43900, SD43910 and SD43920 by the machine position of the axis.
 /// @param places  two or more, by rising position
-/// @throws InputError  as above; for kHeidenhain and kFanuc, whose shift is one number for the whole travel; for places whose rows
-///                     have different intervals, or of which only some count from the first row
+/// @throws InputError  as above; for kHeidenhain and kFanuc, whose shift is one number for the whole travel; for places
+///                     whose rows have different intervals, or of which only some count from the first row
 [[nodiscard]] ControlProgram control_program_over_travel(std::span<const PlacedModel> places, ControlLanguage language,
                                                          const std::string& name, const ControlAxis& axis,
                                                          const std::string& made_by);

@@ -1,6 +1,6 @@
 #pragma once
-// What the C of a correction (drift_model_c) and its component for LinuxCNC (linuxcnc_component) share: names, numbers and the
-// calls of the filter of probings.
+// What the C of a correction (drift_model_c) and its component for LinuxCNC (linuxcnc_component) share: names, numbers and
+// the calls of the filter of probings.
 
 #include <span>
 #include <string>

@@ -56,10 +56,6 @@ Section next_section(const std::vector<std::string>& sentences) {
   return section;
 }
 
-Section folded(const std::string& title, std::vector<Section> sections) {
-  return {.title = title, .sections = std::move(sections), .detail = true};
-}
-
 std::string shown(const Datum& datum, const Digits& column) {
   const Digits& digits = datum.digits ? *datum.digits : column;
   return std::visit(

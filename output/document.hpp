@@ -165,8 +165,6 @@ struct Document {
 
 /// What the reader should do: sentences under the heading "What to do next". No sentences: an empty section.
 [[nodiscard]] Section next_section(const std::vector<std::string>& sentences);
-/// The same sections under one title, folded: for experts.
-[[nodiscard]] Section folded(const std::string& title, std::vector<Section> sections);
 
 /// A short way to add a block to a section: `add(s, Value{...})`.
 inline void add(Section& section, Block block) {

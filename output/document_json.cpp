@@ -84,12 +84,6 @@ void put_section(Json& object, const Section& section) {
 
 }  // namespace
 
-Json section_json(const Section& section) {
-  Json json = Json::object();
-  put_section(json, section);
-  return json;
-}
-
 Json document_json(const Document& document) {
   Json json = {{"program", "driftwright"}, {"version", document.made_by.version}, {"scenario", document.made_by.scenario}};
   put_section(json, document.body);

@@ -14,7 +14,4 @@ namespace driftwright::output {
 /// @throws std::logic_error  if a key occurs twice in one object, or a row is not as long as its columns
 [[nodiscard]] nlohmann::ordered_json document_json(const Document& document);
 
-/// The content with keys of one section only.
-[[nodiscard]] nlohmann::ordered_json section_json(const Section& section);
-
 }  // namespace driftwright::output

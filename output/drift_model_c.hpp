@@ -17,8 +17,8 @@ namespace driftwright::output {
 /// @throws std::logic_error  when a term has no guard
 [[nodiscard]] std::string c_function(const DeployedModel& deployed, const std::string& made_by);
 
-/// C99 source of a correction over the travel: the functions of c_function() for each place, which take no probings, a function
-/// that steps them all, and one that gives what to take away where the axis is. Compile it with drift_correction.c,
+/// C99 source of a correction over the travel: the functions of c_function() for each place, which take no probings, a
+/// function that steps them all, and one that gives what to take away where the axis is. Compile it with drift_correction.c,
 /// axis_travel.c and axis_offset.c.
 /// @param places  one to AXIS_TRAVEL_PLACES, by rising position
 /// @param name    of these functions and of their state

@@ -21,9 +21,9 @@ struct DeployedModel {
   std::vector<compensation::MemberResidual> member_residuals = {};
 };
 
-/// A formula that corrects an axis at one place of its travel. Several of them, by rising position, are one correction for the
-/// whole travel: straight between the places, and held beyond the outermost (compensation/control/axis_travel.h). They take no
-/// probings, which are of one place.
+/// A formula that corrects an axis at one place of its travel. Several of them, by rising position, are one correction for
+/// the whole travel: straight between the places, and held beyond the outermost (compensation/control/axis_travel.h). They
+/// take no probings, which are of one place.
 struct PlacedModel {
   DeployedModel model;
   double at_mm = 0.0;  ///< position of the axis
@@ -33,8 +33,8 @@ struct PlacedModel {
 [[nodiscard]] std::size_t reading_among(std::vector<compensation::FailSafe::Guard>& guards,
                                         const compensation::FailSafe::Guard& guard);
 
-/// @throws InputError  for places whose models one program cannot run: their rows are not equally far apart, or not all of them
-///                     count temperatures from the first row
+/// @throws InputError  for places whose models one program cannot run: their rows are not equally far apart, or not all of
+///                     them count temperatures from the first row
 void require_of_one_run(std::span<const PlacedModel> places);
 
 /// What a control can run of a predictor: its formula with its fail-safe.

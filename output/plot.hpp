@@ -62,8 +62,8 @@ struct Bars {
 
 /// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). They have no ids, so
 /// any number of them fits in a page. The same plots give the same bytes.
-/// @throws std::logic_error  when x and y of a series, or its limits, differ in length, its width is not positive, or a band's limits or the
-///                           place of a mark are not finite (beyond 1e300 counts as infinite)
+/// @throws std::logic_error  when x and y of a series, or its limits, differ in length, its width is not positive, or a
+///                           band's limits or the place of a mark are not finite (beyond 1e300 counts as infinite)
 [[nodiscard]] std::vector<std::string> draw_svgs(std::span<const Plot> plots);
 
 /// The style in which a series is drawn: its own, but dashed for a line with the colour of an earlier one.

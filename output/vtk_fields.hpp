@@ -52,8 +52,8 @@ struct PointVectors {
   std::string name;  ///< of the point array, with its unit
   Eigen::Matrix3Xd value;
 };
-/// Writes the points of a grid with vectors: hexahedra, quadrilaterals or lines between neighbours where at most three of the
-/// counts are above one, single points otherwise.
+/// Writes the points of a grid with vectors: hexahedra, quadrilaterals or lines between neighbours where at most three of
+/// the counts are above one, single points otherwise.
 /// @param n       number of points along each direction of the grid; the first changes fastest
 /// @param place_m 3 x n_points
 /// @param file    a path from ResultsFolder::path()

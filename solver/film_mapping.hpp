@@ -44,14 +44,14 @@ struct FilmMapping {
 /// face without any piece takes the nearest cell within `reach`, and within 60°. Where a cell that faces the other way is
 /// nearer to the face, as at a thin wall, the farther one does not count; where other cells overlap, the mean counts.
 ///
-/// Points: a piece is the part of the face that is nearer to a point than to any other and within `reach` of it (in the plane
-/// of the face, within the octagon about that circle). ∫ h dA = Σ_p h_p A_p with A_p the area of the faces' parts that are
-/// nearest to p, because points have no areas of their own.
+/// Points: a piece is the part of the face that is nearer to a point than to any other and within `reach` of it (in the
+/// plane of the face, within the octagon about that circle). ∫ h dA = Σ_p h_p A_p with A_p the area of the faces' parts that
+/// are nearest to p, because points have no areas of their own.
 ///
 /// Curved faces are cut as plane ones with the same corners; the points are then on the curved face, with its areas.
 /// @param reach_m  > 0; NaN: 2 x the largest distance from a point to its nearest neighbour (on a square grid of points no
-///                 place is farther than 0.71 of that; 2 leaves room for grids up to 3.9 times as wide one way as the other),
-///                 or the square root of the area of the largest cell
+///                 place is farther than 0.71 of that; 2 leaves room for grids up to 3.9 times as wide one way as the
+///                 other), or the square root of the area of the largest cell
 [[nodiscard]] FilmMapping map_film(const mesh::Mesh& mesh, int surface, const effects::SurfaceField& field,
                                    double reach_m = std::numeric_limits<double>::quiet_NaN());
 

@@ -1,7 +1,5 @@
 #include "solver/multigrid.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/SparseCholesky>
 
 #include "base/errors.hpp"
@@ -122,11 +120,6 @@ class Hierarchy {
     for_each_index(n, n > kWorthThreadsRows, [&](int i) { z[i] = fine_.x[i]; });
   }
 
-  [[nodiscard]] std::string levels() const {
-    std::string text = fmt::format("{}", fine_.a.n_rows);
-    for (const auto& level : coarse_) text += fmt::format(" / {}", level.a.n_rows);
-    return text;
-  }
   [[nodiscard]] double operator_complexity() const {
     double sum = static_cast<double>(fine_.a.value.size());
     for (const auto& level : coarse_) sum += static_cast<double>(level.a.value.size());
@@ -292,9 +285,6 @@ void Multigrid::precondition(const double* r, double* z) const {
   }
 }
 
-std::string Multigrid::levels() const {
-  return parts_->heat ? parts_->heat->levels() : parts_->elastic->levels();
-}
 double Multigrid::operator_complexity() const {
   return parts_->heat ? parts_->heat->operator_complexity() : parts_->elastic->operator_complexity();
 }

@@ -37,8 +37,6 @@ class Multigrid : public Preconditioner {
   /// z = B r, B close to A⁻¹. Not thread-safe.
   void precondition(const double* r, double* z) const override;
 
-  /// Nodes of each level: "97329 / 5210 / 240".
-  [[nodiscard]] std::string levels() const;
   /// Number of stored numbers of all levels divided by that of the first.
   [[nodiscard]] double operator_complexity() const;
 

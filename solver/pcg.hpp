@@ -21,8 +21,8 @@ struct PcgOutcome {
 class Pcg {
  public:
   /// @param a      symmetric positive definite; borrowed, and read again at each solve
-  /// @param share  a is the additive part of this process (share.hpp): residuals and solutions are then consistent; null: the
-  ///               whole
+  /// @param share  a is the additive part of this process (share.hpp): residuals and solutions are then consistent; null:
+  ///               the whole
   explicit Pcg(const SparseRow& a, const Share* share = nullptr) : a_(a), share_(share) {}
 
   /// Call when the values of the matrix have changed.

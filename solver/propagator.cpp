@@ -27,8 +27,8 @@ double phi3(double x) {
 
 }  // namespace
 
-/// z over one stretch, in the eigenvectors. Slow modes, of which a and b would be differences of large numbers, have a, b and
-/// w of 0 and are added apart.
+/// z over one stretch, in the eigenvectors. Slow modes, of which a and b would be differences of large numbers, have a, b
+/// and w of 0 and are added apart.
 struct Propagator::Solution {
   const Eigen::VectorXd& lambda;
   Eigen::VectorXd z0, f0, f1;  // at the stretch's start; load and its slope

@@ -1,12 +1,12 @@
 #pragma once
 // One of several processes that compute a machine together. Each has the cells of its part of the mesh, with the nodes of
-// these cells; nodes between two parts are copied. solver/distributed/ implements it with MPI and PETSc; without it (nullptr)
-// one process computes everything.
+// these cells; nodes between two parts are copied. solver/distributed/ implements it with MPI and PETSc; without it
+// (nullptr) one process computes everything.
 //
 // Two kinds of vectors over the unknowns of a part: a *consistent* one has the same value at each copy of a node (states,
 // residuals, directions); an *additive* one has what the cells, facets and joints of this part contribute, and the sum over
-// the processes is the value (a matrix times a state, loads, weights of means). So x·y of a consistent and an additive vector
-// is the sum of the processes' own products, and a sum of loads needs no exchange at all.
+// the processes is the value (a matrix times a state, loads, weights of means). So x·y of a consistent and an additive
+// vector is the sum of the processes' own products, and a sum of loads needs no exchange at all.
 //
 // Every function but those marked local must be called by all processes alike.
 

@@ -75,7 +75,8 @@ struct Exchange {
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_ambient) dA where the ambient is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
-  /// Of an exchange with a medium: G 1; o is this times the medium's temperature, or of a pattern ∫ N_i h (T_air - T_ref) dA.
+  /// Of an exchange with a medium: G 1; o is this times the medium's temperature, or of a pattern ∫ N_i h (T_air - T_ref)
+  /// dA.
   /// Else empty.
   Eigen::VectorXd medium = {};
   double medium_sum = 0.0;  ///< 1'G 1

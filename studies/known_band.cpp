@@ -77,8 +77,8 @@ std::string known_words(const std::vector<Knob>& knobs) {
 }
 
 /// What the effects `learned` of a channel still miss at these times of a run, within their hull (`misses`) and beyond it:
-/// one sigma, in the unit of the channel; 0 where they do not say. Of several `misses` the last one counts, which was learned
-/// beside the others.
+/// one sigma, in the unit of the channel; 0 where they do not say. Of several `misses` the last one counts, which was
+/// learned beside the others.
 Eigen::VectorXd remaining_of(const scenarios::MachineModel& machine, const Cyclogram& run, const Channel& channel,
                              const std::vector<double>& time_s) {
   double misses = 0.0;

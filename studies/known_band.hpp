@@ -25,7 +25,8 @@ struct BandedRun {
 
 /// The band about the displacements, tilts and temperatures of a run. Machines are drawn whose numbers differ from the
 /// scenario's: ln(x / x_scenario) is normal with the standard deviation that `known_to` says, independently for each number,
-/// or together as a fit left them (`known_together`); numbers without either are exact. Draws are a Latin hypercube with a fixed seed, so the band is the same in each run.
+/// or together as a fit left them (`known_together`); numbers without either are exact. Draws are a Latin hypercube with a
+/// fixed seed, so the band is the same in each run.
 /// The reduced model runs each machine (of a lumped machine it is exact), and the band holds the middle 95 % of their
 /// differences from the machine as written (band_limits.hpp), added to the record. At most 250 rows are computed; between
 /// them the differences are linear.

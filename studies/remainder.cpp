@@ -18,7 +18,6 @@ namespace driftwright::studies {
 namespace {
 
 constexpr double kLeastPart = 1e-4;  // share of the largest amount of a channel; smaller amounts are not written
-constexpr double kTurns = 0.01;      // share of the top speed above which the spindle turns, as in identification
 
 /// Six digits; more would not be significant.
 double rounded(double value) {
@@ -288,7 +287,7 @@ std::vector<effects::Effect> learned_effects(const identification::Identified& e
         switch (of.kind) {
           case Law::Kind::kTurning:
             e.words["follows"] = "running";
-            e.set("above", rounded(kTurns * of.top));
+            e.set("above", rounded(identification::kTurns * of.top));
             e.set("at_speed", of.top);
             break;
           case Law::Kind::kPower:

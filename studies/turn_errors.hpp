@@ -19,8 +19,8 @@ struct TurnFit {
 [[nodiscard]] std::optional<TurnFit> fit_turn(const Eigen::Vector3d& direction, const std::vector<double>& angles_rad,
                                               const std::vector<Eigen::Vector3d>& values);
 
-/// What an R-test tells of a rotary axis: D = shift + tilt x arm + radial u + tangential (n x u) + axial n, with the arm from
-/// the axis' point to the ball, its part u across the axis (length 1) and the axis n.
+/// What an R-test tells of a rotary axis: D = shift + tilt x arm + radial u + tangential (n x u) + axial n, with the arm
+/// from the axis' point to the ball, its part u across the axis (length 1) and the axis n.
 struct RTestFit {
   Eigen::Vector3d shift_m;    ///< of the axis' point, across the axis: XOC, YOC of ISO 230-7 (XOB, ZOB; YOA, ZOA)
   Eigen::Vector3d tilt_rad;   ///< of the axis, across it: AOC, BOC

@@ -49,7 +49,8 @@ struct JudgedTravel {
   std::vector<compensation::StrategyMatrix> places;
   compensation::Travel travel;
 };
-/// Judges for each place, then along the travel: at all places of the target's entry in the machine that the judged runs have read.
+/// Judges for each place, then along the travel: at all places of the target's entry in the machine that the judged runs
+/// have read.
 /// @param places  two or more of scenarios::places_along()
 /// @param judge   for a scenario whose study has one of them as its target
 [[nodiscard]] JudgedTravel judge_places(

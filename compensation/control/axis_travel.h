@@ -1,9 +1,9 @@
 /* The external offset of an axis whose correction depends on where the axis is: corrections for several places along its travel,
- * straight between them; beyond the outermost places their corrections hold. C99; it needs axis_offset.c, and what it remembers
- * is all zero before the first cycle.
+ * straight between them; beyond the outermost places their corrections hold. C99; it needs axis_offset.c, and what it
+ * remembers is all zero before the first cycle.
  *
- * Each place has enable, watchdog and slew limit of its own (axis_offset.h): they limit how fast a correction grows in time, not how
- * it changes while the axis moves. */
+ * Each place has enable, watchdog and slew limit of its own (axis_offset.h): they limit how fast a correction grows in time,
+ * not how it changes while the axis moves. */
 #ifndef DRIFTWRIGHT_AXIS_TRAVEL_H
 #define DRIFTWRIGHT_AXIS_TRAVEL_H
 

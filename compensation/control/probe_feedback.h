@@ -13,11 +13,11 @@
  *   in time            dw / dt = (w before a probing - w) / PROBE_REDRAW_S
  *   a probing          w ~ w exp(-u^2 / 2) / d,   u = (read - expected) / d,   d: deviation of read - expected
  *
- * w is then nearly the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a day,
- * on average: a calm axis does not say that the next cut is calm. (Exactly, a filter would take over the estimates of the
- * others with the weight that comes from them; each keeps its own.) pi / sqrt(8) is the deviation of the logarithm of |x| of a
- * normal x: the size is known beforehand as well as from one value. Time constants are equally likely beforehand. The
- * deviation of the answer is that of the mixture: before the first probing it is 2.76 times s.
+ * w is then nearly the probability of the pair (s, T), given all probings, if it is drawn anew once in PROBE_REDRAW_S, a
+ * day, on average: a calm axis does not say that the next cut is calm. (Exactly, a filter would take over the estimates of
+ * the others with the weight that comes from them; each keeps its own.) pi / sqrt(8) is the deviation of the logarithm of
+ * |x| of a normal x: the size is known beforehand as well as from one value. Time constants are equally likely beforehand.
+ * The deviation of the answer is that of the mixture: before the first probing it is 2.76 times s.
  *
  * `level` is 0 until a jump. Each filter is the one of Kalman for level and r. It runs lag_s late, and its answer is
  * continued over lag_s: with a constant lag that is exact.
@@ -31,13 +31,14 @@
  * taken as a jump, too, though it agrees with none: errors are then larger than was known, and the weights learn it.
  *
  * A stuck probe goes on reading the same number, though the axis was corrected by it or the prediction has moved. A good one
- * repeats its last reading by chance, as its readings are rounded: with steps of q, at a distance d from what is expected, once
- * in d / (PROBE_DENSEST q) readings or more seldom, whatever the deviation of a normal law. d is what the filters expect, or what
- * a residual that stays would have moved the reading by, whichever is less: a calm axis is no stuck probe. q is at most the
- * smallest difference of two readings in a row so far. A reading is refused if the product of these chances, over all readings in a row
- * that are equal, is below PROBE_CHANCE, that of one normal value beyond PROBE_REFUSED deviations. So are further ones, until
- * the probe reads another number. What a stuck probe has said until then remains in the estimate, and fades. Not noticed is a
- * probe that has read a single number since the first row, and one that is stuck at what is expected, which does no harm.
+ * repeats its last reading by chance, as its readings are rounded: with steps of q, at a distance d from what is expected,
+ * once in d / (PROBE_DENSEST q) readings or more seldom, whatever the deviation of a normal law. d is what the filters
+ * expect, or what a residual that stays would have moved the reading by, whichever is less: a calm axis is no stuck probe. q
+ * is at most the smallest difference of two readings in a row so far. A reading is refused if the product of these chances,
+ * over all readings in a row that are equal, is below PROBE_CHANCE, that of one normal value beyond PROBE_REFUSED
+ * deviations. So are further ones, until the probe reads another number. What a stuck probe has said until then remains in
+ * the estimate, and fades. Not noticed is a probe that has read a single number since the first row, and one that is stuck
+ * at what is expected, which does no harm.
  *
  * Of a mixture more lies beyond PROBE_REFUSED deviations than of one normal law, 1 in 16,000: with probings each T / 2 the
  * filters refuse one of 3,000 good ones where s is right, one of 120 where errors are 3 times as large, and one of 24, the
@@ -129,9 +130,6 @@ int probe_left(const probe_process* process, probe_state* state, double left_um)
 double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s);
 double probe_deviation_um(const probe_process* process, const probe_state* state, double ahead_s);
 
-/* Prediction and residual together [um], between two bounds. */
-double probe_corrected_um(const probe_process* process, const probe_state* state, double prediction_um, double lowest_um,
-                          double highest_um);
 /* A value on its way from before_um to wanted_um [um], no faster than most_rate_um_s. */
 double probe_slewed_um(double before_um, double wanted_um, double most_rate_um_s, double dt_s);
 

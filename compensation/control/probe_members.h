@@ -4,13 +4,13 @@
  * remembers in structs of the caller, which are all zero before the first row. One member alone is its filter.
  *
  *   correction = sum_i w_i (prediction_i + expected residual_i)
- *   in time    dw_i / dt = (1 - w_i - (n - 1) w_i) / ((n - 1) S)     the best member changes once in S = PROBE_SHIFT_S on average
+ *   in time    dw_i / dt = (1 - w_i - (n - 1) w_i) / ((n - 1) S),   one change of the best in S = PROBE_SHIFT_S on average
  *   a probing  w_i ~ w_i exp(-l_i),   l_i = -ln of the density of the reading by the filters of member i (probe_feedback.h)
  *
  * Of a normal density l is u^2 / 2 + ln d, with the expected deviation d and u = (read - expected) / d, of which four
- * deviations count at most, so that a chip does not decide. w_i is then the probability that member i is the best one. Over a time h
- * the share a = (n - 1) / n (1 - exp(-n h / ((n - 1) S))) of each weight goes to the others in equal parts. After T losses the
- * sum of -ln(sum_i w_i exp(-l_i)) exceeds that along any sequence of members with k changes by at most
+ * deviations count at most, so that a chip does not decide. w_i is then the probability that member i is the best one. Over
+ * a time h the share a = (n - 1) / n (1 - exp(-n h / ((n - 1) S))) of each weight goes to the others in equal parts. After T
+ * losses the sum of -ln(sum_i w_i exp(-l_i)) exceeds that along any sequence of members with k changes by at most
  * ln n + k ln((n - 1) / a) - (T - 1 - k) ln(1 - a), with the share a of equal intervals.
  *
  * Source: Herbster & Warmuth, Machine Learning 32 (1998) 151-178, "Fixed Share", with learning rate 1. */
@@ -42,10 +42,6 @@ double probe_member_um(double correction_um, double trust, double blend_um, doub
 /* A row: as probe_row() for each of the n members. predictions_um: n numbers; one that is not finite leaves the last one. */
 void probe_members_row(const probe_process* processes, probe_member* members, int n, const double* predictions_um,
                        double correction_um, double dt_s);
-
-/* The first member's prediction and what is expected beyond it [um], between two bounds. */
-double probe_members_corrected_um(const probe_process* processes, const probe_member* members, int n, double lowest_um,
-                                  double highest_um);
 
 /* A probing whose value has come in the last row: as probe_drift() and probe_left(). What became of it by the member that leads. */
 int probe_members_drift(const probe_process* processes, probe_member* members, int n, double drift_um);

@@ -11,7 +11,8 @@
  * - Readings that are together further from the model than most_apart correct less, and trust decreases as much.
  * - An ambient that jumps by more than 3 K from row to row (for rows more than 10 min apart: in 10 min) is held at its old
  *   value until it returns, or until the other sensors agree better with what its thermometer has shown since.
- * - In a gap between rows the drive is unknown: the state becomes less certain by all that the heat sources may have done. */
+ * - In a gap between rows the drive is unknown: the state becomes less certain by all that the heat sources may have done.
+ */
 #ifndef DRIFTWRIGHT_STATE_OBSERVER_H
 #define DRIFTWRIGHT_STATE_OBSERVER_H
 

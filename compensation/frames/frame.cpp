@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <cmath>
 
 #include "base/errors.hpp"
 
@@ -27,13 +25,6 @@ Frame frame_of(const FrameParts& parts) {
 
 Frame compose(const Frame& outer, const Frame& inner) {
   return {.linear = outer.linear * inner.linear, .shift_m = outer.linear * inner.shift_m + outer.shift_m};
-}
-
-Frame inverse(const Frame& frame) {
-  const double volume = frame.linear.determinant();
-  if (!(std::abs(volume) > 1e-12)) throw RangeError("a frame that flattens space has no inverse");
-  const Eigen::Matrix3d back = frame.linear.inverse();
-  return {.linear = back, .shift_m = -back * frame.shift_m};
 }
 
 }  // namespace driftwright::compensation

@@ -1,5 +1,5 @@
 #pragma once
-// The frames of a control: translation, rotation, scale and mirror, with composition and inverse.
+// The frames of a control: translation, rotation, scale and mirror, with composition.
 
 #include <Eigen/Core>
 #include <array>
@@ -28,9 +28,5 @@ struct Frame {
 
 /// The control's `outer : inner` (the source paper writes +): p -> outer(inner(p)). Associative, not commutative.
 [[nodiscard]] Frame compose(const Frame& outer, const Frame& inner);
-
-/// The inverse: inverse(f) after f and f after inverse(f) map every point to itself.
-/// @throws RangeError  for a singular frame
-[[nodiscard]] Frame inverse(const Frame& frame);
 
 }  // namespace driftwright::compensation

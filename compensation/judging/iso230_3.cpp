@@ -49,8 +49,8 @@ double top_of(const Channel& drive) {
   return top;
 }
 
-/// Duration of a drive's running [s], from the first row to the end of the last row in which it moves; 0 if it does not move at
-/// the start.
+/// Duration of a drive's running [s], from the first row to the end of the last row in which it moves; 0 if it does not move
+/// at the start.
 double running_period_s(const Record& record, const Channel& drive) {
   constexpr double kStill = 0.01;  // of the top speed: a drive at rest may be logged with this much
   double running_s = 0.0, now = 0.0;

@@ -1,6 +1,6 @@
 #pragma once
-// The figures that ISO 230-3 requires of its tests: thermal distortion caused by a rotating spindle, by moving linear axes, and
-// environmental temperature variation.
+// The figures that ISO 230-3 requires of its tests: thermal distortion caused by a rotating spindle, by moving linear axes,
+// and environmental temperature variation.
 
 #include <string>
 #include <vector>
@@ -38,14 +38,15 @@ struct Iso230Figures {
   std::string not_available;            ///< why there are no figures; empty if there are
 };
 
-/// The figures of a record. The test requires the spindle, or axes, to move from the start of the record, for at least 60 min;
-/// stops within the running period belong to it (a spectrum of speeds). The speed or feed of a row applies until the next row; if
-/// it is missing, the last one applies. A record in which nothing ever moves is a test of the ambient, of 60 min at least.
+/// The figures of a record. The test requires the spindle, or axes, to move from the start of the record, for at least 60
+/// min; stops within the running period belong to it (a spectrum of speeds). The speed or feed of a row applies until the
+/// next row; if it is missing, the last one applies. A record in which nothing ever moves is a test of the ambient, of 60
+/// min at least.
 /// Displacements are linear between readings, so 60 min and t need not be rows.
-/// @param record  channels `speed` [rpm], `feed_x`, `feed_y`, `feed_z` [mm/min]; displacements in um or mm, tilts in urad. Where
-///                displacements are in um and axes move, columns in mm are places of axes
-/// Source: ISO 230-3:2020, clauses 5 to 7; the figures are those of the rotating spindle, also in ISO 10791-10. For moving axes they
-///         are taken at each place of the axis that the record has.
+/// @param record  channels `speed` [rpm], `feed_x`, `feed_y`, `feed_z` [mm/min]; displacements in um or mm, tilts in urad.
+///                Where displacements are in um and axes move, columns in mm are places of axes
+/// Source: ISO 230-3:2020, clauses 5 to 7; the figures are those of the rotating spindle, also in ISO 10791-10. For moving
+///         axes they are taken at each place of the axis that the record has.
 [[nodiscard]] Iso230Figures iso230_3_figures(const Record& record);
 
 }  // namespace driftwright::compensation

@@ -12,15 +12,14 @@ constexpr std::uint64_t kNoiseOfProbings = 31;  // its own sequence
 
 }  // namespace
 
-ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const double> t_s, const RunProbing& how,
-                     std::vector<double>* mean_weights) {
+ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const double> t_s, const RunProbing& how) {
   const std::size_t n = members.size();
   std::vector<probe_process> processes;
   for (const ProbedMember& m : members) processes.push_back(m.process);
   ProbeFeedback feedback(processes);
   Random random(how.seed, kNoiseOfProbings);
   ProbedRun run;
-  std::vector<double> left_um, predictions_um(n), sum_weights(n, 0.0);
+  std::vector<double> left_um, predictions_um(n);
   std::optional<double> last_read_um;
   double next_s = t_s.front() + how.every_s, in_force_um = 0.0;
   int n_after_fault = 0;
@@ -35,7 +34,6 @@ ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const doub
     left_um.push_back(is_known ? -correction_um : std::numeric_limits<double>::quiet_NaN());
     const double before_um = in_force_um;
     if (is_known) in_force_um = correction_um;
-    for (std::size_t m = 0; m < n; ++m) sum_weights[m] += feedback.members()[m].weight;
     if (t_s[i] < next_s || !is_known) continue;
     const bool is_failed = how.fault != ProbeFault::kNone && t_s[i] >= how.fails_at_s;
     double read_um = how.noise_um * random.normal() - before_um;  // of the axis as it was corrected until now
@@ -51,10 +49,6 @@ ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const doub
   run.n_refused = feedback.n_refused();
   run.left = score(left_um);
   if (how.keeps_rows) run.left_um = std::move(left_um);
-  if (mean_weights) {
-    for (double& w : sum_weights) w /= static_cast<double>(t_s.size());
-    *mean_weights = std::move(sum_weights);
-  }
   return run;
 }
 

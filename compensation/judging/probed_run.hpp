@@ -43,11 +43,10 @@ struct ProbedRun {
 };
 
 /// Probings at the first row after each interval. Each counts from the row after it. With one member it is corrected as
-/// `follow` does. With several, each has a filter of its own, and the correction is the mean of theirs with weights that move
-/// with their losses, by the C code of controls (control/probe_members.h).
+/// `follow` does. With several, each has a filter of its own, and the correction is the mean of theirs with weights that
+/// move with their losses, by the C code of controls (control/probe_members.h).
 /// @param time_s  of the rows
-/// @param weights  null, or the mean weights over the rows
 [[nodiscard]] ProbedRun probed_run(std::span<const ProbedMember> members, std::span<const double> time_s,
-                                   const RunProbing& how, std::vector<double>* weights = nullptr);
+                                   const RunProbing& how);
 
 }  // namespace driftwright::compensation

@@ -77,8 +77,8 @@ struct FittedStrategies {
   std::vector<LeftOut> left_out;
   std::vector<DoubtedThermometer> doubted;  ///< in the training runs; no strategy reads those that are alone
   FoldedRuns folds = {};                    ///< what was left out of the training runs in turn
-  /// Of each strategy that is a model of the machine, in the order of `strategies`: in each of folds_for_failures(). Empty for
-  /// other strategies, and if a fold leaves too little for a fit.
+  /// Of each strategy that is a model of the machine, in the order of `strategies`: in each of folds_for_failures(). Empty
+  /// for other strategies, and if a fold leaves too little for a fit.
   std::vector<std::vector<FittedInFold>> in_folds = {};
 };
 

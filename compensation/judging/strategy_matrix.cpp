@@ -192,7 +192,6 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
     if (!strategies[s].is_baseline && strategies[s].residual && strategies[s].name != kBlend) members.push_back(s);
   }
   if (members.size() < 2) return;
-  for (std::size_t s : members) matrix.weighted_members.push_back(strategies[s].name);
   const std::size_t n_runs = matrix.runs.size();
   for (std::size_t r = 0; r < n_runs; ++r) {
     std::vector<std::string> failures = {""};
@@ -215,10 +214,8 @@ void judge_weighted(StrategyMatrix& matrix, const std::vector<DeployedPredictor>
            left_um[s * n_runs + weighted.run][index]});
     }
     for (double every_s : probing->every_s) {
-      const bool is_first = weighted.probed.empty();
       weighted.probed.push_back(probed_run(with, matrix.runs[weighted.run].run.readings.time_s,
-                                           {.every_s = every_s, .noise_um = probing->noise_um, .seed = weighted.run},
-                                           is_first ? &weighted.mean_weights : nullptr));
+                                           {.every_s = every_s, .noise_um = probing->noise_um, .seed = weighted.run}));
     }
   });
 }

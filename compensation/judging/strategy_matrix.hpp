@@ -80,8 +80,6 @@ struct WeightedCase {
   std::size_t run = 0;
   std::string failed = {};
   std::vector<ProbedRun> probed = {};  ///< for each interval
-  std::vector<double> mean_weights =
-      {};  ///< at the first interval, over the rows, one for each of StrategyMatrix::weighted_members
 };
 
 /// The results of all strategies.
@@ -90,7 +88,6 @@ struct StrategyMatrix {
   std::vector<JudgedRunOfMachine> runs;
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
-  std::vector<std::string> weighted_members = {};  ///< names; empty: without probings, or fewer than two members
   std::vector<WeightedCase> weighted = {};
   MatrixSettings settings;
   std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each

@@ -38,8 +38,8 @@ struct Travel {
   std::vector<double> corrected_m;  ///< positions that have a correction of their own
   LeftAlong uncorrected;
   std::vector<TravelStrategy> strategies;  ///< fitted at every corrected place, without baselines
-  /// The one to deploy by choose() on the left-out parts of all places, and the same of those that are formulas. No row of the
-  /// judged runs decides it. None: nothing could be left out.
+  /// The one to deploy by choose() on the left-out parts of all places, and the same of those that are formulas. No row of
+  /// the judged runs decides it. None: nothing could be left out.
   std::optional<std::size_t> chosen = {}, chosen_formula = {};
   std::string why_chosen = {};  ///< one sentence
 };

@@ -38,7 +38,8 @@ struct DeployedPredictor {
   /// Of a mean of formulas, what each leaves, in the order of Predictor::members(): with probings, weights among the mean
   /// itself and its members move with their losses. Empty: the mean stays as it is.
   std::vector<MemberResidual> member_residuals = {};
-  /// Largest residual on parts of the training runs that were left out, with one of its sensors failed [um]; none: not tried.
+  /// Largest residual on parts of the training runs that were left out, with one of its sensors failed [um]; none: not
+  /// tried.
   /// Not stored in files.
   std::optional<double> failed_um = {};
   std::vector<FoldError> fold_errors = {};  ///< the data of the interval, from the fit; not stored in files
@@ -70,7 +71,8 @@ struct PredictedDrift {
 
 /// The correction as sent to an axis: computed from repaired readings, and guarded. Without a fail-safe it is the
 /// prediction, or 0 without one. Its members, if weights among them move, are those of Follower::members_um() as they may go
-/// to an axis (control/probe_members.h). Its interval is that in force, plus the distance from the prediction to the correction.
+/// to an axis (control/probe_members.h). Its interval is that in force, plus the distance from the prediction to the
+/// correction.
 [[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const MachineRun& run);
 
 }  // namespace driftwright::compensation

@@ -327,7 +327,6 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
   const std::vector<double> time_constant_s = time_constants_s(best.shape);
   IdentifiedModes m;
   m.channels = channels;
-  m.held_out_error = best_error;
   m.tested = tested_speeds(tests);
   for (std::size_t k = 0; k < n_modes; ++k) {
     const auto i = static_cast<Eigen::Index>(k);

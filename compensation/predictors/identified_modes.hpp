@@ -26,7 +26,6 @@ struct IdentifiedModes {
   std::vector<Eigen::MatrixXd> level;    ///< per mode, n_channels x n_powers
   std::vector<Eigen::VectorXd> ambient;  ///< per mode, H for each channel
   TestedSpeeds tested;                   ///< its top speed is N
-  double held_out_error = 0.0;  ///< root mean square in units of the noise, with speeds left out of the fit one at a time
 
   /// Channels at the requested times, n_channels x n_times. @param ambient  minus its temperature at the start [K]
   /// @throws InputError  as require_tested()

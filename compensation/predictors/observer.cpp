@@ -73,12 +73,4 @@ std::vector<Observer::Factor> Observer::factors() const {
   return result;
 }
 
-solver::ModelFactors Observer::model_factors() const {
-  const Eigen::VectorXd value = 1.0 + factors_.mean.array();
-  solver::ModelFactors f = solver::flow_factors(system_, {value.data(), value.data() + value.size() - 1});
-  f.output.assign(system_.outputs.name.size(), 1.0);
-  f.output[static_cast<std::size_t>(drift_output_)] = value(value.size() - 1);
-  return f;
-}
-
 }  // namespace driftwright::compensation

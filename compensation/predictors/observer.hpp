@@ -97,8 +97,6 @@ class Observer final : public Predictor {
     double value = 1.0, deviation = 0.0;
   };
   [[nodiscard]] std::vector<Factor> factors() const;
-  /// Their values as factors on the model: solver::with_factors() makes the estimated machine.
-  [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
 
   /// An estimate with a normal distribution.

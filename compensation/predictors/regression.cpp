@@ -66,7 +66,6 @@ Regression fit_regression(std::span<const Record> records, const std::vector<std
   fit.coefficients.assign(coefficients.begin(), coefficients.end());
   fit.intercept = mean(m) - mean.head(m).dot(coefficients);
   fit.residual_rms = residual.norm() / std::sqrt(static_cast<double>(n));
-  fit.max_abs_residual = residual.cwiseAbs().maxCoeff();
   fit.condition_number = condition_of(qr);
   fit.n_samples = static_cast<int>(n);
   fit.n_left_out = rows.n_left_out;

@@ -18,7 +18,6 @@ struct Regression {
   std::vector<double> coefficients;  ///< target_unit per input unit
   double intercept = 0.0;            ///< target_unit
   double residual_rms = 0.0;         ///< sqrt(mean r^2) over the rows fitted, target_unit
-  double max_abs_residual = 0.0;     ///< target_unit
   /// Largest over smallest singular value kept, of the centred inputs scaled to unit deviation [-]; 1 if rank
   /// = 0. Errors in the readings may be amplified by this factor: above about 100 the inputs are nearly redundant.
   double condition_number = 1.0;

@@ -6,7 +6,6 @@
 
 #include "base/lists.hpp"
 #include "base/random.hpp"
-#include "compensation/sensors/sensor_selection.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -112,21 +111,6 @@ std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const s
     best.push_back(std::move(found));
     listener.share(static_cast<double>(n) / n_most);
   }
-  return best;
-}
-
-ThermometerSet best_of_all_sets(const DriftLeft& left, int n, const std::vector<int>& fixed) {
-  std::vector<int> free;
-  for (int c = 0; c < left.n_candidates(); ++c) {
-    if (!is_in(fixed, c)) free.push_back(c);
-  }
-  ThermometerSet best{{}, std::numeric_limits<double>::infinity()};
-  for_each_set(static_cast<int>(free.size()), n, [&](std::span<const int> set) {
-    std::vector<int> members = fixed;
-    for (int i : set) members.push_back(free[static_cast<std::size_t>(i)]);
-    const double um = left.of(members);
-    if (um < best.left_um) best = {members, um};
-  });
   return best;
 }
 

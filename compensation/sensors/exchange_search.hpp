@@ -23,7 +23,4 @@ struct ThermometerSet {
 [[nodiscard]] std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed = {},
                                                     const Listener& listener = {}, const Pieces& pieces = {});
 
-/// The best of all sets of n in addition to the fixed ones, by trying each.
-[[nodiscard]] ThermometerSet best_of_all_sets(const DriftLeft& left, int n, const std::vector<int>& fixed = {});
-
 }  // namespace driftwright::compensation

@@ -112,7 +112,8 @@ class DRIFTWRIGHT_API Machine {
   [[nodiscard]] Run start(std::optional<double> ambient_degC = {}, const std::string& run_name = "run") const;
 
   /// What the records say about the machine, as `driftwright diagnose`. @param measured  each with its own `source`
-  /// @throws InputError  for records that cannot be compared or have a blunder, and for a key in `without` that no candidate has
+  /// @throws InputError  for records that cannot be compared or have a blunder, and for a key in `without` that no candidate
+  /// has
   /// @throws SolveError  where the machine with what was found has no solution
   [[nodiscard]] Diagnosis diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options = {}) const;
   /// Fits the scenario's uncertain numbers to records, as `driftwright calibrate`; does not search for causes. Errors as

@@ -10,7 +10,8 @@
 
 namespace driftwright {
 
-/// Runs a program line by line: IF ELSE ENDIF, WHILE, FOR, LOOP, REPEAT UNTIL, GOTOF GOTOB GOTO, REPEAT A B P=n, REPEATB, DEF.
+/// Runs a program line by line: IF ELSE ENDIF, WHILE, FOR, LOOP, REPEAT UNTIL, GOTOF GOTOB GOTO, REPEAT A B P=n, REPEATB,
+/// DEF.
 /// @throws InputError  file, line and column; also for a loop without end (NcExecution::count())
 /// Source: Siemens, SINUMERIK 840D sl / 828D, Programming Manual Job Planning (6FC5398-2BP40), program jumps and branches,
 /// program part repetition, control structures.

@@ -1,5 +1,6 @@
 #pragma once
-// How well several numbers of a scenario are known together: what a fit to records leaves open of them, correlations included.
+// How well several numbers of a scenario are known together: what a fit to records leaves open of them, correlations
+// included.
 
 #include <Eigen/Core>
 #include <string>

@@ -16,7 +16,6 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kJitter = 0.01;      // share of the top speed; a smaller change is jitter, unless the new value stays
 constexpr std::size_t kStays = 3;     // rows with exactly the same value; a jittering tachometer never shows that many
 constexpr double kRoom_K = 293.15;    // reference temperature without a machine
 constexpr double kManyMissing = 0.1;  // share of missing readings of speed or ambient that is reported

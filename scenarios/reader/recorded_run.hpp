@@ -9,6 +9,9 @@
 
 namespace driftwright::scenarios {
 
+/// Share of the top speed: a smaller change of the recorded speed is jitter, unless the new value stays.
+inline constexpr double kJitter = 0.01;
+
 /// How strictly a record is read.
 enum class Reading {
   kStrict,   ///< the record must contain the drive

@@ -69,7 +69,8 @@ struct MachineModel {
       written;  ///< the keys that determine mesh and matrices, as in the scenario; numbers of effects are not included
 };
 
-/// True if the scenario says with `known_to` or `known_together` how well some number is known. A number that is `fixed` says nothing.
+/// True if the scenario says with `known_to` or `known_together` how well some number is known. A number that is `fixed`
+/// says nothing.
 [[nodiscard]] bool says_known_to(const MachineModel& model);
 
 /// The model that a cyclogram is simulated on.

@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "base/record.hpp"
-#include "tests/shared/command_line.hpp"
+#include "tests/app/scheduled.hpp"
 #include "tests/shared/edited_text.hpp"
 #include "tests/shared/one_hal.hpp"
 
@@ -22,26 +22,6 @@ namespace {
 
 using fixtures::lines_of;
 using ::testing::AllOf, ::testing::ContainsRegex, ::testing::HasSubstr;
-
-/// One lumped body that grows 60 um along z over hours, as a milling head does, and half as much along x.
-constexpr const char* kHead = R"(name: head
-reference_temperature: 20 degC
-machine: {generator: lumped}
-effects:
-  - {type: node, node: head, capacity: 60 kJ/K}
-  - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: ambient, conductance: 20 W/K}
-ambient: [[0 h, 20 degC], [9 h, 20 degC]]
-sensors: [{name: t_head, node: head}]
-displacements:
-  - {name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}
-  - {name: nose_x, sensitivities: [{node: head, sensitivity: -2 um/K}]}
-cyclograms: {warm_up: [[60 min, 2000 rpm]]}
-schedule:
-  axes: {x: {displacement: nose_x, sign: -1, tolerance: 4 um}, z: {displacement: nose_z}}
-  tolerance: 10 um
-  rapid: 10 m/min
-)";
 
 /// Three hours of passes: lines, arcs, incremental moves, a canned cycle.
 std::string passes() {
@@ -52,22 +32,6 @@ std::string passes() {
     if (i % 4 == 2) text += "G91\nG1 X10 F50\nX-10\nG90\n";
   }
   return text + "M30\n%\n";
-}
-
-struct Scheduled {
-  CommandOutcome outcome;
-  std::filesystem::path folder;
-};
-
-Scheduled run_schedule(const std::string& name, const std::string& program, const std::string& arguments = "",
-                       const std::string& scenario = kHead) {
-  const auto folder = fresh_folder(name);
-  std::ofstream(folder / "head.yaml") << scenario;
-  std::ofstream(folder / "part.ngc", std::ios::binary) << program;
-  const auto out = folder / "out";
-  return {run_program("schedule " + (folder / "head.yaml").string() + " --program " + (folder / "part.ngc").string() +
-                      " -o " + out.string() + " " + arguments),
-          out};
 }
 
 /// Where a motion of rs274 ends: x, y, z of a line, u, v, w of an arc in the plane XY.
@@ -150,7 +114,7 @@ constexpr const char* kAbsolute = "  offset: absolute\n  base_offset: [100 mm, 5
 
 // nose_z rises: Z goes back from its -20 mm in steps of 10 um. nose_x falls along -x of the program: X goes back as well.
 TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
-  const Scheduled s = run_schedule("signs", passes(), "--policy paper", std::string(kHead) + kAbsolute);
+  const Scheduled s = run_schedule("signs", passes(), "--policy paper", std::string(kScheduledHead) + kAbsolute);
   const std::string text = read_text(s.folder / "part.ngc");
   EXPECT_THAT(text, HasSubstr("G10 L2 P1 X100 Z-20\n"));
   EXPECT_THAT(text, HasSubstr("Z-20.01\n"));
@@ -160,7 +124,7 @@ TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
 // What the operator has set is lost: said on the terminal, on the page and in the program itself. By default nothing is
 // overwritten.
 TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
-  const Scheduled absolute = run_schedule("absolute", passes(), "", std::string(kHead) + kAbsolute),
+  const Scheduled absolute = run_schedule("absolute", passes(), "", std::string(kScheduledHead) + kAbsolute),
                   added = run_schedule("added", passes());
   ASSERT_EQ(absolute.outcome.exit_code, 0) << absolute.outcome.output;
   EXPECT_THAT(absolute.outcome.output, HasSubstr("what the operator has set is overwritten"));
@@ -173,7 +137,7 @@ TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
 
 // The machine is 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
 TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
-  std::string scenario = kHead;
+  std::string scenario = kScheduledHead;
   scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: ambient");
   const std::string reference = read_text(run_schedule("from_reference", passes(), "", scenario).folder / "schedule.csv");
   const std::string start =
@@ -212,7 +176,7 @@ std::string din_passes() {
 }
 
 TEST(ScheduleVerb, ReadsAndCorrectsProgramsInTheLanguageOfTheirControl) {
-  const std::string with_tools = std::string(kHead) + "  tool_change: 10 s\n";
+  const std::string with_tools = std::string(kScheduledHead) + "  tool_change: 10 s\n";
   const Scheduled siemens = run_schedule("siemens", siemens_passes(), "--dialect siemens", with_tools);
   ASSERT_EQ(siemens.outcome.exit_code, 0) << siemens.outcome.output;
   EXPECT_THAT(read_text(siemens.folder / "part.ngc"),
@@ -343,7 +307,7 @@ struct Limited {
 class ScheduleLimit : public ::testing::TestWithParam<Limited> {};
 
 TEST_P(ScheduleLimit, RefuseTheBlockWithItsLineAndPlanWithBeyond) {
-  const std::string scenario = std::string(kHead) + "limits: " + GetParam().limits + "\n";
+  const std::string scenario = std::string(kScheduledHead) + "limits: " + GetParam().limits + "\n";
   const std::string name = std::string("limit_") + GetParam().name;
   const Scheduled refused = run_schedule(name, passes(), "", scenario);
   EXPECT_EQ(refused.outcome.exit_code, 2) << refused.outcome.output;
@@ -376,7 +340,7 @@ TEST(ScheduleVerb, RefusesAFeedAboveTheRapids) {
 
 TEST(ScheduleVerb, TakesTheSpeedOfTheLimitsInPlaceOfTheScenarios) {
   const std::string program = "G21 G90 G54\nS3000 M3\nG0 X0 Z5\nG1 X100 F20\nG0 Z9\nM30\n";
-  const auto with = [](const char* limits) { return std::string(kHead) + "limits: {speed: " + limits + "}\n"; };
+  const auto with = [](const char* limits) { return std::string(kScheduledHead) + "limits: {speed: " + limits + "}\n"; };
   EXPECT_EQ(run_schedule("limit_unstated", program).outcome.exit_code, 2);
   EXPECT_EQ(run_schedule("limit_higher", program, "", with("3000 rpm")).outcome.exit_code, 0);
   const Scheduled lower = run_schedule("limit_lower", program, "", with("2999 rpm"));
@@ -400,8 +364,8 @@ TEST(ScheduleVerb, KeepsTheLimitsOfCorrectionsAndWritesThemIntoTheProgram) {
   ASSERT_GT(largest(free, "correction_um"), 30.0);
   ASSERT_GT(largest(free, "increment_um"), 9.0);
   EXPECT_THAT(read_text(free.folder / "part.ngc"), Not(HasSubstr("limit of the scenario")));
-  const std::string small = std::string(kHead) + "limits: {correction: 15 um, step: 9 um}\n",
-                    large = std::string(kHead) + "limits: {correction: 80 um, step: 60 um}\n";
+  const std::string small = std::string(kScheduledHead) + "limits: {correction: 15 um, step: 9 um}\n",
+                    large = std::string(kScheduledHead) + "limits: {correction: 80 um, step: 60 um}\n";
   const Scheduled held = run_schedule("limits_small", passes(), "--beyond", small);
   ASSERT_EQ(held.outcome.exit_code, 0) << held.outcome.output;
   EXPECT_LE(largest(held, "correction_um"), 15.0);
@@ -451,117 +415,6 @@ TEST(ScheduleVerb, NamesAnUnreadableBlockAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(s.folder));
 }
 
-/// A part of 20 min, and the machine's 50 min between cold and warm.
-constexpr const char* kShortPart =
-    "G21 G90 G54\nS2000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX190 F20\nG0 Z5\nX0\nG1 Z-2 F100\nX190 F20\nG0 Z5\nM30\n";
-
-/// Time and nose_z [um] of a record.
-std::vector<double> drift_of(const std::filesystem::path& folder) {
-  return read_record_csv((folder / "record.csv").string()).at("nose_z").values;
-}
-
-// The scenario's own cyclogram that repeats the program is the independent account of a series.
-TEST(ScheduleSeries, TheDriftOfPartsIsThatOfTheProgramRepeated) {
-  std::string repeated = kHead;
-  repeated.replace(repeated.find("cyclograms: {"), 13,
-                   "cyclograms: {three: {nc_program: part.ngc, rapid: 10 m/min, repeat: 3}, ");
-  const Scheduled s = run_schedule("series_repeat", kShortPart, "--parts 3", repeated);
-  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
-  const auto simulated = s.folder.parent_path() / "simulated";
-  ASSERT_EQ(run_program("simulate " + (s.folder.parent_path() / "head.yaml").string() + " --cyclogram three -o " +
-                        simulated.string())
-                .exit_code,
-            0);
-  const Record series = read_record_csv((s.folder / "record.csv").string()),
-               whole = read_record_csv((simulated / "record.csv").string());
-  EXPECT_NEAR(series.time_s.back(), whole.time_s.back(), 1e-6);
-  std::size_t n_compared = 0;
-  for (std::size_t i = 0; i < series.n_samples(); ++i) {
-    for (std::size_t k = 0; k < whole.n_samples(); ++k) {
-      if (std::abs(series.time_s[i] - whole.time_s[k]) > 1e-6) continue;
-      ++n_compared;
-      EXPECT_NEAR(series.at("nose_z").values[i], whole.at("nose_z").values[k], 0.01) << series.time_s[i];  // 1e-4 of 60 um
-    }
-  }
-  EXPECT_GT(n_compared, 10U);
-}
-
-TEST(ScheduleSeries, WritesOneProgramForEachPartThatDiffers) {
-  const Scheduled one = run_schedule("series_one", kShortPart);
-  const Scheduled s = run_schedule("series_warming", kShortPart, "--parts 4 --between '2 min'");
-  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
-  EXPECT_THAT(s.outcome.output,
-              AllOf(HasSubstr("4 parts of "), HasSubstr("with 2 min between"), HasSubstr("part 4: part_04.ngc")));
-  EXPECT_FALSE(std::filesystem::exists(s.folder / "part.ngc"));
-  EXPECT_EQ(read_text(s.folder / "part_01.ngc"), read_text(one.folder / "part.ngc")) << "the first part knows of no series";
-  EXPECT_NE(read_text(s.folder / "part_02.ngc"), read_text(s.folder / "part_01.ngc"));
-  EXPECT_THAT(read_text(s.folder / "schedule.csv"),
-              AllOf(HasSubstr("first_part,last_part,time_s,line"), HasSubstr("\n4,4,0.000,")));
-  EXPECT_THAT(read_text(s.folder / "schedule.txt"), HasSubstr("# part 3: part_03.ngc"));
-  EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("The parts of the series"));
-  EXPECT_THAT(read_text(s.folder / "summary.json"), HasSubstr("\"n_parts\": 4"));
-}
-
-// After ten hours at the program's speed the machine is in balance. All parts drift alike, so one program makes them all,
-// and it begins with the whole drift.
-TEST(ScheduleSeries, OfAWarmMachineIsOneProgram) {
-  const std::string start = write_file("ten_hours.csv", "time_s,speed_rpm\n0,2000\n36000,0\n");
-  const Scheduled s = run_schedule("series_warm", kShortPart, "--parts 5 --start " + start);
-  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
-  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("parts 1 to 5: part.ngc"), HasSubstr("after " + start + " (600 min")));
-  EXPECT_TRUE(std::filesystem::exists(s.folder / "part.ngc"));
-  EXPECT_FALSE(std::filesystem::exists(s.folder / "part_01.ngc"));
-  EXPECT_NEAR(drift_of(s.folder).front(), 60.0, 0.05);  // 300 W on 20 W/K, 4 um/K
-}
-
-// Parts 2 and 3 of a series are a series of two after the record of the first and the pause.
-TEST(ScheduleSeries, StartsWarmBehindARecordOfTheFirstPart) {
-  const Scheduled three = run_schedule("series_three", kShortPart, "--parts 3 --between '2 min'");
-  const Scheduled first = run_schedule("series_first", kShortPart);
-  const Scheduled rest =
-      run_schedule("series_rest", kShortPart,
-                   "--parts 2 --between '2 min' --after-pause '2 min' --start " + (first.folder / "record.csv").string());
-  ASSERT_EQ(rest.outcome.exit_code, 0) << rest.outcome.output;
-  const std::vector<double> all = drift_of(three.folder), later = drift_of(rest.folder);
-  ASSERT_GT(all.size(), later.size());
-  for (std::size_t i = 0; i < later.size(); ++i)
-    EXPECT_NEAR(later[later.size() - 1 - i], all[all.size() - 1 - i], 0.2)
-        << i;  // rows of the record blur when the speed changed
-}
-
-// Where the work offset is probed before each part, each counts its drift from its own start; else all count from the
-// reference.
-TEST(ScheduleSeries, CountsFromTheStartOfEachPartWhereTheOffsetIsProbed) {
-  for (const bool is_probed : {true, false}) {
-    const Scheduled s = run_schedule(is_probed ? "series_probed" : "series_unprobed", kShortPart, "--parts 3",
-                                     std::string(kHead) + (is_probed ? "  drift_from: start\n" : ""));
-    ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
-    const Record record = read_record_csv((s.folder / "record.csv").string());
-    const std::vector<double>& drift_um = record.at("nose_z").values;
-    const nlohmann::json summary = nlohmann::json::parse(read_text(s.folder / "summary.json"));
-    ASSERT_EQ(summary["corrected"].size(), 3U);
-    const double part_s = record.time_s.back() / 3.0;
-    for (int part = 0; part < 3; ++part) {
-      std::vector<double> own_um;
-      for (std::size_t i = 0; i < record.n_samples(); ++i) {
-        if (record.time_s[i] > part * part_s - 1e-3 && record.time_s[i] < (part + 1) * part_s + 1e-3)
-          own_um.push_back(drift_um[i]);
-      }
-      const double zero_um = is_probed ? own_um.front() : 0.0;
-      const double expected_um = *std::max_element(own_um.begin(), own_um.end()) - zero_um;  // it rises
-      EXPECT_NEAR(summary["corrected"][part]["axes"][1]["peak_before_um"], expected_um, 1e-3) << "part " << part + 1;
-    }
-  }
-}
-
-TEST(ScheduleSeries, RefusesSeriesThatAreNone) {
-  EXPECT_EQ(run_schedule("series_zero", kShortPart, "--parts 0").outcome.exit_code, 2);
-  EXPECT_EQ(run_schedule("series_between", kShortPart, "--between '2 min'").outcome.exit_code, 2);
-  const CommandOutcome wrong = run_schedule("series_unit", kShortPart, "--parts 2 --between '2 mm'").outcome;
-  EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.output, AllOf(HasSubstr("--between"), HasSubstr("2 mm")));
-}
-
 struct BadSchedule {
   const char* name;
   const char* right;
@@ -572,7 +425,7 @@ struct BadSchedule {
 class ScheduleMistakes : public ::testing::TestWithParam<BadSchedule> {};
 
 TEST_P(ScheduleMistakes, EndWithTwoAndNameTheKey) {
-  const std::string scenario = fixtures::replaced(kHead, GetParam().right, GetParam().wrong);
+  const std::string scenario = fixtures::replaced(kScheduledHead, GetParam().right, GetParam().wrong);
   const Scheduled s = run_schedule(std::string("bad_") + GetParam().name, passes(), "", scenario);
   EXPECT_EQ(s.outcome.exit_code, 2) << s.outcome.output;
   EXPECT_THAT(s.outcome.output, HasSubstr(GetParam().message));
@@ -603,7 +456,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return each.param.name; });
 
 TEST(ScheduleVerb, ShowsWhatToWriteWhereTheScenarioSaysNothing) {
-  const std::string scenario = std::string(kHead).substr(0, std::string(kHead).find("schedule:"));
+  const std::string scenario = std::string(kScheduledHead).substr(0, std::string(kScheduledHead).find("schedule:"));
   const Scheduled s = run_schedule("no_block", passes(), "", scenario);
   EXPECT_EQ(s.outcome.exit_code, 2);
   EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("head.yaml"), HasSubstr("schedule: {tolerance: 10 um, rapid: 15 m/min}")));

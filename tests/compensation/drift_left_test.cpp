@@ -14,6 +14,7 @@
 #include "compensation/predictors/observer_left.hpp"
 #include "compensation/sensors/exchange_search.hpp"
 #include "compensation/sensors/regression_left.hpp"
+#include "tests/shared/best_of_all_sets.hpp"
 
 namespace driftwright::compensation::drift_left_test {
 namespace {
@@ -174,7 +175,7 @@ TEST(ExchangeSearch, FindsTheBestOfAllSets) {
     for (const DriftLeft* left : {static_cast<const DriftLeft*>(&observer), static_cast<const DriftLeft*>(&with_loss)}) {
       const std::vector<ThermometerSet> found = best_sets(*left, 3);
       for (int n = 1; n <= 3; ++n) {
-        const double ratio = found[static_cast<std::size_t>(n) - 1].left_um / best_of_all_sets(*left, n).left_um;
+        const double ratio = found[static_cast<std::size_t>(n) - 1].left_um / fixtures::best_of_all_sets_um(*left, n);
         EXPECT_GE(ratio, 1.0 - 1e-9);
         worst = std::max(worst, ratio);
         n_equal += ratio < 1.0 + 1e-9 ? 1 : 0;
@@ -198,7 +199,7 @@ TEST(ExchangeSearch, KeepsWhatIsFixed) {
     ASSERT_EQ(found[n].members.size(), n + 3);
     EXPECT_EQ(found[n].members[0], 11);
     EXPECT_EQ(found[n].members[1], 3);
-    EXPECT_NEAR(found[n].left_um, best_of_all_sets(left, static_cast<int>(n) + 1, fixed).left_um, 1e-9);
+    EXPECT_NEAR(found[n].left_um, fixtures::best_of_all_sets_um(left, static_cast<int>(n) + 1, fixed), 1e-9);
   }
 }
 

@@ -27,17 +27,13 @@ Frame drawn_frame(Random& random) {
 }
 
 // 1e-12 of coordinates up to some 100 m: a dozen operations of 1e-16 each.
-TEST(FrameChain, IsAssociativeAndHasAnInverse) {
+TEST(FrameChain, IsAssociative) {
   Random random(1);
   for (int i = 0; i < 200; ++i) {
     const Frame a = drawn_frame(random), b = drawn_frame(random), c = drawn_frame(random);
     const Eigen::Vector3d p = drawn(random, 10.0);
     EXPECT_LT((compose(compose(a, b), c).map(p) - compose(a, compose(b, c)).map(p)).norm(), 1e-12 * 200.0);
     EXPECT_LT((compose(a, b).map(p) - a.map(b.map(p))).norm(), 1e-12 * 100.0);
-    EXPECT_LT((inverse(a).map(a.map(p)) - p).norm(), 1e-11);
-    EXPECT_LT((a.map(inverse(a).map(p)) - p).norm(), 1e-11);
-    const Frame back = compose(inverse(b), inverse(a)), ab = inverse(compose(a, b));
-    EXPECT_LT((back.linear - ab.linear).norm() + (back.shift_m - ab.shift_m).norm(), 1e-9);
   }
 }
 
@@ -61,7 +57,6 @@ TEST(FrameChain, OfTheControlMapsWorkpieceToMachine) {
 TEST(Frame, RefusesScaleOfZero) {
   EXPECT_THROW((void)frame_of({.scale = {1.0, 0.0, 1.0}}), RangeError);
   EXPECT_THROW((void)frame_of({.shift_m = {NAN, 0.0, 0.0}}), RangeError);
-  EXPECT_THROW((void)inverse(Frame{.linear = Eigen::Matrix3d::Zero()}), RangeError);
 }
 
 TEST(TempFrame, MapsBothRings) {

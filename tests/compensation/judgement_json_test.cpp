@@ -69,7 +69,7 @@ StrategyMatrix matrix(const std::string& file) {
 TEST(JudgementJson, HasTheKeysAndValuesOfTheReport) {
   for (const char* file : {"", "/records/monday.csv"}) {
     const StrategyMatrix m = matrix(file);
-    const Json report = output::section_json(findings::strategy_section(m, {}, {"1", "a test"}));
+    const Json report = output::document_json({.body = findings::strategy_section(m, {}, {"1", "a test"})});
     for (std::size_t i = 0; i < m.strategies.size(); ++i) {
       const Json row = report.at("strategies").at(i);
       Json judged = judgement_json(m, m.strategies[i]);

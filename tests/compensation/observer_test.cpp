@@ -2,6 +2,7 @@
 
 #include "compensation/predictors/observer.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -299,12 +300,16 @@ TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
                              {.drift_um = 0.1, .model_um = 0.1, .factor_walk = 0.0, .longest_step_s = step_s});
     o.learn(std::vector<MachineRun>{run_of(machine), run_of(machine)});
     std::vector<std::string> names;
+    std::vector<double> value;
     for (const Observer::Factor& f : o.factors()) {
       names.push_back(f.name);
+      value.push_back(f.value);
       EXPECT_GT(std::abs(f.value - 1.0), 0.03) << f.name;
     }
     EXPECT_THAT(names, ElementsAre("motor", "screw", "film 1", "film 3", "drift_y"));
-    const solver::ReducedSystem believed = solver::with_factors(three_parts(), o.model_factors());
+    const solver::ReducedSystem believed = solver::with_factors(
+        three_parts(),
+        {.source = {value[0], value[1]}, .exchange = {value[2], value[3]}, .output = {1.0, 1.0, 1.0, value[4]}});
     const MachineRun run = run_of(believed, 60.0, 7.0);
     EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(run).drift_um, run), 5.0);
     const double off_um = worst_um(o.with_sensors({}).observe(run).drift_um, run);

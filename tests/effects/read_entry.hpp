@@ -14,4 +14,9 @@ inline Effect read(const std::string& text) {
   return read_effect(ConfigMap::read_file(write_file("effect.yaml", text)));
 }
 
+/// What it does to heat.
+inline HeatBalance balance_of(const std::string& text) {
+  return heat_balance({read(text)});
+}
+
 }  // namespace driftwright::effects

@@ -55,7 +55,7 @@ TEST(AxisLoopSection, TellsTheFaultsOfTheAxis) {
   EXPECT_THAT(terminal(run, false), harmful);
   EXPECT_THAT(terminal(run, false), Not(HasSubstr("there and back")));  // harmless: a detail
   EXPECT_THAT(terminal(run, true), AllOf(harmful, HasSubstr("6 edges there and back")));
-  const nlohmann::json faults = output::section_json(section(run))["faults"];
+  const nlohmann::json faults = output::document_json({.body = section(run)})["faults"];
   EXPECT_EQ(faults, nlohmann::json::parse(R"({"jumps": 2, "too_fast": 345, "glitches": 6, "swapped": true})"));
 }
 
@@ -67,7 +67,7 @@ TEST(AxisLoopSection, ASoundAxisHasNone) {
 TEST(AxisLoopSection, TheLedgerIsTheInjectorsOwn) {
   compensation::AxisLoopResult run = small_run({});
   run.with.total_quarters = 5;
-  EXPECT_EQ(output::section_json(section(run))["counts"]["inserted_quarters"], 5);
+  EXPECT_EQ(output::document_json({.body = section(run)})["counts"]["inserted_quarters"], 5);
   EXPECT_THAT(terminal(run, true), HasSubstr("inserted +5"));
 }
 

@@ -33,7 +33,7 @@ TEST(DiagnosisData, CausesHaveTheirNumbersAndAlternatives) {
   cause.alternatives.push_back({"radiation", "nose", "sun", {{"power", "W", 12.0, 9.0, 15.0}}, 39.0, {}});
   output::Section section;
   add_causes_data(section, {cause});
-  const Json json = output::section_json(section);
+  const Json json = output::document_json({.body = section});
   ASSERT_EQ(json["causes"].size(), 1U);
   const Json& named = json["causes"][0];
   EXPECT_EQ(named["effect"], "convection");
@@ -56,7 +56,7 @@ TEST(DiagnosisData, TheAmbientIsStillCalledHallUnderWhere) {
   cause.alternatives.push_back({"sensor_bias", "t_ambient", "a bias", {}, 38.0, {}});
   output::Section section;
   add_causes_data(section, {cause});
-  const Json json = output::section_json(section)["causes"][0];
+  const Json json = output::document_json({.body = section})["causes"][0];
   EXPECT_EQ(json["effect"], "ambient");
   EXPECT_EQ(json["where"], "hall");
   EXPECT_EQ(json["alternatives"][0]["where"], "housing,hall");
@@ -69,7 +69,7 @@ TEST(DiagnosisData, CausesThatAreNotWrittenSayWhy) {
   cause.why_not_written = "rows that were kept out are predicted worse with it";
   output::Section section;
   add_causes_data(section, {cause});
-  const Json json = output::section_json(section)["causes"][0];
+  const Json json = output::document_json({.body = section})["causes"][0];
   EXPECT_EQ(json["written"], false);
   EXPECT_EQ(json["why_not_written"], "rows that were kept out are predicted worse with it");
 }
@@ -77,7 +77,7 @@ TEST(DiagnosisData, CausesThatAreNotWrittenSayWhy) {
 TEST(DiagnosisData, NoCausesAreAnEmptyList) {
   output::Section section;
   add_causes_data(section, {});
-  EXPECT_EQ(output::section_json(section)["causes"], Json::array());
+  EXPECT_EQ(output::document_json({.body = section})["causes"], Json::array());
 }
 
 TEST(DiagnosisData, StatementsHaveTheirCourseInShownUnits) {
@@ -90,7 +90,7 @@ TEST(DiagnosisData, StatementsHaveTheirCourseInShownUnits) {
   d.statements.stated.push_back(s);
   output::Section section;
   add_statements_data(section, d);
-  const Json json = output::section_json(section)["statements"][0]["course"][0];
+  const Json json = output::document_json({.body = section})["statements"][0]["course"][0];
   EXPECT_EQ(json["record"], "monday");
   EXPECT_EQ(json["edge_min"], Json::parse("[0.0, 1.0, 3.0]"));
   EXPECT_EQ(json["value"], Json::parse("[0.0, 5.0]"));
@@ -374,7 +374,7 @@ TEST(CauseWords, NameTheUsersOwnEffectAndItsLine) {
       "2.08.");
   output::Section section;
   add_causes_data(section, d.causes);
-  const Json json = output::section_json(section)["causes"][0];
+  const Json json = output::document_json({.body = section})["causes"][0];
   EXPECT_EQ(json["effect"], "friction_law");  // programs compare this key
   EXPECT_EQ(json["own"], "motor_loss at head, line 7");
 }

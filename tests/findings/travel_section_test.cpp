@@ -32,7 +32,7 @@ TEST(TravelSection, SaysWhatIsLeftWithOneCorrectionAndWithAll) {
             HasSubstr("Corrections for 0, 400 and 800 mm, straight between them, leave at most 2.5 µm (6 % of 40.0 µm"),
             HasSubstr("mm on warm"), HasSubstr("leaves 30.0 µm at best, the one for 400 mm"),
             HasSubstr("models/x_0/exact.json --model"), HasSubstr("--as linuxcnc")));
-  const auto left = output::section_json(section).at("left");
+  const auto left = output::document_json({.body = section}).at("left");
   ASSERT_EQ(left.size(), 5u);
   EXPECT_EQ(left[0].at("peak_um"), 40.0);
   EXPECT_EQ(left[2].at("corrected"), "400 mm");

@@ -16,15 +16,13 @@
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "mesh/gmsh_parts.hpp"
-#include "mesh/imported_mesh.hpp"
 #include "mesh/mesh_step.hpp"
 #include "mesh/outer_planes.hpp"
 #include "mesh/overlapping_cells.hpp"
-#include "mesh/quality.hpp"
 #include "mesh/read_apart.hpp"
+#include "tests/mesh/imported.hpp"
 #include "tests/shared/fixtures.hpp"
 #include "tests/shared/refused.hpp"
-#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::mesh::other_programs_mesh_test {
 namespace {
@@ -36,26 +34,20 @@ using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
 std::string written(const std::string& name, const std::string& text) {
-  const std::string path = (temporary_folder() / name).string();
+  const std::string path = path_of(name);
   write_bytes(path, text);
   return path;
 }
 
 Mesh mesh_in_mm(const std::string& path) {
-  ImportedMesh recipe;
-  recipe.path = path;
-  recipe.unit_m = 1e-3;
-  return import_mesh(recipe);
+  return import_mesh(recipe(path, 1e-3));
 }
 Mesh mesh_of_deck(const std::string& text) {
   return mesh_in_mm(written("deck.inp", text));
 }
 
 double litres(const Mesh& m, const std::string& region) {
-  return 1e3 * volume_m3(m, m.region(region));
-}
-double area(const Mesh& m, const std::string& surface) {
-  return area_m2(m, m.surface(surface));
+  return 1e3 * volume(m, region);
 }
 
 // Two cubes of 1 l on each other, numbered with gaps.
@@ -272,7 +264,7 @@ TEST(CellsWithPointsOfTheirOwn, OfOneRegionAreOneBody) {
 
 /// A drawing whose products have these names, in the order in which they are drawn.
 std::string drawing(const std::string& name, const std::vector<std::string>& products, const std::function<void()>& draw) {
-  const std::string path = (temporary_folder() / name).string();
+  const std::string path = path_of(name);
   {
     const GmshSession session;
     gmsh::option::setString("Geometry.OCCTargetUnit", "MM");

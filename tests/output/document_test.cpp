@@ -101,7 +101,7 @@ TEST(Document, FoldsSectionsThatAreDetailsOnThePage) {
   add(statistics, Table{.key = "odds", .columns = {{.key = "of", .title = "of"}}, .rows = {{"a <cause>"}}});
   Document d{.title = "t"};
   d.body.sections = {next_section({"Look at the fan."}),
-                     {.title = "For experts", .sections = {statistics, folded("Nothing in it", {})}}};
+                     {.title = "For experts", .sections = {statistics, {.title = "Nothing in it", .detail = true}}}};
   const std::string page = document_html(d).page;
   const std::size_t next = page.find("<h2>What to do next</h2>"), fold = page.find("<summary>Statistics</summary>");
   ASSERT_NE(next, std::string::npos);

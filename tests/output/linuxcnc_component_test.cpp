@@ -5,16 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
-#include <regex>
 #include <set>
 
-#include "base/errors.hpp"
-#include "compensation/control/control_files.hpp"
-#include "output/drift_model_c.hpp"
-#include "output/linuxcnc_component.hpp"
+#include "tests/output/component_stand_in.hpp"
 #include "tests/shared/deployed_model.hpp"
-#include "tests/shared/temporary_file.hpp"
 
 namespace driftwright::output::linuxcnc_component_test {
 namespace {
@@ -23,131 +17,10 @@ using ::testing::HasSubstr;
 
 /// Exports of a model into a folder, as `validate` writes them.
 std::filesystem::path exported(const std::string& folder_name, const DeployedModel& d) {
-  std::filesystem::path folder = fresh_folder(folder_name);
+  std::filesystem::path folder = folder_for_exports(folder_name);
   std::ofstream(folder / "model.c") << c_function(d, "a test");
   std::ofstream(folder / "model_axis.comp") << linuxcnc_component(d, "model_axis", "model.c", "a test");
-  for (const compensation::ControlFile& file : compensation::control_files())
-    std::ofstream(folder / file.name, std::ios::binary) << file.text;
   return folder;
-}
-
-/// A component with plain C in place of HAL: `pin`, `param`, `variable` and `include` as halcompile's manual has them.
-class Component {
- public:
-  explicit Component(const std::filesystem::path& folder, const std::string& file = "model_axis.comp") : folder_(folder) {
-    const std::string all = read_text(folder / file);
-    const std::size_t cut = all.find("\n;;\n");
-    EXPECT_NE(cut, std::string::npos);
-    std::string text = std::regex_replace(all.substr(0, cut), std::regex("\"\"\"[^]*?\"\"\""), "\"\"");
-    const std::map<std::string, std::string> types = {
-        {"float", "volatile double"}, {"bit", "volatile unsigned char"}, {"signed", "volatile int"}};
-    std::string includes, fields, macros, starts, reads, writes;
-    const std::regex item(R"re((pin|param) (in|out|rw) (float|bit|signed) (\w+)(?: = (\S+))? "[^"\n]*";)re");
-    for (std::sregex_iterator it(text.begin(), text.end(), item), end; it != end; ++it) {
-      const std::string kind = (*it)[1], direction = (*it)[2], type = (*it)[3], name = (*it)[4], start = (*it)[5];
-      fields += fmt::format("  {} {};\n", types.at(type), name);
-      // what halcompile lets be read only cannot be written to
-      macros += fmt::format("#define {0} ({1}instance.{0})\n", name, direction == "in" ? "0 + " : "");
-      if (!start.empty()) starts += fmt::format("  instance.{} = {};\n", name, start);
-      if (direction == "out") {
-        outs_.push_back(name);
-        writes += fmt::format("    printf(\"%.17g \", (double)instance.{});\n", name);
-      } else {
-        ins_.push_back(name);
-        values_[name] = start.empty() ? 0.0 : std::stod(start);
-        reads += fmt::format("    if (scanf(\"%lf\", &value) != 1) return 1;\n    instance.{} = value;\n", name);
-      }
-    }
-    const std::regex variable(R"(variable (\w+) (\w+);)"), include(R"re(include ("[^"\n]*");)re");
-    for (std::sregex_iterator it(text.begin(), text.end(), variable), end; it != end; ++it) {
-      fields += fmt::format("  {} {};\n", (*it)[1].str(), (*it)[2].str());
-      macros += fmt::format("#define {0} (instance.{0})\n", (*it)[2].str());
-    }
-    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
-      includes += fmt::format("#include {}\n", (*it)[1].str());
-    std::ofstream(folder / "stand_in.c") << fmt::format(
-        "#include <stdio.h>\n{}static struct {{\n{}}} instance;\nstatic void cycle(long period);\n"
-        "int main(void) {{\n  double value;\n  long cycles, period, i;\n{}"
-        "  while (scanf(\"%ld %ld\", &cycles, &period) == 2) {{\n{}    for (i = 0; i < cycles; ++i) cycle(period);\n{}"
-        "    printf(\"\\n\");\n  }}\n  return 0;\n}}\n{}#define fperiod (period * 1e-9)\n"
-        "#define FUNCTION(name) static void cycle(long period)\n{}\n",
-        includes, fields, starts, reads, writes, macros, all.substr(cut + 4));
-    EXPECT_EQ(std::system(fmt::format("gcc -std=c99 -pedantic -Wall -Wextra -Werror -O1 -o {0}/stand_in {0}/stand_in.c -lm",
-                                      folder.string())
-                              .c_str()),
-              0);
-  }
-
-  /// Pins and parameters, as C has them.
-  [[nodiscard]] std::vector<std::string> names() const {
-    std::vector<std::string> all = ins_;
-    all.insert(all.end(), outs_.begin(), outs_.end());
-    return all;
-  }
-  /// A value of an input or parameter from now on.
-  void set(const std::string& name, double value) {
-    ASSERT_TRUE(values_.contains(name)) << name;
-    values_[name] = value;
-  }
-  /// Some cycles with what is set.
-  void cycles(int n, long period_ns) {
-    rows_ += fmt::format("{} {}", n, period_ns);
-    for (const std::string& name : ins_) rows_ += fmt::format(" {:.17g}", values_[name]);
-    rows_ += "\n";
-  }
-  /// All outputs after each call of cycles(), from the start of the component.
-  [[nodiscard]] std::vector<std::map<std::string, double>> outputs() const {
-    std::ofstream(folder_ / "rows") << rows_;
-    EXPECT_EQ(std::system(fmt::format("{0}/stand_in <{0}/rows >{0}/out", folder_.string()).c_str()), 0);
-    std::ifstream file(folder_ / "out");
-    std::vector<std::map<std::string, double>> result;
-    for (std::string line; std::getline(file, line);) {
-      std::istringstream numbers(line);
-      for (const std::string& name : outs_) {
-        if (&name == &outs_.front()) result.emplace_back();
-        std::string word;
-        numbers >> word;
-        result.back()[name] = std::stod(word);
-      }
-    }
-    return result;
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::vector<std::string> ins_, outs_;
-  std::map<std::string, double> values_;
-  std::string rows_;
-};
-
-constexpr long kCycle_ns = 1000000;  // a servo thread
-constexpr int kSecond = 1000;        // cycles
-
-/// d = 2 um/K (T - 20) and nothing that doubts it: what the axis does is the component's own.
-DeployedModel two_um_per_K() {
-  DeployedModel d;
-  d.model = {.kind = "by hand",
-             .target = "drift_y",
-             .target_unit = "um",
-             .intercept = -40.0,
-             .terms = {{.input = "T", .unit = "degC", .coefficient = 2.0}}};
-  d.safe.guards = {{.input = "T", .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}}};
-  d.safe.lowest_um = -100;
-  d.safe.highest_um = 100;
-  d.safe.most_rate_um_s = 0.5;
-  d.safe.period_s = 1.0;
-  d.safe.stale_s = 5.0;
-  d.safe.fade_s = 50.0;
-  return d;
-}
-
-/// Seconds with a heartbeat that turns over five times in each.
-void beating(Component& c, int seconds, int& heartbeat) {
-  for (int i = 0; i < 5 * seconds; ++i) {
-    heartbeat = !heartbeat;
-    c.set("heartbeat", heartbeat);
-    c.cycles(kSecond / 5, kCycle_ns);
-  }
 }
 
 // T = 30 degC: 20 um, so the axis goes to -20 um at 0.5 um/s: 40 s, and back as fast. 0.1 um a count.
@@ -389,96 +262,6 @@ TEST(LinuxcncComponent, MovesTheWeightsOfABlend) {
   EXPECT_EQ(out[3504].at("setting_is_wrong"), 0.0);
 }
 
-/// 2, 1 and 4 um/K at 0, 100 and 300 mm; the middle one by a thermometer of its own.
-std::vector<PlacedModel> three_places() {
-  std::vector<PlacedModel> places;
-  for (const auto& [at_mm, slope] : {std::pair{0.0, 2.0}, std::pair{100.0, 1.0}, std::pair{300.0, 4.0}}) {
-    DeployedModel d = two_um_per_K();
-    d.model.target = fmt::format("x_{:.0f}", at_mm);
-    d.model.intercept = -20.0 * slope;
-    d.model.terms[0].coefficient = slope;
-    if (at_mm == 100.0) d.model.terms[0].input = d.safe.guards[0].input = "T mid";
-    d.residual = compensation::ResidualProcess{5.0, 1800.0};  // no probing is taken
-    places.push_back({std::move(d), at_mm});
-  }
-  return places;
-}
-
-std::filesystem::path exported_over_travel(const std::string& folder_name) {
-  std::filesystem::path folder = fresh_folder(folder_name);
-  std::ofstream(folder / "screw.c") << c_over_travel(three_places(), "screw", "a test");
-  std::ofstream(folder / "screw_axis.comp")
-      << linuxcnc_over_travel(three_places(), "screw", "screw_axis", "screw.c", "a test");
-  for (const compensation::ControlFile& file : compensation::control_files())
-    std::ofstream(folder / file.name, std::ios::binary) << file.text;
-  return folder;
-}
-
-// 20, 5 and 40 um. Each place is slewed by 0.5 um/s; the axis may then go where it likes, and the offset follows in the same cycle.
-// Positions are in inches here.
-TEST(LinuxcncComponent, FollowsThePositionOfTheAxis) {
-  Component c(exported_over_travel("over_travel"), "screw_axis.comp");
-  int heartbeat = 0;
-  c.set("T_degC", 30.0);
-  c.set("T_mid_degC", 25.0);
-  c.set("enable", 1);
-  c.set("machine_is_on", 1);
-  c.set("machine_unit_um", 25400.0);
-  c.cycles(kSecond, kCycle_ns);
-  beating(c, 10, heartbeat);
-  std::vector<std::pair<double, double>> expected;  // at mm: um
-  beating(c, 100, heartbeat);
-  for (const auto& [mm, um] : {std::pair{-50.0, 20.0}, std::pair{0.0, 20.0}, std::pair{60.0, 11.0}, std::pair{100.0, 5.0},
-                               std::pair{150.0, 13.75}, std::pair{300.0, 40.0}, std::pair{400.0, 40.0}}) {
-    c.set("position", mm / 25.4);
-    c.cycles(1, kCycle_ns);
-    expected.emplace_back(mm, um);
-  }
-  c.set("T_mid_degC", NAN);  // a thermometer that breaks is said, whichever place reads it
-  beating(c, 20, heartbeat);
-  const auto out = c.outputs();
-  EXPECT_NEAR(out[50].at("axis_offset_um"), -5.0, 1e-9) << "after 10 s, at 0 mm";
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    const auto& o = out[551 + i];
-    EXPECT_NEAR(o.at("correction_um"), expected[i].second, 1e-9) << expected[i].first;
-    EXPECT_NEAR(o.at("axis_offset_um"), -expected[i].second, 1e-9) << expected[i].first;
-    EXPECT_NEAR(o.at("eoffset_counts"), -10.0 * expected[i].second, 0.5 + 1e-6) << expected[i].first;
-    EXPECT_EQ(o.at("eoffset_scale"), 0.1 / 25400.0);
-    EXPECT_EQ(o.at("model_trust"), 1.0);
-  }
-  EXPECT_EQ(out[557].at("doubt_T_mid_degC"), 0.0);
-  EXPECT_EQ(out.back().at("doubt_T_mid_degC"), 1.0);
-  EXPECT_EQ(out.back().at("doubt_T_degC"), 0.0);
-  EXPECT_LT(out.back().at("model_trust"), 1.0);
-}
-
-// C knows no minus in names.
-TEST(LinuxcncComponent, OverATravelOnBothSidesOfZeroEachPlaceHasFunctionsOfItsOwn) {
-  std::vector<PlacedModel> places = three_places();
-  places[0].at_mm = -100.0;
-  places[0].model.model.target = "x_-100";
-  const std::filesystem::path folder = fresh_folder("both_sides");
-  std::ofstream(folder / "screw.c") << c_over_travel(places, "screw", "a test");
-  for (const compensation::ControlFile& file : compensation::control_files())
-    std::ofstream(folder / file.name, std::ios::binary) << file.text;
-  EXPECT_EQ(
-      std::system(fmt::format("gcc -std=c99 -pedantic -Wall -Wextra -Werror -c -o {0}/screw.o {0}/screw.c", folder.string())
-                      .c_str()),
-      0);
-}
-
-TEST(LinuxcncComponent, OverTheTravelTakesModelsOfOneRunOfValidate) {
-  std::vector<PlacedModel> places = three_places();
-  places[2].model.safe.period_s = 60.0;
-  EXPECT_THROW((void)c_over_travel(places, "screw", "a test"), InputError);
-}
-
-TEST(LinuxcncComponent, OverTheTravelTakesAsManyPlacesAsTheCodeHasRoomFor) {
-  std::vector<PlacedModel> places;
-  for (int k = 0; k < 17; ++k) places.push_back({two_um_per_K(), 10.0 * k});
-  EXPECT_THROW((void)c_over_travel(places, "screw", "a test"), InputError);
-}
-
 // HAL takes 47 characters, of which "thermal." are eight.
 TEST(LinuxcncComponent, HasPinsThatHalCanName) {
   DeployedModel d = two_um_per_K();
@@ -502,67 +285,6 @@ TEST(LinuxcncComponent, NeverBearsTheNameOfTheModelsOwnFile) {
   EXPECT_THROW((void)linuxcnc_component(two_um_per_K(), "model", "model.c", "a test"), std::logic_error);
 }
 
-/// The component that `follow` feeds, with the files that it needs beside it.
-std::filesystem::path followed_axis(const std::string& folder_name) {
-  std::filesystem::path folder = fresh_folder(folder_name);
-  for (const char* name : {"followed_axis.comp", "axis_offset.h", "axis_offset.c"})
-    std::filesystem::copy_file(std::filesystem::path("compensation/control") / name, folder / name,
-                               std::filesystem::copy_options::overwrite_existing);
-  return folder;
-}
-
-// 20 um at 0.5 um/s: there in 40 s. Then its feeder is killed: the correction stays on its pin, the heartbeat stops, and
-// 10 s later the offset goes back as fast as it came. It never moves faster, and no count is lost: 0.1 um each.
-TEST(FollowedAxis, LeadsTheOffsetBackWhenFollowIsKilled) {
-  Component c(followed_axis("killed"), "followed_axis.comp");
-  int heartbeat = 0;
-  c.set("correction_um", 20.0);
-  c.set("enable", 1);
-  c.set("machine_is_on", 1);
-  c.cycles(kSecond, kCycle_ns);
-  beating(c, 50, heartbeat);
-  for (int i = 0; i < 700; ++i) c.cycles(kSecond / 10, kCycle_ns);
-  const auto out = c.outputs();
-  ASSERT_EQ(out.size(), 951u);
-  EXPECT_EQ(out[0].at("axis_offset_um"), 0.0);
-  EXPECT_NEAR(out[250].at("axis_offset_um"), -20.0, 1e-9);
-  EXPECT_EQ(out[250].at("heartbeat_is_late"), 0.0);
-  for (int i = 251; i <= 950; ++i) {
-    const auto& o = out[static_cast<std::size_t>(i)];
-    const double silent_s = 0.2 + 0.1 * (i - 250), back_um = std::max(0.0, 0.5 * (silent_s - 10.0));
-    EXPECT_NEAR(o.at("axis_offset_um"), -std::max(0.0, 20.0 - back_um), 0.5 * 0.002 + 1e-9) << i;
-    EXPECT_NEAR(o.at("eoffset_counts"), 10.0 * o.at("axis_offset_um"), 0.5 + 1e-6) << i;
-  }
-  EXPECT_EQ(out[950].at("eoffset_counts"), 0.0);
-  EXPECT_EQ(out[950].at("eoffset_enable"), 0.0);
-}
-
-TEST(FollowedAxis, WhatIsNoNumberIsNoCorrection) {
-  Component c(followed_axis("no_number"), "followed_axis.comp");
-  int heartbeat = 0;
-  c.set("enable", 1);
-  c.set("machine_is_on", 1);
-  c.set("correction_um", 3.0);
-  beating(c, 20, heartbeat);
-  c.set("correction_um", NAN);
-  beating(c, 20, heartbeat);
-  const auto out = c.outputs();
-  EXPECT_NEAR(out[99].at("axis_offset_um"), -3.0, 1e-9);
-  EXPECT_EQ(out.back().at("axis_offset_um"), 0.0);
-}
-
-TEST(FollowedAxis, IsTakenByHalcompile) {
-  if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
-    GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
-  const std::filesystem::path folder = followed_axis("halcompile_followed");
-  for (const char* what : {"--preprocess", "--compile", "--document"}) {
-    EXPECT_EQ(
-        std::system(fmt::format("cd {} && halcompile {} followed_axis.comp >said 2>&1", folder.string(), what).c_str()), 0)
-        << what << ": " << read_text(folder / "said");
-  }
-  EXPECT_TRUE(std::filesystem::exists(folder / "followed_axis.so"));
-}
-
 TEST(LinuxcncComponent, IsTakenByHalcompile) {
   if (std::system("command -v halcompile >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "no halcompile here; Debian's linuxcnc-uspace-dev has it";
@@ -574,10 +296,6 @@ TEST(LinuxcncComponent, IsTakenByHalcompile) {
               0)
         << what << ": " << read_text(folder / "said");
   }
-  EXPECT_EQ(std::system(fmt::format("cd {} && halcompile --compile screw_axis.comp >said 2>&1",
-                                    exported_over_travel("halcompile_over_travel").string())
-                            .c_str()),
-            0);
   EXPECT_THAT(read_text(folder / "model_axis.c"), HasSubstr("axis_offset_step"));
   EXPECT_TRUE(std::filesystem::exists(folder / "model_axis.so"));
   EXPECT_EQ(read_text(folder / "model.c"), model);

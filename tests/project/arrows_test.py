@@ -4,7 +4,9 @@ and the library does not depend on the command line. A folder without a
 CMakeLists.txt belongs to the room around it, and no file outside of it includes its headers: the room does not know what is special there (the controls of nc/).
 The C of a functional mock-up unit (output/fmu/sources), which is no C++ room, is compiled into the program as well.
 
-    arrows_test.py FOLDER_OF_THE_PROJECT
+CONTRIBUTING.md has a picture of the rooms, which must be the one that this makes; --write puts it there.
+
+    arrows_test.py FOLDER_OF_THE_PROJECT [--write]
 """
 import pathlib
 import re
@@ -50,6 +52,31 @@ def below(name, links, seen):
     return set(links.get(name, ())).union(*[below(n, links, [*seen, n]) for n in links.get(name, ())])
 
 
+def picture(target, links):
+    """A line a room, the lowest first: what it links, without what these link already."""
+    folder = {name: f"{f}/" for f, name in target.items()}
+    under = {name: below(name, links, [name]) & folder.keys() for name in folder}
+    depth = {}
+    for name in sorted(folder, key=lambda n: len(under[n])):
+        depth[name] = 1 + max((depth[n] for n in under[name]), default=0)
+    lines = []
+    for name in sorted(folder, key=lambda n: (depth[n], folder[n])):
+        nearest = under[name] - set().union(*[under[n] for n in under[name]])
+        lines.append(f"    {folder[name]:<26}{' '.join(sorted(folder[n] for n in nearest))}".rstrip())
+    return "\n".join(lines) + "\n"
+
+
+def wrong_picture(contributing, of_rooms, write):
+    """What is wrong with the picture in CONTRIBUTING.md, as a list."""
+    text = contributing.read_text()
+    pictured = re.compile(r"(?<=<!-- rooms and what they link -->\n)(?:    .*\n)*")
+    if write:
+        contributing.write_text(pictured.sub(lambda _: of_rooms, text))
+    elif pictured.findall(text) != [of_rooms]:
+        return ["the picture of the rooms in CONTRIBUTING.md is not that of the CMake files: run tests/project/arrows_test.py . --write"]
+    return []
+
+
 def main():
     top = pathlib.Path(sys.argv[1])
     target, links = rooms_of(top)
@@ -68,6 +95,7 @@ def main():
                 other = room_around(included, target)
                 if other and target[other] not in allowed:
                     wrong.append(f"{file.relative_to(top)} includes a header of {included}, which driftwright_{name} does not link")
+    wrong += wrong_picture(top / "CONTRIBUTING.md", picture(target, links), "--write" in sys.argv)
     print("\n".join(wrong) or f"{len(target)} rooms, every arrow one way")
     sys.exit(bool(wrong))
 

@@ -23,7 +23,7 @@ PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs
 AT_LENGTH = ("driftwright diagnose scenarios/fp3_spindle.yaml", "driftwright validate results/identified/monday.yaml", "driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc --start",
              "driftwright place scenarios/fp3_spindle.yaml", "driftwright warmup scenarios/fp3_spindle.yaml", "driftwright predict scenarios/fp3_spindle.yaml --cyclogram chaotic --start results/warmup/",
              "driftwright run results/mill/mill.yaml", "driftwright validate scenarios/ball_screw.yaml", "driftwright export --model results/axis/", "driftwright calibrate scenarios/fp3_spindle.yaml")
-# What writes the files that later commands read. This one leaves the families of cyclograms out, which take half of its time and which `validate_records` has of a small machine.
+# What writes the files that later commands read. This one leaves the families of cyclograms out, which take half of its time and which `continued_records` has of a small machine.
 SHORTER = {"driftwright validate scenarios/fp3_spindle.yaml -o results/validation":
            "sed '/^programme:/,/^study:/{/^study:/!d}' scenarios/fp3_spindle.yaml > fp3_study.yaml && driftwright validate fp3_study.yaml -o results/validation"}
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")

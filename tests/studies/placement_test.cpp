@@ -14,6 +14,7 @@
 #include "studies/placement_rivals.hpp"
 #include "studies/placement_tests.hpp"
 #include "studies/placement_yaml.hpp"
+#include "tests/shared/best_of_all_sets.hpp"
 #include "tests/shared/column_and_head.hpp"
 #include "tests/shared/refused.hpp"
 #include "tests/shared/temporary_file.hpp"
@@ -141,8 +142,7 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
     for (const compensation::DriftLeft* left :
          {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),
           static_cast<const compensation::DriftLeft*>(&both), static_cast<const compensation::DriftLeft*>(&with_loss)}) {
-      const double ratio =
-          compensation::best_sets(*left, 3).back().left_um / compensation::best_of_all_sets(*left, 3).left_um;
+      const double ratio = compensation::best_sets(*left, 3).back().left_um / fixtures::best_of_all_sets_um(*left, 3);
       EXPECT_GE(ratio, 1.0 - 1e-9);
       worst = std::max(worst, ratio);
       n_equal += ratio < 1.0 + 1e-9 ? 1 : 0;
