@@ -8,10 +8,10 @@
 
 #include "base/designs.hpp"
 #include "base/normal.hpp"
-#include "base/parallel.hpp"
 #include "diagnosis/scatter.hpp"
 #include "effects/learned.hpp"
 #include "studies/band_limits.hpp"
+#include "studies/drawn_machines.hpp"
 #include "studies/prediction.hpp"
 
 namespace driftwright::studies {
@@ -165,37 +165,6 @@ UncertainNumbers uncertain_numbers(const Twin& twin, const scenarios::KnownToget
   return uncertain;
 }
 
-/// Readings of one machine at the rows, n_outputs x n_rows.
-using Readings = Eigen::MatrixXd;
-
-/// Differences of the drawn machines' readings from those of the machine as written; none for one without a solution.
-/// @param deviations  of the numbers, a row for each machine
-std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs,
-                                                       const Eigen::MatrixXd& deviations, const diagnosis::MeasuredRun& run,
-                                                       const Listener& listener) {
-  Twin::Workspace own(twin);
-  const std::shared_ptr<const solver::KeptStates> kept = twin.kept_run(twin.as_written(), run, own, false);
-  const auto readings = [&](const diagnosis::TwinState& state, Twin::Workspace& workspace) -> Readings {
-    return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
-  };
-  const Readings as_written = readings(twin.as_written(), own);
-  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(deviations.rows()));
-  for_each_index(
-      drawn.size(), [&] { return Twin::Workspace(twin); },
-      [&](std::size_t d, Twin::Workspace& workspace) {
-        diagnosis::TwinState state = twin.as_written();
-        for (std::size_t k = 0; k < knobs.size(); ++k)
-          knobs[k].set(state, knobs[k].value(deviations(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
-        try {
-          drawn[d] = readings(state, workspace) - as_written;
-        } catch (const SolveError&) {
-        } catch (const RangeError&) {  // outside the range of a law
-        }
-      },
-      listener);
-  return drawn;
-}
-
 /// Differences at some rows, linearly at all of them, added to the values.
 std::vector<double> with_differences(const Channel& channel, const std::vector<double>& time_s,
                                      const std::vector<std::size_t>& rows, const Eigen::VectorXd& difference) {
@@ -242,8 +211,9 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
   const int n_draws = n_draws_of(twin.machine().system, knobs.size());
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
-  const std::vector<std::optional<Readings>> drawn =
-      drawn_differences(twin, knobs, scores * uncertain.factor.transpose(), banded_run_of(run, rows), listener);
+  const std::vector<std::optional<Eigen::MatrixXd>> drawn =
+      drawn_differences(twin, knobs, scores * uncertain.factor.transpose(), banded_run_of(run, rows), tolerances, listener)
+          .of;
   std::vector<Eigen::Index> kept;
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));
@@ -263,7 +233,7 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
     for (std::size_t k = 0; k < kept.size(); ++k)
       values.row(static_cast<Eigen::Index>(k)) =
           scale * drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
-    if (!values.isZero(0.0)) band.limits.emplace(outputs.name[o], band_limits(kept_scores, values));
+    if (!values.isZero(0.0)) band.limits.emplace(outputs.name[o], band_limits_over_time(kept_scores, values));
   }
   return band;
 }
