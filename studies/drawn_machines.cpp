@@ -14,8 +14,10 @@ namespace {
 
 using diagnosis::Knob, diagnosis::MeasuredRun, diagnosis::Twin, diagnosis::TwinState;
 
-constexpr double kNarrowError = 0.01;     // of the differences; limits from 200 draws err by 2 to 3 % (band_limits.hpp)
-constexpr double kLeastShare = 1e-5;      // length of a direction that is left out, relative to the first one
+constexpr double kNarrowError = 0.02;     // of the differences; limits from 200 draws err by 2 to 3 % (band_limits.hpp)
+constexpr double kNegligible = 1e-3;      // of the largest differences in the same unit
+constexpr double kLeastShare = 1e-4;      // length of a direction that is left out at first, relative to the first one
+constexpr double kShareStep = 0.3;        // of that after each failure
 constexpr double kLargestNarrow = 0.75;   // of the states: 0.75^3 of the time saves too little
 constexpr std::size_t kCheckedDraws = 4;  // run on both models
 constexpr int kMostNarrowings = 3;
@@ -82,7 +84,8 @@ struct NarrowModel {
 };
 
 /// @returns null if the states have too many directions, or the machine as written no solution in them
-std::unique_ptr<const NarrowModel> narrowed(const BaseRun& whole, const std::vector<Eigen::MatrixXd>& states,
+/// @param share  length of a direction that is left out, relative to the first one
+std::unique_ptr<const NarrowModel> narrowed(const BaseRun& whole, const std::vector<Eigen::MatrixXd>& states, double share,
                                             const solver::TransientOptions& tolerances) {
   const scenarios::ReducedMachine& machine = whole.twin.machine();
   Eigen::VectorXd start = machine.start;
@@ -92,7 +95,7 @@ std::unique_ptr<const NarrowModel> narrowed(const BaseRun& whole, const std::vec
   Eigen::MatrixXd square = whole.states * whole.states.transpose();
   for (const Eigen::MatrixXd& s : states) square.noalias() += (s - whole.states) * (s - whole.states).transpose();
   const dense::SymmetricEigen directions(root * square * root.transpose());
-  const double least = kLeastShare * kLeastShare * directions.eigenvalues()[n - 1];
+  const double least = share * share * directions.eigenvalues()[n - 1];
   const auto n_kept = static_cast<Eigen::Index>((directions.eigenvalues().array() > least).count());
   Eigen::MatrixXd spanning(n, n_kept + 2);  // 1 K everywhere, which the ambient adds, and the start are exact
   spanning << unit.ones, start, directions.eigenvectors().rightCols(n_kept);
@@ -115,16 +118,23 @@ std::unique_ptr<const NarrowModel> narrowed(const BaseRun& whole, const std::vec
 
 /// True if the differences of a list agree in each output.
 bool agree(const Differences& narrow, const Differences& whole, const std::vector<std::size_t>& list,
-           const Eigen::MatrixXd& as_written) {
-  Eigen::VectorXd error = Eigen::VectorXd::Zero(as_written.rows()), size = error;
+           const BaseRun& as_written) {
+  Eigen::ArrayXd error = Eigen::ArrayXd::Zero(as_written.readings.rows()), size = error;
   for (const std::size_t d : list) {
     if (!whole[d]) continue;
     if (!narrow[d]) return false;
-    error += (*narrow[d] - *whole[d]).rowwise().squaredNorm();
-    size += whole[d]->rowwise().squaredNorm();
+    error += (*narrow[d] - *whole[d]).rowwise().squaredNorm().array();
+    size += whole[d]->rowwise().squaredNorm().array();
   }
-  const Eigen::VectorXd rounding = 1e-12 * as_written.rowwise().norm();
-  return (error.cwiseSqrt().array() <= kNarrowError * size.cwiseSqrt().array() + rounding.array()).all();
+  const std::vector<std::string>& units = as_written.twin.outputs().unit;
+  Eigen::ArrayXd allowed = kNarrowError * size.sqrt() + 1e-12 * as_written.readings.rowwise().norm().array();  // rounding
+  for (Eigen::Index o = 0; o < size.size(); ++o) {
+    for (Eigen::Index other = 0; other < size.size(); ++other) {
+      if (units[static_cast<std::size_t>(o)] == units[static_cast<std::size_t>(other)])
+        allowed[o] = std::max(allowed[o], kNegligible * std::sqrt(size[other]));
+    }
+  }
+  return (error.sqrt() <= allowed).all();
 }
 
 }  // namespace
@@ -147,13 +157,13 @@ DrawnDifferences drawn_differences(const Twin& twin, const std::vector<Knob>& kn
     std::vector<Eigen::MatrixXd> states;
     run_draws(whole, draws, take(knobs.size() + 1), drawn.of, &states, {});
     for (int i = 0; i < kMostNarrowings && next < n_draws; ++i) {
-      narrow = narrowed(whole, states, tolerances);
+      narrow = narrowed(whole, states, kLeastShare * std::pow(kShareStep, i), tolerances);
       if (!narrow) break;
       const std::vector<std::size_t> checked = take(kCheckedDraws);
       Differences of_narrow(n_draws);
       run_draws(*narrow->base, draws, checked, of_narrow, nullptr, {});
       run_draws(whole, draws, checked, drawn.of, &states, {});
-      if (agree(of_narrow, drawn.of, checked, whole.readings)) break;
+      if (agree(of_narrow, drawn.of, checked, whole)) break;
       narrow.reset();
     }
   }

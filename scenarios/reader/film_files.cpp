@@ -349,7 +349,7 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
     const auto n = static_cast<Eigen::Index>(values.corner_from.size()) - 1;
     const auto column = static_cast<Eigen::Index>(s), n_states = static_cast<Eigen::Index>(files.size());
     FilmName film_of =
-        film_name_of(e.words.at("film_column"), [&](const std::string& n) { return values.arrays.contains(n); });
+        film_name_of(e.words.at("film_column"), [&](const std::string& name) { return values.arrays.contains(name); });
     std::string air_name;
     const std::vector<double>* film =
         array_of(values, film_of.name, {"h_W_m2K"}, files[s].path, "film_column", film_of.name);

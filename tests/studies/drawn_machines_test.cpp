@@ -27,8 +27,7 @@ scenarios::Scenario rod(const std::string& heat) {
   for (int i = 0; i < kBodies; ++i) {
     text += fmt::format("  - {{type: node, node: b{}, capacity: 2 kJ/K}}\n", i);
     const char* known_to = i % 10 == 5 ? ", known_to: 20 %" : "";
-    if (i > 0)
-      text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: 20 W/K{}}}\n", i - 1, i, known_to);
+    if (i > 0) text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: 20 W/K{}}}\n", i - 1, i, known_to);
     text += fmt::format("  - {{type: link, node: b{}, to: ambient, conductance: 0.3 W/K{}}}\n", i, known_to);
   }
   return scenarios::read_scenario(write_file(
@@ -53,8 +52,7 @@ Drawn drawn(const scenarios::Scenario& scenario) {
   const diagnosis::AugmentedModel augmented = diagnosis::without_further_places(*scenario.machine);
   const solver::TransientOptions tolerances = scenario.solver.transient;
   const diagnosis::Twin twin(augmented, machine, tolerances);
-  std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin);
-  std::erase_if(knobs, [](const diagnosis::Knob& k) { return !k.is_said; });
+  const std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin, diagnosis::Unsaid::kExact);
   EXPECT_GE(knobs.size(), 8U);
   diagnosis::MeasuredRun run;
   run.name = job.name;
@@ -86,7 +84,7 @@ TEST_P(DrawnMachines, OnANarrowModelDifferAsOnTheWholeOne) {
       size += whole.of[d]->row(output).squaredNorm();
     }
     EXPECT_GT(size, 0.0);
-    EXPECT_LE(std::sqrt(error / size), 0.01) << output;
+    EXPECT_LE(std::sqrt(error / size), 0.02) << output;
   }
 }
 
