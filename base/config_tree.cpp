@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "base/characters.hpp"
 #include "base/config_text.hpp"
@@ -42,7 +43,12 @@ class TreeBuilder : public YAML::EventHandler {
 
   [[nodiscard]] const ConfigNodePtr& root() const { return root_; }
 
-  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (std::exchange(has_begun_, true))
+      throw InputError(where_in(*source_, mark.line + 1, mark.column + 1, ""),
+                       "a second YAML document begins here; a file must have one. If this belongs to the first, remove the "
+                       "line '---' or '...' before it, else write it into a file of its own");
+  }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     add(std::make_shared<ConfigNode>(make(ConfigNode::Kind::kNull, mark)), anchor);
@@ -137,6 +143,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Anchored> anchors_;
   ConfigNodePtr root_;
+  bool has_begun_ = false;
 };
 
 }  // namespace
@@ -179,7 +186,9 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
   TreeBuilder builder(source);
   try {
     std::istringstream in(text);
-    YAML::Parser(in).HandleNextDocument(builder);
+    YAML::Parser parser(in);
+    while (parser.HandleNextDocument(builder)) {
+    }
   } catch (const YAML::DeepRecursion& e) {  // yaml-cpp's own limit, which it reaches before the tree is complete
     throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), too_deep());
   } catch (const YAML::ParserException& e) {

@@ -29,6 +29,7 @@ struct Knob {
   std::function<void(TwinState&, double value)> set = {};
   std::string own = {};  ///< kind of the scenario's effect whose number it is, as its file has it; "": of none
   int line = 0;          ///< of that effect's first key in the file
+  bool is_said = false;  ///< the scenario says with `known_to` how well it is known
 
   /// The time of a jump in a reading has no slope: the misfit is constant between two rows.
   [[nodiscard]] bool is_jump() const { return is_time && reading_only; }

@@ -68,15 +68,26 @@ std::vector<std::string> number_names(const Twin& twin, const std::vector<Knob>&
   return names;
 }
 
-std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
-  const bool is_exact = unsaid == Unsaid::kExact;
+double written_value(const Twin& twin, const Knob& knob) {
+  if (!knob.own.empty()) return knob.nominal;
+  double value = 1.0;
+  for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
+    const effects::Effect& e = twin.as_written()[i];
+    if (e.place != knob.where) continue;
+    if (e.kind->key == knob.effect && e.has("factor")) value *= e["factor"];
+    if (e.kind->key == "node" && knob.effect == "heat_capacity") value *= e["capacity"];
+  }
+  return value;
+}
+
+std::vector<Knob> scatter(const Twin& twin) {
   std::vector<Knob> knobs;
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
     const effects::Effect& e = twin.as_written()[i];
     for (std::size_t p = 0; p < e.kind->parameters.size(); ++p) {
       const effects::Parameter& parameter = e.kind->parameters[p];
       if (parameter.scatter == 0.0 || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
-      const double known_to = effects::known_to(e.known_to, parameter.name, is_exact ? 0.0 : parameter.scatter);
+      const double known_to = effects::known_to(e.known_to, parameter.name, parameter.scatter);
       if (known_to == 0.0) continue;
       knobs.push_back({.effect = parameter.finding,
                        .where = effects::where_of(e),
@@ -90,7 +101,8 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
                        .high = parameter.high,
                        .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; },
                        .own = e.kind->key,
-                       .line = line_of(e)});
+                       .line = line_of(e),
+                       .is_said = effects::known_to(e.known_to, parameter.name, 0.0) > 0.0});
     }
   }
   const effects::DoubtScene scene = scene_of(twin, {});
@@ -99,7 +111,8 @@ std::vector<Knob> scatter(const Twin& twin, Unsaid unsaid) {
     for (const effects::Doubt& d : kind.doubts(scene)) {
       if (!d.scatters) continue;
       Knob size = knobs_of(d).front();
-      size.prior_sd = known_of_body(twin, d.finding, d.where, is_exact ? 0.0 : effects::kBodyScatter);
+      size.prior_sd = known_of_body(twin, d.finding, d.where, effects::kBodyScatter);
+      size.is_said = known_of_body(twin, d.finding, d.where, 0.0) > 0.0;
       if (size.prior_sd == 0.0) continue;
       size.step = step_of(size.prior_sd);
       knobs.push_back(std::move(size));

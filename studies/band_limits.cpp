@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "base/normal.hpp"
 #include "base/parallel.hpp"
@@ -14,13 +16,15 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kBendTerms = 6;            // coefficients of g
-constexpr std::size_t kBendNodes = 64;   // of g; they reach 2.66 sigma, beyond which g goes on as a straight line
-constexpr double kLinearShare = 1e-3;    // residual that counts as none, in half widths: at a limit it is 0.3 % at most
-constexpr double kResidualShare = 0.03;  // residual that widens the band by 0.2 %: 0.5 (1.96 * 0.03)^2
-constexpr int kMostSteps = 3;            // of Gauss and Newton
-constexpr double kStepGain = 0.9;        // a step that leaves more of the residual is the last
-constexpr double kScoreError = 1e-3;     // of a solved limit, in sigma: 0.05 % of the half width
+constexpr int kBendTerms = 6;              // coefficients of g
+constexpr std::size_t kBendNodes = 64;     // of g; they reach 2.66 sigma, beyond which g goes on as a straight line
+constexpr double kLinearShare = 1e-3;      // residual that counts as none, in half widths: at a limit it is 0.3 % at most
+constexpr double kResidualShare = 0.03;    // residual that widens the band by 0.2 %: 0.5 (1.96 * 0.03)^2
+constexpr int kMostSteps = 3;              // of Gauss and Newton
+constexpr double kStepGain = 0.9;          // a step that leaves more of the residual is the last
+constexpr double kScoreError = 1e-3;       // of a solved limit, in sigma: 0.05 % of the half width
+constexpr Eigen::Index kTimesBetween = 8;  // of two times whose limits are computed, at first
+constexpr double kLineError = 0.01;        // of limits between two times, in half widths
 
 using Bend = Eigen::Matrix<double, kBendTerms, 1>;
 
@@ -142,28 +146,96 @@ Eigen::Index fewest_draws(Eigen::Index n_numbers) {
   return 2 * (n_numbers + kBendTerms);
 }
 
+namespace {
+
+/// Limits of functions, of which each is computed at most once.
+class Limits {
+ public:
+  Limits(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values) : scores_(scores), values_(values) {
+    const Eigen::Index n = scores.rows();
+    if (values.rows() != n || n < fewest_draws(scores.cols()))
+      throw std::logic_error("band_limits: more draws than numbers are required, and a value for each draw");
+    Eigen::MatrixXd x(n, scores.cols() + 1);
+    x << Eigen::VectorXd::Ones(n), scores;
+    coefficients_ = (x.transpose() * x).ldlt().solve(x.transpose() * values);
+    residuals_ = values - x * coefficients_;
+    slope_ = coefficients_.bottomRows(scores.cols()).colwise().norm();
+    ends_.resize(2, values.cols());
+  }
+
+  /// Computes the limits of these functions.
+  void compute(const std::vector<Eigen::Index>& functions) {
+    parallel_for(functions.size(), [&](std::size_t i) { ends_.col(functions[i]) = ends_of(functions[i]); });
+  }
+  /// Limits from the middle, in slopes; they may be set instead of computed.
+  [[nodiscard]] auto ends(Eigen::Index function) { return ends_.col(function); }
+
+  [[nodiscard]] BandLimits all() const {
+    const Eigen::MatrixXd at = (ends_.array().rowwise() * slope_.array()).rowwise() + coefficients_.row(0).array();
+    return {at.row(0), at.row(1)};
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector2d ends_of(Eigen::Index f) const {
+    const double slope = slope_[f], rounding = 1e-12 * values_.col(f).cwiseAbs().maxCoeff();
+    const double residual = residuals_.col(f).norm() / std::sqrt(static_cast<double>(scores_.rows()));
+    if (!(residual > kLinearShare * kNormal95 * slope + rounding && slope > rounding)) return {-kNormal95, kNormal95};
+    const auto [low, high] = bent_limits(scores_, coefficients_.col(f).tail(scores_.cols()) / slope,
+                                         ((values_.col(f).array() - coefficients_(0, f)) / slope).matrix());
+    return {low, high};
+  }
+
+  const Eigen::MatrixXd &scores_, &values_;
+  Eigen::MatrixXd coefficients_, residuals_;
+  Eigen::RowVectorXd slope_;
+  Eigen::Matrix2Xd ends_;
+};
+
+}  // namespace
+
 BandLimits band_limits(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values) {
-  const Eigen::Index n = scores.rows();
-  if (values.rows() != n || n < fewest_draws(scores.cols()))
-    throw std::logic_error("band_limits: more draws than numbers are required, and a value for each draw");
-  Eigen::MatrixXd x(n, scores.cols() + 1);
-  x << Eigen::VectorXd::Ones(n), scores;
-  const Eigen::MatrixXd coefficients = (x.transpose() * x).ldlt().solve(x.transpose() * values);
-  BandLimits limits{Eigen::VectorXd(values.cols()), Eigen::VectorXd(values.cols())};
-  parallel_for(static_cast<std::size_t>(values.cols()), [&](std::size_t function) {
-    const auto f = static_cast<Eigen::Index>(function);
-    const double middle = coefficients(0, f), slope = coefficients.col(f).tail(scores.cols()).norm();
-    const Eigen::VectorXd linear = x * coefficients.col(f);
-    const double residual = (values.col(f) - linear).norm() / std::sqrt(static_cast<double>(n));
-    const double rounding = 1e-12 * values.col(f).cwiseAbs().maxCoeff();
-    std::pair<double, double> ends(-kNormal95, kNormal95);
-    if (residual > kLinearShare * kNormal95 * slope + rounding && slope > rounding)
-      ends = bent_limits(scores, coefficients.col(f).tail(scores.cols()) / slope,
-                         ((values.col(f).array() - middle) / slope).matrix());
-    limits.low[f] = middle + slope * ends.first;
-    limits.high[f] = middle + slope * ends.second;
-  });
-  return limits;
+  Limits limits(scores, values);
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(values.cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  limits.compute(all);
+  return limits.all();
+}
+
+BandLimits band_limits_over_time(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values) {
+  Limits limits(scores, values);
+  const Eigen::Index last = values.cols() - 1;
+  struct Span {
+    Eigen::Index from, to;
+    [[nodiscard]] Eigen::Index middle() const { return (from + to) / 2; }
+  };
+  std::vector<Span> open;
+  std::vector<Eigen::Index> times;
+  for (Eigen::Index t = 0; t <= last; t = t < last ? std::min(t + kTimesBetween, last) : last + 1) {
+    if (!times.empty()) open.push_back({times.back(), t});
+    times.push_back(t);
+  }
+  limits.compute(times);
+  while (!open.empty()) {
+    std::erase_if(open, [](const Span& s) { return s.to - s.from < 2; });
+    times.clear();
+    for (const Span& s : open) times.push_back(s.middle());
+    limits.compute(times);
+    std::vector<Span> halves;
+    for (const Span& s : open) {
+      const Eigen::Index m = s.middle();
+      const auto between = [&](Eigen::Index a, Eigen::Index b, Eigen::Index t) -> Eigen::Vector2d {
+        const double share = static_cast<double>(t - a) / static_cast<double>(b - a);
+        return (1.0 - share) * limits.ends(a) + share * limits.ends(b);
+      };
+      const bool is_line = (between(s.from, s.to, m) - limits.ends(m)).cwiseAbs().maxCoeff() <= kLineError * kNormal95;
+      for (const Span& half : {Span{s.from, m}, Span{m, s.to}}) {
+        if (!is_line) halves.push_back(half);
+        for (Eigen::Index t = half.from + 1; is_line && t < half.to; ++t) limits.ends(t) = between(half.from, half.to, t);
+      }
+    }
+    open = std::move(halves);
+  }
+  return limits.all();
 }
 
 }  // namespace driftwright::studies

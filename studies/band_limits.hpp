@@ -30,4 +30,10 @@ struct BandLimits {
 /// @throws std::logic_error  for other shapes, and fewer than fewest_draws()
 [[nodiscard]] BandLimits band_limits(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values);
 
+/// The same of one function at successive times: middle and slope are those of each time. How far the limits are away from
+/// the middle, in slopes, changes slowly, so it is computed at few times and is linear between two, as far as the time in
+/// the middle of two confirms this to 1 % of the half width.
+/// @param values  n_draws x n_times
+[[nodiscard]] BandLimits band_limits_over_time(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& values);
+
 }  // namespace driftwright::studies

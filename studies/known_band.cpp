@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "base/designs.hpp"
 #include "base/normal.hpp"
-#include "base/parallel.hpp"
 #include "diagnosis/scatter.hpp"
 #include "effects/learned.hpp"
 #include "studies/band_limits.hpp"
+#include "studies/drawn_machines.hpp"
 #include "studies/prediction.hpp"
 
 namespace driftwright::studies {
@@ -21,6 +22,7 @@ using diagnosis::Knob, diagnosis::Twin;
 
 constexpr std::size_t kMostBandRows = 250;  // of a longer record the band is linear between this many of its rows
 constexpr std::uint64_t kBandSeed = 1;
+constexpr double kSameValue = 3e-6;  // seven digits of the number, of a factor beside it, and of its copy err by 1.5e-6
 constexpr Eigen::Index kFewStates = 60;
 constexpr int kFewestDraws = 80;
 
@@ -126,32 +128,35 @@ RecordBand no_band(const std::string& why) {
 
 /// The numbers that are uncertain and how: independent scores times the transposed factor are their deviations. A number of
 /// `known_together` deviates as its fit says, others with a `known_to` each by itself.
-/// @throws SolveError  if `known_together` names a number that the machine does not have
+/// @throws SolveError  if `known_together` names a number that the machine does not have, or has with another value
 struct UncertainNumbers {
   std::vector<Knob> knobs;
   Eigen::MatrixXd factor;
 };
 UncertainNumbers uncertain_numbers(const Twin& twin, const scenarios::KnownTogether& together) {
-  std::vector<Knob> all = diagnosis::scatter(twin, diagnosis::Unsaid::kUsual);
-  const std::vector<std::string> names = diagnosis::number_names(twin, all);
   UncertainNumbers uncertain;
-  for (const std::string& name : together.numbers) {
+  std::vector<Knob> all = diagnosis::scatter(twin);
+  const std::vector<std::string> names = diagnosis::number_names(twin, all);
+  for (std::size_t i = 0; i < together.numbers.size(); ++i) {
+    const std::string& name = together.numbers[i];
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end())
       throw SolveError(
           fmt::format("`known_together` names '{}', which the scenario does not have or has as `fixed`. Calibrate it "
                       "again, or delete `known_together`.",
                       name));
-    uncertain.knobs.push_back(std::move(all[static_cast<std::size_t>(at - names.begin())]));
+    Knob& knob = all[static_cast<std::size_t>(at - names.begin())];
+    const double value = diagnosis::written_value(twin, knob), fitted = together.values[i];
+    if (std::abs(value - fitted) > kSameValue * std::abs(fitted))
+      throw SolveError(
+          fmt::format("'{}' is {:.7g} in SI units, and {:.7g} in `known_together`, so it has been changed since its fit. "
+                      "Calibrate the scenario again, or delete `known_together`.",
+                      name, value, fitted));
+    knob.is_said = false;  // it is taken as fitted
+    uncertain.knobs.push_back(knob);
   }
   const auto n_together = together.factor.rows();
-  std::vector<Knob> said = diagnosis::scatter(twin, diagnosis::Unsaid::kExact);
-  const std::vector<std::string> said_names = diagnosis::number_names(twin, said);
-  for (std::size_t k = 0; k < said.size(); ++k) {
-    const bool is_fitted =
-        std::find(together.numbers.begin(), together.numbers.end(), said_names[k]) != together.numbers.end();
-    if (!is_fitted) uncertain.knobs.push_back(std::move(said[k]));
-  }
+  std::copy_if(all.begin(), all.end(), std::back_inserter(uncertain.knobs), [](const Knob& k) { return k.is_said; });
   const auto n = static_cast<Eigen::Index>(uncertain.knobs.size());
   uncertain.factor.setZero(n, n);
   uncertain.factor.topLeftCorner(n_together, n_together) = together.factor;
@@ -163,37 +168,6 @@ UncertainNumbers uncertain_numbers(const Twin& twin, const scenarios::KnownToget
       uncertain.factor(k, k) = sd;
   }
   return uncertain;
-}
-
-/// Readings of one machine at the rows, n_outputs x n_rows.
-using Readings = Eigen::MatrixXd;
-
-/// Differences of the drawn machines' readings from those of the machine as written; none for one without a solution.
-/// @param deviations  of the numbers, a row for each machine
-std::vector<std::optional<Readings>> drawn_differences(const Twin& twin, const std::vector<Knob>& knobs,
-                                                       const Eigen::MatrixXd& deviations, const diagnosis::MeasuredRun& run,
-                                                       const Listener& listener) {
-  Twin::Workspace own(twin);
-  const std::shared_ptr<const solver::KeptStates> kept = twin.kept_run(twin.as_written(), run, own, false);
-  const auto readings = [&](const diagnosis::TwinState& state, Twin::Workspace& workspace) -> Readings {
-    return twin.read(state, run, twin.respond(state, run, workspace, kept.get()));
-  };
-  const Readings as_written = readings(twin.as_written(), own);
-  std::vector<std::optional<Readings>> drawn(static_cast<std::size_t>(deviations.rows()));
-  for_each_index(
-      drawn.size(), [&] { return Twin::Workspace(twin); },
-      [&](std::size_t d, Twin::Workspace& workspace) {
-        diagnosis::TwinState state = twin.as_written();
-        for (std::size_t k = 0; k < knobs.size(); ++k)
-          knobs[k].set(state, knobs[k].value(deviations(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k))));
-        try {
-          drawn[d] = readings(state, workspace) - as_written;
-        } catch (const SolveError&) {
-        } catch (const RangeError&) {  // outside the range of a law
-        }
-      },
-      listener);
-  return drawn;
 }
 
 /// Differences at some rows, linearly at all of them, added to the values.
@@ -242,8 +216,9 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
   const int n_draws = n_draws_of(twin.machine().system, knobs.size());
   Eigen::MatrixXd scores = latin_hypercube(n_draws, static_cast<int>(knobs.size()), kBandSeed);
   for (double& u : scores.reshaped()) u = normal_quantile(u);
-  const std::vector<std::optional<Readings>> drawn =
-      drawn_differences(twin, knobs, scores * uncertain.factor.transpose(), banded_run_of(run, rows), listener);
+  const std::vector<std::optional<Eigen::MatrixXd>> drawn =
+      drawn_differences(twin, knobs, scores * uncertain.factor.transpose(), banded_run_of(run, rows), tolerances, listener)
+          .of;
   std::vector<Eigen::Index> kept;
   for (std::size_t d = 0; d < drawn.size(); ++d) {
     if (drawn[d]) kept.push_back(static_cast<Eigen::Index>(d));
@@ -263,7 +238,7 @@ NumbersBand numbers_band(const scenarios::Scenario& scenario, const BandedRun& r
     for (std::size_t k = 0; k < kept.size(); ++k)
       values.row(static_cast<Eigen::Index>(k)) =
           scale * drawn[static_cast<std::size_t>(kept[k])]->row(static_cast<Eigen::Index>(o));
-    if (!values.isZero(0.0)) band.limits.emplace(outputs.name[o], band_limits(kept_scores, values));
+    if (!values.isZero(0.0)) band.limits.emplace(outputs.name[o], band_limits_over_time(kept_scores, values));
   }
   return band;
 }

@@ -15,6 +15,7 @@
 #include "diagnosis/happening.hpp"
 #include "diagnosis/judge.hpp"
 #include "diagnosis/output_error.hpp"
+#include "diagnosis/scatter.hpp"
 #include "diagnosis/written_numbers.hpp"
 
 namespace driftwright::studies {
@@ -120,9 +121,17 @@ std::vector<std::string> head_of_calibration(const MeasuredTwin& m, const Diagno
 }
 
 /// What the written file says of its numbers together: nothing after a diagnosis, whose causes have numbers of their own.
-std::optional<scenarios::KnownTogether> known_after(const Diagnosis& d) {
+/// @param x  as diagnosis::written_x() gives it
+std::optional<scenarios::KnownTogether> known_after(const MeasuredTwin& m, const Diagnosis& d, const Eigen::VectorXd& x) {
   if (!d.written.keeps_numbers) return std::nullopt;
-  return d.known_together;
+  scenarios::KnownTogether known = d.known_together;
+  for (std::size_t i = 0; i < d.scatter.size() && !known.numbers.empty(); ++i) {
+    const diagnosis::Knob& knob = d.scatter[i];
+    if (!knob.in.empty()) continue;  // an offset of one record
+    const double factor = knob.value(x[static_cast<Eigen::Index>(i)]) / knob.value(0.0);
+    known.values.push_back(factor * diagnosis::written_value(*m.twin, knob));
+  }
+  return known;
 }
 
 /// Predicts all rows with the effects of the written scenario.
@@ -152,7 +161,7 @@ MeasuredDiagnosis diagnose(const MeasuredTwin& m, const DiagnosisRequest& reques
   std::vector<StatedChange> changes = stated_numbers(result.found, request.causes_only, x);  // the fit's order
   for (StatedChange& cause : stated_causes(result.found, x)) changes.push_back(std::move(cause));
   result.written = written_scenario(m, changes, head_of_diagnosis(m, result.found, request.causes_only), request.file,
-                                    known_after(result.found));
+                                    known_after(m, result.found, x));
   predict_as_written(m, result.written, result.found);
   return result;
 }
@@ -163,7 +172,7 @@ MeasuredDiagnosis calibrate(const MeasuredTwin& m, const std::filesystem::path& 
   listener.begin("writing");
   const Eigen::VectorXd x = diagnosis::written_x(result.found, false);
   result.written = written_scenario(m, stated_numbers(result.found, false, x), head_of_calibration(m, result.found), file,
-                                    known_after(result.found));
+                                    known_after(m, result.found, x));
   predict_as_written(m, result.written, result.found);
   return result;
 }

@@ -196,10 +196,28 @@ bool is_celsius(const std::string& name) {
   return name.ends_with("_degC");
 }
 
-double film_checked(double value, const std::function<Where()>& where) {
-  if (value >= 0.0 && value <= kMostFilm_W_m2K) return value;
-  throw InputError(where(), fmt::format("a film coefficient of {:g} W/(m^2 K) is not possible; 0 to {:g} are allowed", value,
-                                        kMostFilm_W_m2K));
+/// The film's column and its sign: `film_column: -NAME` takes the negative of a column NAME.
+struct FilmName {
+  std::string name;
+  double sign = 1.0;
+};
+template <class Has>
+FilmName film_name_of(const std::string& written, const Has& has) {
+  if (!written.starts_with("-") || has(written)) return {written};
+  return {written.substr(1), -1.0};
+}
+
+double film_checked(double value, const FilmName& film, const std::function<Where()>& where) {
+  const double film_W_m2K = film.sign * value;
+  if (film_W_m2K >= 0.0 && film_W_m2K <= kMostFilm_W_m2K) return film_W_m2K;
+  const bool is_other_sign = -film_W_m2K <= kMostFilm_W_m2K && film.sign > 0.0;
+  throw InputError(
+      where(), fmt::format("a film coefficient of {:g} W/(m^2 K) is not possible; 0 to {:g} are allowed{}", film_W_m2K,
+                           kMostFilm_W_m2K,
+                           is_other_sign ? fmt::format(". If all are negative, as OpenFOAM's `heatTransferCoeff` is at a "
+                                                       "wall warmer than its TRef, write `film_column: -{}`",
+                                                       film.name)
+                                         : ""));
 }
 double air_checked_K(double value, const std::string& name, const std::function<Where()>& where) {
   const double air_K = is_celsius(name) ? value + kZeroCelsius_K : value;
@@ -224,8 +242,9 @@ void add_rows(const Effect& e, const FilmTable& table, bool is_raw, double file_
                              coordinate(table, "z", is_raw, unit_m)};
   std::string film_name = e.words.at("film_column"), air_name = e.words.at("air_column");
   if (film_name.empty()) film_name = is_raw ? table.names[3] : "h_W_m2K";
-  const auto film = table.find(film_name);
-  if (!film) table.lacks(film_name, "`film_column` names the column of the film coefficient in W/(m^2 K)");
+  const FilmName film_of = film_name_of(film_name, [&](const std::string& n) { return table.find(n).has_value(); });
+  const auto film = table.find(film_of.name);
+  if (!film) table.lacks(film_of.name, "`film_column` names the column of the film coefficient in W/(m^2 K)");
   if (air_name.empty() && !is_raw) {
     for (const char* name : {"T_air_degC", "T_air_K"}) {
       if (air_name.empty() && table.find(name)) air_name = name;
@@ -251,7 +270,7 @@ void add_rows(const Effect& e, const FilmTable& table, bool is_raw, double file_
     const auto where = [&](const std::string& key) { return [&, key] { return table.where(table.line_of_row[r], key); }; };
     std::array<double, 3> x_m;
     for (std::size_t a = 0; a < 3; ++a) x_m[a] = axes[a].factor * row[axes[a].index];
-    const double value = film_checked(row[*film], where(film_name));
+    const double value = film_checked(row[*film], film_of, where(film_of.name));
     const double air_K = air ? air_checked_K(row[*air], air_name, where(air_name)) : 0.0;
     const double point = at ? at->factor * row[at->index] : file_at;
     if (!(point >= 0.0)) throw InputError(where("")(), "the speed or time must not be negative");
@@ -330,9 +349,11 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
     const mesh::SurfaceValues values = mesh::read_surface_values(files[s].path);
     const auto n = static_cast<Eigen::Index>(values.corner_from.size()) - 1;
     const auto column = static_cast<Eigen::Index>(s), n_states = static_cast<Eigen::Index>(files.size());
-    std::string film_name, air_name;
+    FilmName film_of =
+        film_name_of(e.words.at("film_column"), [&](const std::string& name) { return values.arrays.contains(name); });
+    std::string air_name;
     const std::vector<double>* film =
-        array_of(values, e.words.at("film_column"), {"h_W_m2K"}, files[s].path, "film_column", film_name);
+        array_of(values, film_of.name, {"h_W_m2K"}, files[s].path, "film_column", film_of.name);
     const std::vector<double>* air =
         array_of(values, e.words.at("air_column"), {"T_air_degC", "T_air_K"}, files[s].path, "air_column", air_name);
     const Eigen::Matrix3Xd corner_m = unit_m * values.corner;
@@ -361,7 +382,7 @@ SurfaceField read_cells(const Effect& e, const std::vector<FilmFile>& files, Fie
       const auto where = [&](const std::string& name) {
         return [&, name] { return Where{clean_name(files[s].path), 0, 0, fmt::format("face {}, {}", c, name), ""}; };
       };
-      field.film_W_m2K(c, column) = film_checked((*film)[static_cast<std::size_t>(c)], where(film_name));
+      field.film_W_m2K(c, column) = film_checked((*film)[static_cast<std::size_t>(c)], film_of, where(film_of.name));
       if (air) field.air_K(c, column) = air_checked_K((*air)[static_cast<std::size_t>(c)], air_name, where(air_name));
     }
     field.states.at.push_back(files.size() > 1 ? files[s].at : 0.0);

@@ -11,6 +11,8 @@ schema::Map known_together_schema() {
   return {
       .name = "known_together",
       .keys = {schema::compulsory("numbers", schema::list(schema::text(), 1), "what was fitted, by effect, place and name"),
+               schema::compulsory("values", schema::list(schema::quantity("1"), 1),
+                                  "the fitted numbers in SI units, for a check that they have not been changed since"),
                schema::compulsory("factor", schema::list(schema::quantity("1"), 1),
                                   "of the covariance of their logarithms: its lower Cholesky factor row by row, each row up "
                                   "to the diagonal")},
@@ -20,12 +22,16 @@ schema::Map known_together_schema() {
 }
 
 KnownTogether read_known_together(const ConfigMap& in) {
-  KnownTogether known{.numbers = in.texts("numbers"), .factor = {}};
+  KnownTogether known{.numbers = in.texts("numbers"), .values = in.quantities("values"), .factor = {}};
   const std::vector<double> entries = in.quantities("factor");
   for (auto n = known.numbers.begin(); n != known.numbers.end(); ++n) {
     if (std::find(known.numbers.begin(), n, *n) != n) in.fail("numbers", fmt::format("'{}' is listed twice", *n));
   }
   const std::size_t size = known.numbers.size();
+  if (known.values.size() != size)
+    in.fail("values", fmt::format("{} numbers need {} values, and there are {}; run `calibrate` again, or delete "
+                                  "`known_together`",
+                                  size, size, known.values.size()));
   if (entries.size() != size * (size + 1) / 2)
     in.fail("factor",
             fmt::format("{} numbers need {} entries, row by row up to the diagonal, and there are {}; run `calibrate` "
@@ -52,8 +58,10 @@ std::string yaml_of(const KnownTogether& known) {
   }
   std::vector<std::string> names;
   for (const std::string& name : known.numbers) names.push_back(fmt::format("\"{}\"", name));
-  return fmt::format("known_together:\n  numbers: [{}]\n  factor: [{}]\n", fmt::join(names, ",\n            "),
-                     fmt::join(rows, ",\n           "));
+  std::vector<std::string> values;
+  for (const double value : known.values) values.push_back(fmt::format("{:.7g}", value));
+  return fmt::format("known_together:\n  numbers: [{}]\n  values: [{}]\n  factor: [{}]\n",
+                     fmt::join(names, ",\n            "), fmt::join(values, ", "), fmt::join(rows, ",\n           "));
 }
 
 }  // namespace driftwright::scenarios

@@ -107,6 +107,23 @@ TEST(Films, ARawFileOfOpenFoamIsTheCsvOfItsNumbers) {
   }
 }
 
+// Of our own case: air at 1 m/s and 20 degC along the front at 40 degC, laminar, 10 x 4 x 8 cells, buoyantSimpleFoam of
+// Debian's openfoam 1912 with the function objects heatTransferCoeff (TRef 293.15) and surfaces, vtk both as XML and legacy.
+// Its surfaceFieldValue says: areaIntegrate(plate) of heatTransferCoeff(T) = -0.1500331.
+TEST(Films, OfOpenFoamsSurfaceFilesHaveItsIntegral) {
+  const auto folder = fresh_folder("films_openfoam");
+  for (const std::string name : {"plate.raw", "plate.vtp", "plate.vtk"}) {
+    std::filesystem::copy_file("tests/data/films/openfoam_" + name, folder / name);
+    const std::string entry = fmt::format("{{type: film_field, surface: front, air: 20 degC, file: {}, film_column: ", name);
+    const CommandOutcome outcome = run_program("check " + scenario_with(folder, entry + "-heatTransferCoeff(T)}"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("film_field front"), HasSubstr("0.1500"))) << name;
+    const CommandOutcome refused = run_program("check " + scenario_with(folder, entry + "heatTransferCoeff(T)}"));
+    EXPECT_EQ(refused.exit_code, 2) << refused.output;
+    EXPECT_THAT(refused.output, HasSubstr("write `film_column: -heatTransferCoeff(T)`")) << name;
+  }
+}
+
 TEST(Films, FilesOfAPatternAreOneAnOperatingPoint) {
   const auto folder = fresh_folder("films_pattern");
   for (const int rpm : {0, 1000}) {

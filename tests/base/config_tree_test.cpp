@@ -38,6 +38,12 @@ TEST(ConfigTree, AliasesThatStandForBillionsAreRefusedWithTheNumber) {
   EXPECT_REFUSED(line_of(std::string(100000, '[')), "tree.yaml", "more than 200 deep");
 }
 
+TEST(ConfigTree, ASecondDocumentIsRefusedWithItsLine) {
+  EXPECT_REFUSED(line_of("name: x\n---\nname: y\n"), "tree.yaml:2:", "a second YAML document begins here");
+  EXPECT_REFUSED(line_of("name: x\n...\n# more\nlist: [1]\n"), "tree.yaml:4:", "a second YAML document begins here");
+  EXPECT_EQ(line_of("# one\n---\nname: x\n...\n# the end\n"), line_of("name: x"));
+}
+
 TEST(ConfigTree, IsReadFromTheEncodingsOfRecords) {
   EXPECT_EQ(line_of("name: Geh\xE4use"), "{\"name\": \"Geh\xC3\xA4use\"}");  // Latin-1
   EXPECT_EQ(line_of("\xEF\xBB\xBFname: x"), "{\"name\": \"x\"}");

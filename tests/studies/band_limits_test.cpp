@@ -70,6 +70,26 @@ TEST(BandLimits, ErrLessThanAQuantileWhereNoDirectionHoldsTheBend) {
   EXPECT_NEAR(outside, 0.05, 0.015);
 }
 
+// A bend that comes and goes in time, and a slope that changes its direction: the same limits, from few of them.
+TEST(BandLimits, OverTimeAreThoseOfEachTime) {
+  const Eigen::MatrixXd z = scores(200, 3);
+  const int n_times = 250;
+  Eigen::MatrixXd values(200, n_times);
+  for (int t = 0; t < n_times; ++t) {
+    const double s = t / 249.0, turn = t < 101 ? 0.0 : s;
+    values.col(t) = ((0.8 * s * (1.0 - s)) * (3.0 * z.col(0).array()) + turn * z.col(1).array()).exp() +
+                    0.3 * s * z.col(2).array().square() + 5.0 * s;
+  }
+  const BandLimits each = band_limits(z, values), over_time = band_limits_over_time(z, values);
+  for (int t = 0; t < n_times; ++t) {
+    const double half = 0.5 * (each.high[t] - each.low[t]);
+    EXPECT_NEAR(over_time.low[t], each.low[t], 0.02 * half + 1e-12) << t;
+    EXPECT_NEAR(over_time.high[t], each.high[t], 0.02 * half + 1e-12) << t;
+  }
+  EXPECT_NEAR(band_limits_over_time(z, values.leftCols(1)).high[0], each.high[0], 1e-12);
+  EXPECT_EQ(band_limits_over_time(z, Eigen::MatrixXd(200, 0)).high.size(), 0);
+}
+
 TEST(BandLimits, OfAConstantAreTheConstant) {
   const BandLimits limits = band_limits(scores(40, 3), Eigen::MatrixXd::Constant(40, 1, 5.0));
   EXPECT_NEAR(limits.low[0], 5.0, 1e-12);

@@ -85,8 +85,9 @@ scenarios::Scenario fitted_body(const std::string& known_together) {
 
 // ln power = 0.01 a, ln conductance = 0.01 a + 0.002 b with independent a, b: their quotient is known better than either.
 TEST(KnownBand, OfNumbersThatAreKnownTogetherIsThatOfLinearTheory) {
-  const Prediction p = predicted(
-      fitted_body("{numbers: [heat_source body power, \"link body,ambient conductance\"], factor: [0.01, 0.01, 0.002]}"));
+  const Prediction p =
+      predicted(fitted_body("{numbers: [heat_source body power, \"link body,ambient conductance\"], values: [100, 5], "
+                            "factor: [0.01, 0.01, 0.002]}"));
   ASSERT_TRUE(p.band);
   const double t_s = p.record.time_s[120], steady_K = kPower_W / kConductance_W_K;
   const double x = kConductance_W_K * t_s / kCapacity_J_K, decay = std::exp(-x), rise_K = steady_K * (1.0 - decay);
@@ -97,19 +98,52 @@ TEST(KnownBand, OfNumbersThatAreKnownTogetherIsThatOfLinearTheory) {
 }
 
 TEST(KnownBand, IsRefusedWhereWhatIsKnownTogetherDoesNotFitTheScenario) {
-  EXPECT_REFUSED(fitted_body("{numbers: [heat_source body power], factor: [0.1, 0.2]}"), "fitted.yaml", "factor",
-                 "1 numbers need 1 entries");
-  EXPECT_REFUSED(fitted_body("{numbers: [a, a], factor: [0.1, 0, 0.2]}"), "'a' is listed twice");
-  EXPECT_REFUSED(fitted_body("{numbers: [a, b], factor: [0.1, 0, 0]}"), "row 2", "'b' would be known exactly");
-  const Prediction p = predicted(fitted_body("{numbers: [heat_source shaft power], factor: [0.1]}"));
+  EXPECT_REFUSED(fitted_body("{numbers: [heat_source body power], values: [100], factor: [0.1, 0.2]}"), "fitted.yaml",
+                 "factor", "1 numbers need 1 entries");
+  EXPECT_REFUSED(fitted_body("{numbers: [a, a], values: [1, 1], factor: [0.1, 0, 0.2]}"), "'a' is listed twice");
+  EXPECT_REFUSED(fitted_body("{numbers: [a, b], values: [1, 1], factor: [0.1, 0, 0]}"), "row 2",
+                 "'b' would be known exactly");
+  EXPECT_REFUSED(fitted_body("{numbers: [a, b], values: [1], factor: [0.1, 0, 0.1]}"), "values", "2 numbers need 2 values");
+  const Prediction p = predicted(fitted_body("{numbers: [heat_source shaft power], values: [100], factor: [0.1]}"));
   ASSERT_TRUE(p.band);
   EXPECT_TRUE(p.band->limits.channels.empty());
   EXPECT_THAT(p.band->words, HasSubstr("names 'heat_source shaft power', which the scenario does not have"));
 }
 
+TEST(KnownBand, IsRefusedWhereANumberWasChangedAfterItsFit) {
+  const auto words = [](double power_W) {
+    const Prediction p =
+        predicted(fitted_body(fmt::format("{{numbers: [heat_source body power], values: [{}], factor: [0.1]}}", power_W)));
+    return p.band->limits.channels.empty() ? p.band->words : std::string();
+  };
+  EXPECT_EQ(words(100.0001), "") << "a band: the same to six digits";
+  EXPECT_THAT(words(101.0), HasSubstr("'heat_source body power' is 100 in SI units, and 101 in `known_together`"));
+  EXPECT_THAT(words(101.0), HasSubstr("Calibrate the scenario again"));
+}
+
+// Two powers of one body have the same name but for its number; the first one is exact, and the second one was fitted.
+TEST(KnownBand, CountsNamesThatAreAlikeInOneListOfAllNumbers) {
+  const std::string text = read_text(body("", "", "").path);
+  const auto half = [&](const std::string& second) {
+    const scenarios::Scenario s = scenarios::read_scenario(
+        write_file("alike.yaml",
+                   fixtures::replaced(text, "  - {type: link", "  - {type: heat_source, node: body, power: 50 W" + second)));
+    const Prediction p = predicted(s);
+    return p.band && !p.band->limits.channels.empty() ? high(p, "z", 120) : 0.0;
+  };
+  const double by_known_to = half(", known_to: 10 %}\n  - {type: link");
+  EXPECT_GT(by_known_to, 0.0);
+  const std::string fitted = fixtures::replaced(
+      text, "  - {type: link", "  - {type: heat_source, node: body, power: 50 W, known_to: 10 %}\n  - {type: link");
+  const Prediction p = predicted(scenarios::read_scenario(write_file(
+      "alike.yaml", fitted + "known_together: {numbers: [heat_source body power 2], values: [50], factor: [0.1]}\n")));
+  EXPECT_THAT(p.band->words, HasSubstr("1 number known to 10 %")) << "it is not counted twice";
+  EXPECT_NEAR(high(p, "z", 120), by_known_to, 1e-3 * by_known_to);
+}
+
 // Its rows differ by 1.118e-4, their numbers by a factor of two (`guess`).
 TEST(KnownTogether, KeepsAQuotientThatIsKnownMuchBetterThanItsNumbers) {
-  scenarios::KnownTogether known{.numbers = {"a", "b"}, .factor = Eigen::MatrixXd::Zero(2, 2)};
+  scenarios::KnownTogether known{.numbers = {"a", "b"}, .values = {1.0, 1.0}, .factor = Eigen::MatrixXd::Zero(2, 2)};
   known.factor << 0.7123456, 0.0, 0.7123956, 1e-4;
   const scenarios::Scenario again =
       scenarios::read_scenario(write_file("fitted.yaml", read_text(body("", "", "").path) + scenarios::yaml_of(known)));

@@ -86,14 +86,14 @@ TEST(Calibrate, WritesWhatItsFitLeavesOpenOfAllNumbersTogether) {
   }
   const double together_um = half_band_um(again);
   again.machine->known_together.factor = covariance.diagonal().cwiseSqrt().asDiagonal().toDenseMatrix();
-  EXPECT_GT(together_um, 0.0);
+  EXPECT_GT(together_um, 0.0) << "the values beside the factor are those of the file";
   EXPECT_LT(together_um, 0.3 * half_band_um(again));  // each number by itself
 }
 
 // After the mark that ends a document, a further key would be in another one, which no reader takes.
 TEST(Calibrate, SaysWhatIsKnownTogetherAlsoWhereTheFileEndsByAMark) {
-  const scenarios::KnownTogether known{.numbers = {"heat_source head power"},
-                                       .factor = Eigen::MatrixXd::Constant(1, 1, 0.1)};
+  const scenarios::KnownTogether known{
+      .numbers = {"heat_source head power"}, .values = {100.0}, .factor = Eigen::MatrixXd::Constant(1, 1, 0.1)};
   const MeasuredTwin m = twin_of(std::string(diagnosis::kTwoNodes) + "...\n");
   const std::string text = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, {}, {}, {}, known).text;
   EXPECT_EQ(scenarios::read_scenario(write_file("ended.yaml", text)).machine->known_together.numbers, known.numbers);
