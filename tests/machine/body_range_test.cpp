@@ -20,22 +20,19 @@ MachineModel with_table_to_100_degC() {
 
 TEST(BodyRange, ABodyThatLeavesItsTableIsNamedWithBothEnds) {
   const MachineModel machine = with_table_to_100_degC();
-  EXPECT_THAT(unusual_temperatures({{"column", 293.15, 372.0, 60.0}, {"table", 250.0, 450.0, 60.0}}, machine, "shift"),
-              IsEmpty());
+  EXPECT_THAT(unusual_temperatures({{"column", 293.15, 372.0}, {"table", 250.0, 450.0}}, machine, "shift"), IsEmpty());
   EXPECT_THAT(
-      unusual_temperatures({{"column", 293.15, 383.15, 60.0}}, machine, "shift"),
+      unusual_temperatures({{"column", 293.15, 383.15}}, machine, "shift"),
       ElementsAre(HasSubstr(
           "column has 20.0 to 110.0 degC in cyclogram 'shift'; the table of its conductivity ends at 0.0 and 100.0 degC")));
-  EXPECT_THAT(unusual_temperatures({{"column", 263.15, 293.15, 60.0}}, machine, "shift"),
-              ElementsAre(HasSubstr("-10.0 to 20.0")));
+  EXPECT_THAT(unusual_temperatures({{"column", 263.15, 293.15}}, machine, "shift"), ElementsAre(HasSubstr("-10.0 to 20.0")));
 }
 
 TEST(BodyRange, OfBodiesOutsideOfTheUsualTheFarthestIsNamed) {
   EXPECT_THAT(
-      unusual_temperatures({{"head", 293.15, 523.15, 60.0}, {"rotor", 293.15, 873.15, 60.0}, {"base", 293.15, 303.15, 60.0}},
-                           {}, "shift"),
+      unusual_temperatures({{"head", 293.15, 523.15}, {"rotor", 293.15, 873.15}, {"base", 293.15, 303.15}}, {}, "shift"),
       ElementsAre("rotor reaches 600 degC in cyclogram 'shift'; usual is -40 to 200 degC (bodies outside of it: 2)"));
-  EXPECT_THAT(unusual_temperatures({{"head", 173.15, 293.15, 60.0}}, {}, "shift"),
+  EXPECT_THAT(unusual_temperatures({{"head", 173.15, 293.15}}, {}, "shift"),
               ElementsAre(HasSubstr("head reaches -100 degC")));
 }
 
