@@ -296,6 +296,12 @@ double probe_deviation_um(const probe_process* process, const probe_state* state
   return sqrt(probe_mixture_um2(bank));
 }
 
+double probe_corrected_um(const probe_process* process, const probe_state* state, double prediction_um, double lowest_um,
+                          double highest_um) {
+  const double um = prediction_um + probe_expected_um(process, state, 0.0);
+  return um < lowest_um ? lowest_um : um > highest_um ? highest_um : um;
+}
+
 double probe_slewed_um(double before_um, double wanted_um, double most_rate_um_s, double dt_s) {
   const double most_um = most_rate_um_s * probe_time_s(dt_s);
   if (wanted_um > before_um + most_um) return before_um + most_um;

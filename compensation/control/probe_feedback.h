@@ -130,6 +130,9 @@ int probe_left(const probe_process* process, probe_state* state, double left_um)
 double probe_expected_um(const probe_process* process, const probe_state* state, double ahead_s);
 double probe_deviation_um(const probe_process* process, const probe_state* state, double ahead_s);
 
+/* Prediction and residual together [um], between two bounds. */
+double probe_corrected_um(const probe_process* process, const probe_state* state, double prediction_um, double lowest_um,
+                          double highest_um);
 /* A value on its way from before_um to wanted_um [um], no faster than most_rate_um_s. */
 double probe_slewed_um(double before_um, double wanted_um, double most_rate_um_s, double dt_s);
 

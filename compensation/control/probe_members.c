@@ -114,3 +114,9 @@ double probe_members_deviation_um(const probe_process* processes, const probe_me
   }
   return sqrt(um2);
 }
+
+double probe_members_corrected_um(const probe_process* processes, const probe_member* members, int n, double lowest_um,
+                                  double highest_um) {
+  const double um = members[0].prediction_um + probe_members_expected_um(processes, members, n, 0.0);
+  return um < lowest_um ? lowest_um : um > highest_um ? highest_um : um;
+}

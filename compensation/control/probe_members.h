@@ -43,6 +43,10 @@ double probe_member_um(double correction_um, double trust, double blend_um, doub
 void probe_members_row(const probe_process* processes, probe_member* members, int n, const double* predictions_um,
                        double correction_um, double dt_s);
 
+/* The first member's prediction and what is expected beyond it [um], between two bounds. */
+double probe_members_corrected_um(const probe_process* processes, const probe_member* members, int n, double lowest_um,
+                                  double highest_um);
+
 /* A probing whose value has come in the last row: as probe_drift() and probe_left(). What became of it by the member that leads. */
 int probe_members_drift(const probe_process* processes, probe_member* members, int n, double drift_um);
 int probe_members_left(const probe_process* processes, probe_member* members, int n, double left_um);
