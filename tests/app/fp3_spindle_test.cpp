@@ -29,15 +29,17 @@ class Fp3Spindle : public ::testing::Test {
     summary_ = nlohmann::json::parse(read_text(folder_ / "summary.json"));
     give_to_other_tests(store);
   }
-  /// Puts what the first run has reduced into the store that tests share, each file at once.
+  /// Puts the machine that the first run has reduced into the store that tests share, whole or not at all.
   static void give_to_other_tests(const std::filesystem::path& store) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(store)) {
-      if (!entry.is_regular_file()) continue;
-      const std::filesystem::path to = test_store() / std::filesystem::relative(entry.path(), store);
-      const std::string part = to.string() + ".of_fp3_spindle";
+    for (const auto& machine : std::filesystem::directory_iterator(store / "driftwright")) {
+      const std::filesystem::path to = test_store() / std::filesystem::relative(machine.path(), store);
+      const std::filesystem::path part = to.string() + ".of_fp3_spindle";
+      if (std::filesystem::exists(to)) continue;
       std::filesystem::create_directories(to.parent_path());
-      std::filesystem::copy_file(entry.path(), part, std::filesystem::copy_options::overwrite_existing);
-      std::filesystem::rename(part, to);
+      std::filesystem::copy(machine.path(), part, std::filesystem::copy_options::recursive);
+      std::error_code failed;
+      std::filesystem::rename(part, to, failed);
+      if (failed) std::filesystem::remove_all(part);  // another program was faster
     }
   }
   static inline std::filesystem::path folder_;
