@@ -334,8 +334,8 @@ TEST_P(ModalPredictors, AreThoseOfTheFullSystem) {
   const Both of = both({.effects = GetParam().second});
   const Scenario& s = of.scenario;
   ASSERT_TRUE(of.reduced.modal);
-  const auto of_full_system = compensation::make_modal_predictors(
-      of.machine.system, 20, start_state(*s.machine, of.machine), s.machine->ambient.at(0.0), plan_of(s).typical);
+  const auto of_full_system = compensation::make_modal_predictors(of.machine.system, 20, start_state(*s.machine, of.machine),
+                                                                  s.machine->ambient.at(0.0), plan_of(s).typical);
   for (const bool with_steady : {false, true}) {
     const auto& small = with_steady ? of.reduced.modal->completed : of.reduced.modal->bare;
     const auto& full = with_steady ? of_full_system.completed : of_full_system.bare;

@@ -163,10 +163,11 @@ TEST(Pulses, OfAPrescribedSurfaceWithinHoursOfRestStoreTheHeatOfFineSteps) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.02, 0.02}, .n = {10, 1, 1}});
   const auto run = [&](double pulse_s, double rest_s, const TransientOptions& options) {
     effects::HeatBalance balance;
-    balance.fixed.push_back({"pulse",
-                             effects::surface("x0"),
-                             {{0, pulse_s, pulse_s + 1, pulse_s + 29, pulse_s + 30}, {293.15, 293.15, 333.15, 333.15, 293.15}},
-                             false});
+    balance.fixed.push_back(
+        {"pulse",
+         effects::surface("x0"),
+         {{0, pulse_s, pulse_s + 1, pulse_s + 29, pulse_s + 30}, {293.15, 293.15, 333.15, 333.15, 293.15}},
+         false});
     FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
     fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0.02, 0, 0})});
     const Cyclogram rest{.name = "rest", .sections = {{pulse_s + rest_s, {}}}};
@@ -175,8 +176,7 @@ TEST(Pulses, OfAPrescribedSurfaceWithinHoursOfRestStoreTheHeatOfFineSteps) {
   };
   const Trajectory shipped =
       run(kHalf_s, kHalf_s, {.relative_tolerance = 1e-3, .absolute_tolerance_K = 5e-3, .max_step_s = 7200.0});
-  const Trajectory fine =
-      run(1.0, 120.0, {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7, .max_step_s = 1.0});
+  const Trajectory fine = run(1.0, 120.0, {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7, .max_step_s = 1.0});
   EXPECT_NEAR(shipped.outputs(0, 0), 0.0, 1e-12);
   EXPECT_GT(fine.outputs(0, 1), 1.0);
   const double worst_K = (shipped.outputs - fine.outputs).cwiseAbs().maxCoeff();
