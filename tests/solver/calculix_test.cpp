@@ -18,7 +18,7 @@ using fixtures::text;
 using mesh::CellShape;
 
 constexpr double kHeadPower_W = 150.0, kHeadVolume_m3 = 0.018, kHtc_W_m2K = 12.0, kAmbient_K = 2.0;
-constexpr double kOn_s = 300.0, kEnd_s = 600.0;
+constexpr double kOn_s = 600.0, kEnd_s = 1200.0;
 const std::vector<std::string> kFilmed = {"bed_x0",    "bed_x1",    "bed_y1",  "column_x0",
                                           "column_x1", "column_y0", "head_z1", "head_y1"};
 
