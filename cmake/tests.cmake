@@ -48,6 +48,12 @@ function(driftwright_tests room label)
   driftwright_target(${target} HEADERS_OF driftwright_fixtures)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  # Ctest runs as many cases at once as there are cores: a second thread of one waits for the other cases. Tests of several threads set their number; unit
+  # tests and those of the program run with all.
+  set(alone "")
+  if(label STREQUAL verification)
+    set(alone ENVIRONMENT OMP_NUM_THREADS=1)
+  endif()
   set(whole "")
   foreach(path ${ARG_WHOLE})
     driftwright_suites_of(${path}_test.cpp suites)
@@ -57,15 +63,9 @@ function(driftwright_tests room label)
       set(case ${room}/${case})
     endif()
     add_test(NAME ${case} COMMAND ${target} --gtest_brief=1 --gtest_filter=${suites} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    set_tests_properties(${case} PROPERTIES LABELS ${label} TIMEOUT 1200)
+    set_tests_properties(${case} PROPERTIES LABELS ${label} TIMEOUT 1200 ${alone})
   endforeach()
   if(ARG_TESTS)
-    # Many small cases, of which ctest runs as many at once as there are cores: a second thread of one waits for the other cases. Tests of several threads set
-    # their number; unit tests and those of the program run with all.
-    set(alone "")
-    if(label STREQUAL verification)
-      set(alone ENVIRONMENT OMP_NUM_THREADS=1)
-    endif()
     gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_FILTER "-*AtLength*${whole}" PROPERTIES LABELS ${label} TIMEOUT 1200 ${alone} DISCOVERY_TIMEOUT 60
                          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_FILTER "*AtLength*" TEST_LIST ${target}_at_length PROPERTIES LABELS long TIMEOUT 3600

@@ -15,6 +15,7 @@
 #include "tests/app/csv_table.hpp"
 #include "tests/shared/column_and_head.hpp"
 #include "tests/shared/command_line.hpp"
+#include "tests/shared/edited_text.hpp"
 
 namespace driftwright::reduced_run_test {
 namespace {
@@ -117,6 +118,37 @@ TEST(ReducedRun, IsTheFullModelToTheToleranceAtEveryRow) {
   EXPECT_GT(worst_K, 0.0);
   EXPECT_LT(worst_K, 5e-3);
   EXPECT_LT(worst_um, 1e-2);
+}
+
+TEST(Fp3AtLength, EveryReadingIsThatOfTheFullModelWithinFiveMillikelvin) {
+  // The finite elements themselves, in time ten times more accurate than the comparison requires.
+  std::string text = read_text("scenarios/fp3_spindle.yaml");
+  for (const auto& [what, instead] :
+       {std::pair{"model: reduced", "model: full"}, std::pair{"relative_tolerance: 1e-3", "relative_tolerance: 1e-5"},
+        std::pair{"absolute_tolerance: 5e-3 K", "absolute_tolerance: 1e-4 K"},
+        std::pair{"fields_format: vtu", "fields_format: none"}})
+    text = fixtures::replaced(text, what, instead);
+  const fs::path folder = fresh_folder("fp3_full");
+  std::string said;  // of the full model, at the end
+  for (const auto& [scenario, out] : {std::pair{std::string("scenarios/fp3_spindle.yaml"), "reduced"},
+                                      std::pair{write_file("fp3_full.yaml", text), "full"}}) {
+    const CommandOutcome outcome =
+        run_program("simulate " + scenario + " --cyclogram heat_cool_1600 -o " + (folder / out).string());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+    said = outcome.output;
+  }
+  EXPECT_THAT(said, HasSubstr("full model of"));
+  const Record exact = read_record_csv((folder / "full/record.csv").string()),
+               small = read_record_csv((folder / "reduced/record.csv").string());
+  ASSERT_EQ(exact.time_s, small.time_s);
+  for (const Channel& c : exact.channels) {
+    const double allowed = c.unit == "degC" ? 5e-3 : c.unit == "um" ? 0.01 : 0.1;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < c.values.size(); ++k)
+      worst = std::max(worst, std::abs(c.values[k] - small.at(c.name).values[k]));
+    EXPECT_LT(worst, allowed) << c.name;
+    RecordProperty(c.name, std::to_string(worst));
+  }
 }
 
 TEST(ReducedRun, GoesOnWithNowhereToKeepTheModel) {

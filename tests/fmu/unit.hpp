@@ -99,7 +99,7 @@ inline void expect_valid(const Unit& unit) {
 inline Unit of_sources(Unit unit) {
   unit.library = unit.folder / "of_sources.so";
   const std::string command = fmt::format(
-      "cd {}/sources && cc -std=c99 -O3 -ffp-contract=off -fPIC -shared -fvisibility=hidden -Wall -Wextra -Werror -pedantic "
+      "cd {}/sources && cc -std=c99 -O1 -ffp-contract=off -fPIC -shared -fvisibility=hidden -Wall -Wextra -Werror -pedantic "
       "-o ../of_sources.so *.c -lm 2>&1",
       unit.folder.string());
   EXPECT_EQ(std::system(command.c_str()), 0) << command;

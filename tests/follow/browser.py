@@ -48,7 +48,7 @@ class Browser:
 
     def open(self, url, width=1200, height=1500):
         target = self.ask("Target.createTarget", url="about:blank")["targetId"]
-        page = Page(self, self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"])
+        page = Page(self, target, self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"])
         self.ask("Emulation.setDeviceMetricsOverride", page.session, width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.ask("Page.bringToFront", page.session)  # a page in the background draws nothing
         self.ask("Page.navigate", page.session, url=url)
@@ -61,8 +61,11 @@ class Browser:
 
 
 class Page:
-    def __init__(self, browser, session):
-        self.browser, self.session = browser, session
+    def __init__(self, browser, target, session):
+        self.browser, self.target, self.session = browser, target, session
+
+    def close(self):
+        self.browser.ask("Target.closeTarget", targetId=self.target)
 
     def value(self, script):
         """The value of a JavaScript expression."""

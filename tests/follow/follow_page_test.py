@@ -34,6 +34,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="driftwright_page-") as folder:
         work = pathlib.Path(folder)
         (work / "scenarios").symlink_to(project / "scenarios")
+        if "DRIFTWRIGHT_TEST_STORE" in os.environ:  # machines that other tests have reduced
+            (work / "cache").symlink_to(pathlib.Path(os.environ["DRIFTWRIGHT_TEST_STORE"]).resolve())
         env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{program.parent}:{os.environ['PATH']}")
         shell = subprocess.Popen(["bash", "-ec", commands], cwd=work, env=env, stdout=subprocess.PIPE, text=True, start_new_session=True)
         try:

@@ -217,6 +217,7 @@ def at_the_browser(program, folder, chromium):
     assert slowest < 1.0, slowest
     shows(page, follow, 90041, "1500,20")  # a client that reads is served
     took_s = follow.end()
+    page.close()  # it would go on drawing
     assert took_s < 15.0, took_s
     return slowest
 
@@ -313,6 +314,8 @@ def with_token(program, folder, chromium):
         refused = chromium.open(address + "?token=wrong")
         refused.wait("document.body.innerText.includes('requires the token')")
         follow.end()
+        page.close()
+        refused.close()
     follow = Follow(program, "head.yaml", "--serve", port, folder=folder)
     follow.header("time_s,speed_rpm,ambient_degC")
     follow.say("0,2000,20")

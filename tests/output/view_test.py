@@ -12,12 +12,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import urllib.parse
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "shared"))
+sys.dont_write_bytecode = True
+sys.path += [str(pathlib.Path(__file__).resolve().parents[1] / room) for room in ("shared", "follow")]
+import browser as chromium  # noqa: E402
 from claims import caller, expect, failures
 
 MOST_UM, MOST_K = 0.1, 0.02   # allowed difference between the page and `predict`
 MOST_MB, MOST_FRAME_MS = 15.0, 8.0
+FRAMES, FEW_FRAMES = 100, 5  # of each kind: as the page ships, and where their times are not judged
 
 NODE = "</script><script>document.title='broken out'</script><img src=x onerror=document.title='broken out'>"
 HOSTILE = f"""name: hostile
@@ -32,19 +36,18 @@ sensors: [{{name: t_spindle, node: "{NODE}"}}]
 cyclograms: {{shift: [[60 min, 6000 rpm]]}}
 """
 
-def browse(browser, page, *options):
-    """The JSON that a page with #report writes in the browser."""
-    call = [browser, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-            "--hide-scrollbars", f"--user-data-dir={page.parent}/profile", *options]
-    return subprocess.run(call, capture_output=True, text=True, timeout=300).stdout
 
-
-def report_of(browser, page):
-    dom = browse(browser, page, "--dump-dom", f"file://{page}#report")
-    found = re.search(r'<pre id="report">(.*)</pre>', dom, re.S)
-    if not found:
-        sys.exit(f"{page.name}: the page reports nothing:\n{dom[-2000:]}")
-    return json.loads(found[1].replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")), dom
+def report_of(browser, page, frames=FRAMES, also="0"):
+    """The JSON that a page with #report writes, and the value of a further expression. @param frames  that the page times of each kind"""
+    text, frames_of_a_page = page.read_text(), f"const FRAMES = {FRAMES};"
+    expect(frames_of_a_page in text, f"{page.name} times {FRAMES} frames of each kind")
+    shown = page.with_suffix(".shown.html")
+    shown.write_text(text.replace(frames_of_a_page, f"const FRAMES = {frames};"))
+    tab = browser.open(f"file://{urllib.parse.quote(str(shown))}#report")
+    report = json.loads(tab.wait("document.getElementById('report') && document.getElementById('report').textContent", 300))
+    value = tab.value(also)
+    tab.close()
+    return report, value
 
 
 def record_of(path):
@@ -66,15 +69,14 @@ def farthest(page, record):
 
 def main():
     program, top = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="driftwright_view-"))
     try:
-        return check(program, top, browser, folder)
+        return check(program, top, folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def check(program, top, browser, folder):
+def check(program, top, folder):
     env = dict(os.environ, XDG_CACHE_HOME=os.environ.get("DRIFTWRIGHT_TEST_STORE", str(folder / "cache")))
     call = caller(program, folder, env=env)
     fp3, lumped = top / "scenarios/fp3_spindle.yaml", top / "scenarios/first_machine.yaml"
@@ -91,11 +93,20 @@ def check(program, top, browser, folder):
     expect(page.stat().st_size <= MOST_MB * 1e6, f"the page of the FP3 has {page.stat().st_size / 1e6:.1f} MB of at most {MOST_MB} MB")
     again = call("view", fp3, "-o", "again.html")
     expect(again.returncode == 0 and (folder / "again.html").read_bytes() == page.read_bytes(), "the same scenario gives the same bytes")
-    if not browser:
+    if not chromium.found():
         print("no chromium here; Debian's chromium runs the pages")
         return 77 if not failures else 1
+    browser = chromium.Browser()
+    try:
+        pages(call, browser, top, folder, page, judges=sys.argv[3:] == ["frames"])
+    finally:
+        browser.close()
+    return 1 if failures else 0
 
-    report, _ = report_of(browser, page)
+
+def pages(call, browser, top, folder, page, judges):
+    fp3, lumped = top / "scenarios/fp3_spindle.yaml", top / "scenarios/first_machine.yaml"
+    report, _ = report_of(browser, page, FRAMES if judges else FEW_FRAMES)
     for cyclogram in ["chaotic", "heat_cool_1000"]:
         call("predict", fp3, "--cyclogram", cyclogram, "-o", cyclogram)
         K, um = farthest(report["cyclograms"][cyclogram], record_of(folder / cyclogram / "record.csv"))
@@ -107,7 +118,7 @@ def check(program, top, browser, folder):
         told = peak_after(summary, name)
         most = max(map(abs, left))
         expect(abs(most - told) <= 0.1, f"FP3, {name}: the correction leaves {most:.2f} um; run says {told:.2f}")
-    measure_frames(browser, page, report["frames"], judges=sys.argv[3:] == ["frames"])
+    measure_frames(browser, page, report["frames"], judges)
     expect(0.1 < report["picture"]["covered"] < 0.9, f"the picture: {report['picture']}")
 
     # Oil, preload and a chiller: compared with `predict` at tolerances so tight that its chiller switches at the same times.
@@ -120,7 +131,7 @@ def check(program, top, browser, folder):
         name = scenario.stem
         done = call("view", scenario, "-o", f"{name}.html")
         expect(done.returncode == 0, f"view {name}: {done.stderr.strip()[-300:]}")
-        report, _ = report_of(browser, folder / f"{name}.html")
+        report, _ = report_of(browser, folder / f"{name}.html", FEW_FRAMES)
         for cyclogram in [first] if first else list(report["cyclograms"])[:2]:
             call("predict", scenario, "--cyclogram", cyclogram, "-o", f"{name}-{cyclogram}")
             K, um = farthest(report["cyclograms"][cyclogram], record_of(folder / f"{name}-{cyclogram}/record.csv"))
@@ -133,7 +144,7 @@ def check(program, top, browser, folder):
     for name in ("plain", "learned"):
         done = call("view", f"{name}.yaml", "-o", f"{name}.html")
         expect(done.returncode == 0 and ("what was learned" in done.stdout) == (name == "learned"), f"view {name}: {done.stdout} {done.stderr.strip()[-300:]}")
-    report, _ = report_of(browser, folder / "learned.html")
+    report, _ = report_of(browser, folder / "learned.html", FEW_FRAMES)
     expect(report["differences"]["um"] <= MOST_UM, f"what the page of a learned machine says of itself: {report['differences']}")
     bands = [re.search(r'"band":\{.*?"high":"([^"]*)"', (folder / f"{name}.html").read_text()) for name in ("plain", "learned")]
     expect(all(bands) and bands[0][1] == bands[1][1], "its band is about its own curve")
@@ -146,12 +157,13 @@ def check(program, top, browser, folder):
     (folder / hostile).write_text(HOSTILE)
     done = call("view", hostile, "-o", "hostile.html")
     expect(done.returncode == 0, f"view of hostile names: {done.stderr.strip()[-300:]}")
-    report, dom = report_of(browser, folder / "hostile.html")
+    _, dom = report_of(browser, folder / "hostile.html", FEW_FRAMES, also="document.documentElement.outerHTML")
     expect("<title>hostile</title>" in dom and dom.count("<script") == 2 and "<img" not in dom and "&lt;img" in dom, "names of the scenario do not break out of the page")
 
-    browse(browser, page, "--window-size=1200,1400", f"--screenshot={folder}/fp3.png", f"file://{page}")
-    expect((folder / "fp3.png").exists() and (folder / "fp3.png").stat().st_size > 60e3, "a screenshot of the page is no empty one")
-    return 1 if failures else 0
+    tab = browser.open(f"file://{page}", 1200, 1400)
+    tab.wait("window.page && page.scene && document.readyState === 'complete'")
+    tab.screenshot(folder / "fp3.png")
+    expect((folder / "fp3.png").stat().st_size > 60e3, "a screenshot of the page is no empty one")
 
 
 def measure_frames(browser, page, first, judges):

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "solver/heat_assembly.hpp"
@@ -205,7 +206,11 @@ struct T4 {
   mesh::Mesh mesh;
   Eigen::VectorXd t_C;
 };
-T4 t4_solution(CellShape shape, int n_per_0_2_m) {
+/// Each is solved once for all tests.
+const T4& t4_solution(CellShape shape, int n_per_0_2_m) {
+  static std::map<std::pair<CellShape, int>, T4> all;
+  const auto [at, is_new] = all.try_emplace({shape, n_per_0_2_m});
+  if (!is_new) return at->second;
   const int n = n_per_0_2_m;
   mesh::Mesh mesh =
       fixtures::box_mesh({.size_m = {kT4Width_m, kT4Height_m, 0.2 / n}, .n = {3 * n, 5 * n, 1}, .shape = shape});
@@ -217,10 +222,10 @@ T4 t4_solution(CellShape shape, int n_per_0_2_m) {
   balance.exchanges.push_back(film("y1", kT4Film_W_m2K));
   const FullSystem system = assemble_heat(mesh, {m}, balance, 273.15);
   Eigen::VectorXd t_C = steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
-  return {std::move(mesh), std::move(t_C)};
+  return at->second = {std::move(mesh), std::move(t_C)};
 }
 double t4_temperature_C(CellShape shape, int n) {
-  const T4 solution = t4_solution(shape, n);
+  const T4& solution = t4_solution(shape, n);
   return solution.t_C[fixtures::node_at(solution.mesh, {0.6, 0.2, 0.0})];
 }
 
@@ -259,7 +264,7 @@ TEST_P(NafemsOnEachCell, CornerOfNafemsT4LimitsTheL2ErrorToSecondOrder) {
   // h^2 sqrt(ln(1/h)), for quadratic cells too, which show 3 where solutions are smooth (heat_test).
   std::vector<double> h_m, error;
   for (int n : {8, 16}) {
-    const T4 solution = t4_solution(GetParam(), n);
+    const T4& solution = t4_solution(GetParam(), n);
     h_m.push_back(0.2 / n);
     // Over the root of the volume: a root mean square in kelvin.
     error.push_back(
