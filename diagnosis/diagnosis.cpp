@@ -207,7 +207,7 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
                    "its own, is "
                    "found again without the last third of the record, and does not worsen the prediction of this third"};
   Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
-  numbers_as_written.set_noise(fitter.noise(), fitter.shared_noise());
+  numbers_as_written.set_noise(fitter.noise());
   d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
   d.holdout = alone.how;
   d.gain = alone.channels;
@@ -343,7 +343,6 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.search = std::move(own.search);
   d.statements = d.search.statements;
   d.unexplained = std::move(own.unexplained);
-  d.wander = std::move(own.wander);
   d.weighed_by_model_error = own.weighed_by_model_error;
   d.moved = std::move(own.moved);
   std::vector<double> known_to;

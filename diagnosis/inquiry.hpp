@@ -1,5 +1,5 @@
 #pragma once
-// What some rows of the records say by themselves: noise, process noise, causes, numbers that have gone too far. Of all rows
+// What some rows of the records say by themselves: noise, causes, numbers that have gone too far. Of all rows
 // it is what a diagnosis says; without some of them it is what would have been said had they never been read, so that they
 // can judge it.
 
@@ -24,7 +24,6 @@ struct InquiryGround {
 struct Inquiry {
   std::map<std::string, NoiseModel> noise;
   bool weighed_by_model_error = false;
-  std::optional<HeatWander> wander;
   std::vector<std::size_t>
       moved;  ///< of scatter: numbers that have gone so far that they are causes; their priors are those of faults
   std::unique_ptr<Fitter> fitter;  ///< settled where the search ended, with its noise and those priors

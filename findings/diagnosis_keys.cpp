@@ -145,15 +145,7 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        sometimes(number("unexplained.ambient_off_K",
                         "how far off its record an ambient is fitted beside the causes, where that is more than 1 K")),
        sometimes(count("unexplained.statement", "of `statements`, counted from 0: that the catalogue has no name for")),
-       sometimes(text("unexplained.statement_in_words", "the same")),
-       or_null(object("process_noise", "where the model errs more than three times the noise")),
-       number("process_noise.stays_alike_min", "time for which the heat stays alike [min]"),
-       sometimes(flag("process_noise.at_most", "true where that time is the shortest of those tried")),
-       sometimes(flag("process_noise.at_least", "true where it is the longest of them")),
-       object("process_noise.bodies[]"),
-       text("process_noise.bodies[].where", "body"),
-       number("process_noise.bodies[].standard_deviation_W", "of heat that comes and goes [W]"),
-       number("process_noise.bodies[].share", "of what all of it does to the readings")});
+       sometimes(text("unexplained.statement_in_words", "the same"))});
 }
 
 void add_gain(std::vector<ResultKey>& keys) {
