@@ -172,15 +172,4 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
   return list;
 }
 
-std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list) {
-  std::set<std::string> silent;
-  for (const MeasuredRun& run : runs) {
-    if (std::all_of(run.channels.begin(), run.channels.end(), [](const auto& c) { return c.value.array().isNaN().all(); }))
-      silent.insert(run.name);
-  }
-  for (Candidate& c : list) std::erase_if(c.variants, [&](const Variant& v) { return silent.contains(v.in); });
-  std::erase_if(list, [](const Candidate& c) { return c.variants.empty(); });
-  return list;
-}
-
 }  // namespace driftwright::diagnosis

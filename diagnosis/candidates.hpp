@@ -50,11 +50,6 @@ struct Candidate {
 /// times.
 void add_events(std::vector<Candidate>& list, const std::vector<Event>& events, const std::set<std::string>& without);
 
-/// The candidates that the readings can show. One that exists or begins only in a run without readings looks, in the
-/// other runs, like one that is always there.
-/// @param runs  with NaN for readings that must not be used
-[[nodiscard]] std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list);
-
 /// The knobs of a doubt: the first adds its effects to a state, the others change numbers of those effects.
 [[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);
 

@@ -23,9 +23,6 @@ namespace {
 
 const double kSureOdds = std::log(kSure / (1.0 - kSure));  // for a number that moved too far [nats]
 constexpr double kWrongAmbient_K = 1.0;                    // offset above which an ambient is wrong; thrice its prior
-constexpr double kMostWork = 2e7;                          // largest cost of repeated searches, about ten seconds
-constexpr double kSmallMachine = 15.0;                     // states, below which a prediction has constant cost
-constexpr double kNotLinear = 6.0;                         // cost relative to a linear machine
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -204,8 +201,7 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
                .causes_alone = true,
                .why_nothing =
                    "for a single record with an unexplained rest, a cause is written only if it has 20 nats, has no time of "
-                   "its own, is "
-                   "found again without the last third of the record, and does not worsen the prediction of this third"};
+                   "its own, and does not worsen the prediction of the last third of the record"};
   Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
   numbers_as_written.set_noise(fitter.noise());
   d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
@@ -232,14 +228,6 @@ void leave_incomplete(Diagnosis& d, const std::string& stage) {
   if (d.verdict == Verdict::kNamed || d.verdict == Verdict::kAmbiguous) d.verdict = Verdict::kSuspected;
   d.reason = fmt::format("Ended at \"{}\", before it was complete. {}", stage,
                          d.causes.empty() ? "No cause was found so far." : "So far: " + reason_of(d));
-}
-
-/// Laws times readings times records times the cost of a prediction: the time of one search without each record.
-double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
-  const auto& system = fitter.twin().machine().system;
-  const double size = std::max(1.0, system.size() / kSmallMachine) * (system.is_linear() ? 1.0 : kNotLinear);
-  return static_cast<double>(laws_of(list).size()) * static_cast<double>(fitter.comparison().n()) *
-         static_cast<double>(fitter.runs().size()) * size;
 }
 
 /// The causes that the search found, with intervals, and what cannot be distinguished from them.
@@ -281,11 +269,11 @@ void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
 }
 
 /// Where something is left that nothing explains: writes only what holds nevertheless.
-void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs, const HeldOut& held,
+void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs,
                 Twin::Workspace& workspace, const Listener& listener) {
   if (runs.size() == 1) {
     const std::optional<CausesAlone> alone =
-        listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
+        listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise);
     if (alone) {
       write_alone(d, *alone, fitter, workspace, listener);
     } else if (d.written.keeps_numbers) {
@@ -337,7 +325,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
                              .candidates = standing,
                              .fresh = fresh,
                              .as_written = d.as_written};
-  Inquiry own = inquire(ground, runs, true, listener);
+  Inquiry own = inquire(ground, runs, listener);
   const Fitter& fitter = *own.fitter;
   d.noise = std::move(own.noise);
   d.search = std::move(own.search);
@@ -348,7 +336,6 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.scatter = fitter.scatter();  // with priors of faults for numbers that moved too far
-  const std::vector<Candidate>& list = d.search.candidates;
   d.n_candidates = static_cast<int>(standing.size());
   if (const auto nameless = without_name(fitter, d.search, d.statements, d.noise)) {
     if (!d.unexplained) d.unexplained = nameless;
@@ -356,14 +343,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   add_causes_found(d, fitter, listener);
   listener.begin("measuring the gain");
-  SearchAgain search_again;
-  if (search_work(fitter, list) <= kMostWork) {
-    search_again = [&](const std::vector<MeasuredRun>& fitted) {
-      listener.begin("searching again without a record");
-      return inquire(ground, fitted, false, listener.within()).search;
-    };
-  }
-  const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again, listener);
+  const HeldOut held = held_out_gain(fitter, d.search, d.noise, listener);
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended =
       d.written.keeps_numbers ? fitter.predict_machine(d.written.hypothesis, d.written.fit.x, workspace) : d.as_written;
@@ -386,7 +366,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
   }
   if (d.verdict == Verdict::kUnexplained) doubt_all(d, "more is left than it explains");
-  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) write_less(d, fitter, runs, held, workspace, listener);
+  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) write_less(d, fitter, runs, workspace, listener);
   add_experiment(d, fitter, listener);
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)

@@ -52,7 +52,6 @@ struct Cause {
   /// its place within the kind.
   double share = 1.0;
   Odds odds = {};
-  int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and how many of them found it again
   std::string own = {};             ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
 };
 
@@ -86,17 +85,16 @@ struct ChannelGain {
   /// RMSE over all rows of all records, to which the numbers were fitted: of the scenario as written, and of the written
   /// file; NaN if that was not simulated.
   double rmse_all_before = 0.0, rmse_written = 0.0;
-  /// On kept-out rows as rmse_after: with the named causes and the scenario's numbers fitted with them; and with what the
-  /// searches without these rows found, whether it is written or not, so that these rows had no influence. NaN if there
-  /// is none.
-  double rmse_named = std::numeric_limits<double>::quiet_NaN(), rmse_found = std::numeric_limits<double>::quiet_NaN();
+  /// On kept-out rows as rmse_after: with the named causes and the scenario's numbers fitted with them. NaN if there are
+  /// none.
+  double rmse_named = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Root mean squares of kept-out errors divided by the noise of their channels, over all channels; the same versions as
 /// in ChannelGain.
 struct KeptOutMisses {
   double as_written = 0.0, calibrated = 0.0, extended = 0.0;
-  double named = std::numeric_limits<double>::quiet_NaN(), found = std::numeric_limits<double>::quiet_NaN();
+  double named = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The part of the residual that no candidate explains.

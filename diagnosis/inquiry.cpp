@@ -138,10 +138,10 @@ Fitter begun(Diagnosis& d, const Twin& twin, const Twin* coarse, const std::vect
   return fresh;
 }
 
-Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {
+Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Listener& listener) {
   const DiagnosisOptions& options = ground.options;
   Inquiry of;
-  const std::vector<Candidate> names = told_of_by(runs, ground.candidates);
+  const std::vector<Candidate>& names = ground.candidates;
   const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->hold_within(kTooFar);
@@ -171,17 +171,13 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   }
   Twin::Workspace workspace(ground.twin);
   const auto rough = listener.wants_end() ? std::nullopt : models_own_error(runs, of.search.fit.prediction, of.noise);
-  if (of_all || rough) {
-    listener.begin("looking at what is left");
-    of.unexplained = what_is_left(ground, runs, of, workspace);
-  }
+  listener.begin("looking at what is left");
+  of.unexplained = what_is_left(ground, runs, of, workspace);
   if (of.unexplained && rough) {
     weigh_by_model_error(ground, runs, names, how, *rough, of, listener);
     if (auto left = unexplained_of(*of.fitter, of.search, of.noise)) of.unexplained = std::move(left);
   }
-  if (of_all && !listener.wants_end()) {
-    weigh_findings(*of.fitter, how, of.search, listener);
-  }
+  if (!listener.wants_end()) weigh_findings(*of.fitter, how, of.search, listener);
   return of;
 }
 

@@ -12,7 +12,6 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kSureCause = 20.0;  // nats, with which no smaller rest matters
-constexpr int kSomeSearches = 2;
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
 constexpr double kOpenWidth = 100.0;
@@ -89,14 +88,6 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
            return std::any_of(d.scatter.begin(), d.scatter.end(),
                               [&](const Knob& k) { return k.in.empty() && k.effect == c.effect && k.where == c.where; });
          });
-}
-
-/// Whether a claim beside a stronger one was found in none of several searches without a part of the rows: then it is
-/// only an error of the stronger one in these rows.
-bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
-  if (held.n_searched < kSomeSearches || held.n_again[claim] > 0) return false;
-  return std::any_of(d.search.findings.begin(), d.search.findings.end(),
-                     [&](const Finding& f) { return f.log_evidence_gain > d.search.findings[claim].log_evidence_gain; });
 }
 
 }  // namespace
@@ -192,15 +183,11 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
     const Finding& finding = d.search.findings[c];
-    cause.n_searched = held.n_searched;
-    if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (!finding.is_named) {
       cause.doubt = fmt::format("its statement has a probability of {:.0f} %", 100.0 * finding.probability);
       continue;
     }
     cause.doubt = held.doubt[c];
-    if (cause.doubt.empty() && is_found_once(d, c, held))
-      cause.doubt = "it was found only together with a stronger cause, and no search without a part of the rows found it";
     if (cause.doubt.empty() && is_size_open(cause))
       cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;

@@ -91,8 +91,8 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
       .title = "The same with other models on these rows, and over all rows",
       .caption =
           "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
-          "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers; "
-          "found: what the searches without these rows found, whatever of it is written. Extended is no worse than as "
+          "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers. "
+          "Extended is no worse than as "
           "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
           "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
           "to which its numbers were fitted.",
@@ -103,7 +103,6 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
                                    {"rmse_calibrated", "scatter alone"},
                                    {"rmse_named", "named causes"},
                                    {"rmse_after", "extended"},
-                                   {"rmse_found", "found"},
                                    {"rmse_regression_drive", "regression"},
                                    {"rmse_regression_readings", "with thermometers"},
                                    {"noise_floor", "noise floor"},
@@ -115,7 +114,7 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
     full.columns.push_back({.title = title, .digits = kNumbersDigits});
   }
   for (const auto& g : d.gain)
-    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_found,
+    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after,
                           g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
                           g.rmse_written});
   full.rows = table.rows;
@@ -125,8 +124,7 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
   for (const auto& [key, over_noise] : {std::pair{"over_noise.as_written", d.misses.as_written},
                                         {"over_noise.calibrated", d.misses.calibrated},
                                         {"over_noise.named", d.misses.named},
-                                        {"over_noise.extended", d.misses.extended},
-                                        {"over_noise.found", d.misses.found}})
+                                        {"over_noise.extended", d.misses.extended}})
     add(section, Value{.key = key, .datum = over_noise});
   const bool numbers_stay =
       std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return !e.is_written; });
