@@ -55,30 +55,14 @@ bool widen_moved(Inquiry& of) {
   return any;
 }
 
-/// A number that is back within its limit, beside the other faults, is no fault: it gets the scenario's prior again.
-/// @param known  with the scenario's priors. @returns  whether there are any
-bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
-  return std::erase_if(of.moved, [&](std::size_t i) {
-           const double sd = known[i].prior_sd;
-           const bool is_back = std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) < kTooFar * sd;
-           if (is_back) of.fitter->set_prior_sd(i, sd);
-           return is_back;
-         }) > 0;
-}
-
 /// Searches; as long as further numbers turn out to be faults, searches once more with these numbers free.
 void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
-                         const std::vector<Knob>& known, const Listener& listener) {
+                         const Listener& listener) {
   of.search = search(*of.fitter, names, how, &of.search, listener);
   while (widen_moved(of)) {  // each turn frees one number at least
     if (listener.wants_end()) return;
     of.search = search(*of.fitter, names, how, &of.search, listener);
   }
-  if (!narrow_returned(of, known)) return;
-  Twin::Workspace workspace(of.fitter->twin());
-  of.fitter->settle(of.search.hypothesis, of.search.fit);
-  of.search.fit = of.fitter->fit(of.search.hypothesis, of.search.fit.claim_x(of.fitter->n_nuisance()), workspace);
-  (void)has_solution([&] { of.search.without = of.fitter->fit({}, Eigen::VectorXd(0), workspace); });
 }
 
 /// Searches again with the model's error as slow noise of its channels.
@@ -90,7 +74,7 @@ void weigh_by_model_error(const InquiryGround& ground, const std::vector<Measure
   of.fitter->hold_within(kTooFar);
   of.moved.clear();
   of.fitter->set_noise(rough);
-  search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
+  search_beside_moved(of, names, how, listener);
   of.weighed_by_model_error = true;
 }
 
@@ -156,7 +140,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   });
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
+    search_beside_moved(of, names, how, listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       const NoiseModel& before = of.noise.at(s.first);
