@@ -8,7 +8,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostRounds = 6;
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
@@ -20,16 +19,6 @@ constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr int kLeastLaws = 2;             // of a candidate that are fitted in a claim's place
 constexpr std::size_t kFitsTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
-
-/// Whether one of a fit's last claims is a factor so close to one that it changes nothing in practice.
-bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
-  Eigen::Index at = fit.x.size();
-  for (auto claim = last.rbegin(); claim != last.rend() && fit.x.size() > 0; ++claim) {
-    at -= static_cast<Eigen::Index>(claim->knobs.size());
-    if (claim->knobs[0].scale == Knob::Scale::kLog && std::abs(fit.x[at]) < kLeastFactor) return true;
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -145,7 +134,6 @@ struct Trials {
   }
   /// Best first, one law per candidate.
   [[nodiscard]] std::vector<FittedClaim> best_first() && {
-    std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
     const auto value = [&](const FittedClaim& f) {
       return f.fit.log_evidence - law_price(ground.candidates[f.claim.candidate]);
     };
