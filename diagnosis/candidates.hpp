@@ -26,7 +26,6 @@ struct Variant {
   std::string in = {};             ///< run in which it exists or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
       {};                 ///< doubt that it was made of, if that can be limited to some records
-  std::string adds = {};  ///< keys of the effects that it adds to the machine
 };
 
 /// A doubt as a law of a candidate.

@@ -151,8 +151,7 @@ struct Trials {
 /// The names of one place that are not fitted yet.
 class NamesOfPlace {
  public:
-  NamesOfPlace(const Ground::OfPlace& stated, const std::vector<Candidate>& candidates)
-      : stated_(stated), candidates_(candidates) {}
+  explicit NamesOfPlace(const Ground::OfPlace& stated) : stated_(stated) {}
   void add(const Score& law) { left_.push_back(law); }  ///< best first
   [[nodiscard]] bool is_open() const { return next() != left_.end(); }
   [[nodiscard]] double quotient() const { return stated_.probability / static_cast<double>(n_taken_ + 1); }
@@ -161,42 +160,22 @@ class NamesOfPlace {
     Score taken = *law;
     left_.erase(law);
     ++n_taken_;
-    ++let_down_[family_of(taken.candidate, taken.variant)];  // until it is fitted
     return taken;
   }
-  /// @param hoped  the law's score in linear theory. @param gain  of its full fit. @param must_bring  gain above which the
-  ///               law is the stated one
-  void learn(const Score& hoped, double gain, double must_bring) {
+  /// @param gain  of a law's full fit. @param must_bring  gain above which the law is the stated one
+  void learn(double gain, double must_bring) {
     best_ = std::max(best_, gain);
     answered_ = answered_ || gain > must_bring;
-    if (gain > kHopeless * hoped.gain) --let_down_[family_of(hoped.candidate, hoped.variant)];
   }
 
  private:
-  /// Laws of a candidate that add the same effect to the machine, at any time and in any record.
-  using Family = std::pair<std::size_t, std::string>;
-  [[nodiscard]] Family family_of(std::size_t candidate, std::size_t variant) const {
-    return {candidate, candidates_[candidate].variants[variant].adds};
-  }
-  /// The likeliest law by linear theory, among the families in which linear theory was wrong least often.
+  /// The likeliest law by linear theory.
   [[nodiscard]] std::vector<Score>::const_iterator next() const {
-    const auto n_let_down = [&](const Score& law) {
-      const auto n = let_down_.find(family_of(law.candidate, law.variant));
-      return n == let_down_.end() ? 0 : n->second;
-    };
-    auto first = left_.end();
-    int least = 0;
-    for (auto law = left_.begin(); law != left_.end(); ++law) {
-      if (answered_ && !(law->gain > kHopeless * best_ - kHope)) continue;
-      const int n = n_let_down(*law);
-      if (first == left_.end() || n < least) first = law, least = n;
-    }
-    return first;
+    return std::find_if(left_.begin(), left_.end(),
+                        [&](const Score& law) { return !answered_ || law.gain > kHopeless * best_ - kHope; });
   }
   Ground::OfPlace stated_;
-  const std::vector<Candidate>& candidates_;
   std::vector<Score> left_;
-  std::map<Family, int> let_down_;
   std::size_t n_taken_ = 0;
   double best_ = 0.0;
   bool answered_ = false;
@@ -217,7 +196,7 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
     if (ground.candidates[s.candidate].variants[s.variant].all_or_nothing) continue;
     const StatedPlace& name = ground.names[s.candidate];
     const auto stated = ground.of_place.find(name);
-    if (stated != ground.of_place.end()) places.try_emplace(name, stated->second, ground.candidates).first->second.add(s);
+    if (stated != ground.of_place.end()) places.try_emplace(name, stated->second).first->second.add(s);
   }
   for (int n_tried = 0; n_tried < n && !listener.wants_end();) {
     listener.share(static_cast<double>(n_tried) / n);
@@ -238,7 +217,7 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
                                   [&](const FittedClaim& done) {
                                     return done.claim.candidate == law.candidate && done.claim.variant == law.variant;
                                   });
-      places.at(ground.names[law.candidate]).learn(law, trials.gain(*f), trials.must_bring(law.candidate));
+      places.at(ground.names[law.candidate]).learn(trials.gain(*f), trials.must_bring(law.candidate));
     }
   }
   return std::move(trials).best_first();
