@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kMostRounds = 6;
 constexpr double kSettled = 0.05;  // of Φ
-constexpr int kMostTurnsOfRival = 3;
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
@@ -267,18 +266,6 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
     Fit again = fit_one(fitter, hypothesis, fit.claim_x(fitter.n_nuisance()));
     if (again.prediction.empty()) return;  // the last fit is kept
     const double gained = fit.misfit - again.misfit;
-    fit = std::move(again);
-    if (gained < kSettled) return;
-  }
-}
-
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
-  Twin::Workspace workspace(fitter.twin());
-  for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
-    Fit again;
-    if (!has_solution([&] { again = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); })) return;
-    const double gained = fit.misfit - again.misfit;
-    if (!(gained > 0.0)) return;
     fit = std::move(again);
     if (gained < kSettled) return;
   }

@@ -142,9 +142,6 @@ struct Worth {
 /// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be
 /// credited to the next claim.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
-/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes
-/// computed elsewhere must be no disadvantage.
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
 /// The odds of one statement in addition to some claims.
 [[nodiscard]] StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_claims, double explained);
 

@@ -11,7 +11,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNearBest = 12.0;    // nats: what fits on may make up for
 constexpr double kSame = 6.0;         // squares of whitened readings: what noise makes of two numbers more, at 95 %
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
 
@@ -111,7 +110,6 @@ InItsPlace find_rivals(const Ground& ground, const Worth& worth, const SearchRes
   for (FittedClaim& f : fit_instead(ground, others, fit, worth.options.refits, nullptr, listener)) {
     if (f.claim.candidate == claim.candidate) continue;
     const Hypothesis instead = with(others, f.claim);
-    if (worth.evidence(candidates, f.fit, instead) > best_value - kNearBest) fit_on(ground.fitter, instead, f.fit);
     if (f.fit.prediction.empty()) continue;  // no solution near it
     in.full[f.claim.candidate] = f.fit.log_evidence - fit.log_evidence;
     const double value = worth.evidence(candidates, f.fit, instead);
