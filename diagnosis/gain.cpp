@@ -85,12 +85,6 @@ Subset kept_claims(Judge& judge, std::size_t n_claims) {
     if (best == kept) break;
     kept = best;
   }
-  // A claim that was removed because of another one returns if that one is removed, too.
-  for (std::size_t c = 0; c < n_claims; ++c) {
-    const Subset with = kept | (1U << c);
-    if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
-      kept = with;
-  }
   return kept;
 }
 
