@@ -14,7 +14,6 @@ namespace {
 constexpr double kSureCause = 20.0;  // nats, with which no smaller rest matters
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
-constexpr double kOpenWidth = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases with one or two faults move at most one number; models with fewer bodies than the truth a dozen
 constexpr std::ptrdiff_t kMostPlaces = 4;  // most places that are listed by name
@@ -168,14 +167,6 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
-/// Whether only the sign of a cause's size is known.
-bool is_size_open(const Cause& cause) {
-  if (cause.parameters.empty()) return false;
-  const Estimate& size = cause.parameters.front();
-  const double least = std::min(std::abs(size.low), std::abs(size.high));
-  return size.low * size.high > 0.0 && std::max(std::abs(size.low), std::abs(size.high)) > kOpenWidth * least;
-}
-
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
@@ -188,8 +179,6 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
       continue;
     }
     cause.doubt = held.doubt[c];
-    if (cause.doubt.empty() && is_size_open(cause))
-      cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;
     cause.standing = cause.odds.kind >= kSure ? Standing::kNamed : Standing::kAmbiguous;
   }
