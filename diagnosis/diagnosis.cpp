@@ -22,7 +22,6 @@ namespace driftwright::diagnosis {
 namespace {
 
 const double kSureOdds = std::log(kSure / (1.0 - kSure));  // for a number that moved too far [nats]
-constexpr double kWrongAmbient_K = 1.0;                    // offset above which an ambient is wrong; thrice its prior
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -163,15 +162,6 @@ void write_nothing(Diagnosis& d, const std::string& why) {
   d.misses.extended = d.misses.as_written;
 }
 
-/// The largest offset of a record's ambient, as fitted with all causes.
-double largest_offset_K(const std::vector<Knob>& scatter, const Eigen::VectorXd& x) {
-  double largest_K = 0.0;
-  for (std::size_t i = 0; i < scatter.size(); ++i) {
-    if (!scatter[i].in.empty()) largest_K = std::max(largest_K, std::abs(scatter[i].value(x[static_cast<Eigen::Index>(i)])));
-  }
-  return largest_K;
-}
-
 /// Removes the certainty of every cause.
 void doubt_all(Diagnosis& d, const std::string& why) {
   for (Cause& c : d.causes) {
@@ -254,17 +244,13 @@ void add_causes_found(Diagnosis& d, const Fitter& fitter, const Listener& listen
   }
 }
 
-/// What kept-out records, and an ambient that is far off, say against the causes that are named.
+/// What kept-out records say against the causes that are named.
 void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
   if (is_any_named && held.fails) {
     if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
     d.unexplained->fails_held_out = true;
-  }
-  if (const double offset_K = largest_offset_K(d.scatter, d.search.fit.x); is_any_named && offset_K > kWrongAmbient_K) {
-    if (!d.unexplained && held.elsewhere_at) d.unexplained.emplace().channels.push_back(*held.elsewhere_at);
-    if (d.unexplained) d.unexplained->ambient_off_K = offset_K;
   }
 }
 

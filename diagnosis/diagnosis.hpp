@@ -109,7 +109,6 @@ struct Unexplained {
   std::optional<std::size_t>
       statement;                ///< index in Diagnosis::statements of the statement that has no name in the catalogue
   bool fails_held_out = false;  ///< the causes predict kept-out data worse than scatter alone
-  double ambient_off_K = 0.0;   ///< offset of the ambient record that the causes require; 0: it is small
 };
 
 struct Diagnosis {

@@ -161,10 +161,8 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   const double as_written = judge.squares_over_noise(models.written);
   if (judge.squares_over_noise(models.extended) > as_written) {
     held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
-  } else if (const auto elsewhere = judge.filed_elsewhere(kept);
-             judge.squares_over_noise(elsewhere) > kWorseForeseen * as_written) {
+  } else if (judge.squares_over_noise(judge.filed_elsewhere(kept)) > kWorseForeseen * as_written) {
     held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
-    held.elsewhere_at = worst_channel(judge, noise, elsewhere, models.written);
   }
   if (!held.why_nothing.empty()) models.extended = models.written;
   held.misses = misses_of(judge, models);

@@ -22,9 +22,6 @@ struct HeldOut {
   bool fails = false;  ///< the claims together predict kept-out rows clearly worse than no claim
   /// If they fail: the channel with the worst prediction, and the rest of its kept-out rows.
   Unexplained::Channel fails_at;
-  /// The same for the file to be written, without parts that belong to single records, if the scenario as written then
-  /// predicts better.
-  std::optional<Unexplained::Channel> elsewhere_at = {};
   std::string why_nothing = {};  ///< reason why neither causes nor fitted numbers are written, a clause; otherwise ""
 };
 

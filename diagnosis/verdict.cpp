@@ -93,7 +93,7 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
 
 bool is_more_left(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0) return true;
+  if (d.causes.empty() || d.unexplained->fails_held_out) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
@@ -150,11 +150,6 @@ std::string reason_of(const Diagnosis& d) {
       if (d.unexplained && d.unexplained->fails_held_out) {
         return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
                            in_words(d.unexplained->channels.front()), text);
-      }
-      if (d.unexplained && d.unexplained->ambient_off_K > 0.0) {
-        return fmt::format(
-            "What fits best needs an ambient that is {:.1f} K off its record, and something is left, most of all {}: {}.",
-            d.unexplained->ambient_off_K, in_words(d.unexplained->channels.front()), text);
       }
       if (d.unexplained->statement)
         return fmt::format("Something is missing that the catalogue has no name for: {}; beside it: {}.", statement_words(d),

@@ -139,8 +139,6 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        number("unexplained.channels[].sigmas", "beyond what noise would have, in standard deviations of that"),
        sometimes(
            flag("unexplained.fails_held_out", "true where the causes predict kept-out rows clearly worse than none does")),
-       sometimes(number("unexplained.ambient_off_K",
-                        "how far off its record an ambient is fitted beside the causes, where that is more than 1 K")),
        sometimes(count("unexplained.statement", "of `statements`, counted from 0: that the catalogue has no name for")),
        sometimes(text("unexplained.statement_in_words", "the same"))});
 }

@@ -71,7 +71,6 @@ Section unexplained_section(const diagnosis::Diagnosis& d) {
   for (const auto& c : u.channels) table.rows.push_back({c.name, c.rms, c.unit, c.times_noise});
   add(section, std::move(table));
   if (u.fails_held_out) put("fails_held_out", true);
-  if (u.ambient_off_K > 0.0) put("ambient_off_K", u.ambient_off_K);
   if (u.statement) {
     put("statement", static_cast<std::int64_t>(*u.statement));
     put("statement_in_words", diagnosis::words(d.statements.stated[*u.statement].says));
