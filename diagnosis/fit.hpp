@@ -86,18 +86,13 @@ class Fitter {
 
   /// Scatter's slopes of the last settle(); or recomputed where a fit has moved far.
   enum class Slopes { kKept, kTakenAnew };
-  /// @param start       x of the claims, in order; scatter starts where it was last settled
-  /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one
-  ///                    that has no solution
+  /// @param start  x of the claims, in order; scatter starts where it was last settled
   /// @throws SolveError  when the machine has no solution there
-  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
-                        double of_interest = kAny) const;
+  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
   /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its
   /// value
   [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                               Twin::Workspace& workspace, double of_interest = kAny,
-                               Slopes slopes = Slopes::kTakenAnew) const;
-  static constexpr double kAny = 1e300;
+                               Twin::Workspace& workspace, Slopes slopes = Slopes::kTakenAnew) const;
 
   /// Scatter and linear columns of the last settle().
   [[nodiscard]] const Eigen::VectorXd& settled() const { return nuisance_; }
@@ -159,7 +154,7 @@ class Fitter {
   const std::vector<MeasuredRun>& runs_;
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
-  double most_sigmas_ = kAny;
+  double most_sigmas_ = 1e300;
   std::map<std::string, NoiseModel> noise_;
   std::optional<Comparison> comparison_;
   Eigen::VectorXd nuisance_;             ///< where it was settled

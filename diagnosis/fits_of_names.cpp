@@ -22,14 +22,14 @@ constexpr std::size_t kMostKnown = 64;
 }  // namespace
 
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                         double of_interest, Fitter::Slopes slopes) {
+                         Fitter::Slopes slopes) {
   std::vector<Fit> fits(hypotheses.size());
   for_each_index(
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
         const auto& [hypothesis, start] = hypotheses[i];
         const auto fit = [&] {
-          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest, slopes);
+          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, slopes);
         };
         if (!has_solution(fit)) fits[i] = Fit{};  // a state without solution is no explanation
       });
@@ -99,7 +99,7 @@ struct Trials {
         hoped.push_back(s.gain);
       }
     }
-    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit, Fitter::Slopes::kKept);
+    std::vector<Fit> fits = fit_all(ground.fitter, jobs, Fitter::Slopes::kKept);
     for (std::size_t i = 0; i < jobs.size(); ++i)
       fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();

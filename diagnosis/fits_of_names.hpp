@@ -119,11 +119,9 @@ struct Worth {
   }
 };
 
-/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as
-/// Fitter::fit_others()
+/// Fits several hypotheses in parallel, each from a start of all numbers. @param slopes  as Fitter::fit_others()
 [[nodiscard]] std::vector<Fit> fit_all(const Fitter& fitter,
                                        const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                                       double of_interest = Fitter::kAny,
                                        Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew);
 /// Fits one hypothesis from the last settled scatter.
 [[nodiscard]] Fit fit_one(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims);
