@@ -25,7 +25,7 @@ struct Variant {
   bool seen = false;               ///< its times were chosen by these same readings: simulated records cannot test its odds
   std::string in = {};             ///< run in which it exists or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
-      {};                 ///< doubt that it was made of, if that can be limited to some records
+      {};  ///< doubt that it was made of, if that can be limited to some records
 };
 
 /// A doubt as a law of a candidate.

@@ -255,11 +255,10 @@ void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
 }
 
 /// Where something is left that nothing explains: writes only what holds nevertheless.
-void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs,
-                Twin::Workspace& workspace, const Listener& listener) {
+void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs, Twin::Workspace& workspace,
+                const Listener& listener) {
   if (runs.size() == 1) {
-    const std::optional<CausesAlone> alone =
-        listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise);
+    const std::optional<CausesAlone> alone = listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise);
     if (alone) {
       write_alone(d, *alone, fitter, workspace, listener);
     } else if (d.written.keeps_numbers) {

@@ -52,7 +52,7 @@ struct Cause {
   /// its place within the kind.
   double share = 1.0;
   Odds odds = {};
-  std::string own = {};             ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
+  std::string own = {};  ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
 };
 
 /// The content of extended.yaml: claims that predict kept-out rows better, and the scenario's own numbers as fitted with
@@ -121,8 +121,8 @@ struct Diagnosis {
   /// Causes, intervals and gains treat the model's error as noise, because it is far larger than the noise with any
   /// claim.
   bool weighed_by_model_error = false;
-  std::string ended_at;              ///< the step in which the user ended it; empty: it is complete
-  std::string holdout;               ///< how the gain was held out
+  std::string ended_at;  ///< the step in which the user ended it; empty: it is complete
+  std::string holdout;   ///< how the gain was held out
   std::vector<ChannelGain> gain;
   KeptOutMisses misses;
   std::vector<DataFinding> data;

@@ -100,7 +100,7 @@ class Fitter {
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
   [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
-  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }           ///< by channel
+  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
   [[nodiscard]] const Twin& twin() const { return twin_; }
   /// W f's slopes by scatter and linear columns.

@@ -9,7 +9,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kMostRounds = 6;
-constexpr double kSettled = 0.05;  // of Φ
+constexpr double kSettled = 0.05;          // of Φ
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
@@ -28,9 +28,7 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
         const auto& [hypothesis, start] = hypotheses[i];
-        const auto fit = [&] {
-          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, slopes);
-        };
+        const auto fit = [&] { fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, slopes); };
         if (!has_solution(fit)) fits[i] = Fit{};  // a state without solution is no explanation
       });
   return fits;

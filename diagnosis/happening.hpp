@@ -34,7 +34,7 @@ struct Happening {
   std::vector<std::pair<const MeasuredRun*, Times>> in = {};  ///< each run with windows
   /// Uncertainty of each begin and end [s], in the order of all windows: range that fits as well; empty: unknown.
   Times wide_s = {};
-  double size = 0.0;     ///< W, W/K or 1
+  double size = 0.0;  ///< W, W/K or 1
   double price_nats = 0.0;
 };
 

@@ -11,7 +11,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSureCause = 20.0;  // nats, with which no smaller rest matters
+constexpr double kSureCause = 20.0;   // nats, with which no smaller rest matters
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
 constexpr std::ptrdiff_t kManyMoved =

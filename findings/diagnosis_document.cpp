@@ -247,7 +247,7 @@ void add_judgement(Section& numbers, const DiagnosisFindings& found) {
   numbers.sections.push_back(gain_section(d, found.file, found.remainder));
 }
 
-/// What only an expert needs, folded: where the model errs, every channel of every record, ISO 230-3.
+/// What only an expert needs, folded: every channel of every record, ISO 230-3.
 /// @param after  name of Diagnosis::extended
 void add_evidence(Section& experts, const DiagnosisFindings& found, const std::string& after) {
   const diagnosis::Diagnosis& d = found.diagnosis;

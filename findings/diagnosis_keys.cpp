@@ -130,11 +130,9 @@ void add_unexplained(std::vector<ResultKey>& keys) {
       keys.end(),
       {or_null(object("unexplained", "what no candidate explains, more than noise")),
        number("unexplained.rms", "of the channel where it is greatest, in `unit`"),
-       text("unexplained.unit", "K, um or urad"),
-       text("unexplained.where", "that channel"),
+       text("unexplained.unit", "K, um or urad"), text("unexplained.where", "that channel"),
        object("unexplained.channels[]", "all in which it is visible, greatest first"),
-       text("unexplained.channels[].name", ""),
-       number("unexplained.channels[].rms", "in `unit`"),
+       text("unexplained.channels[].name", ""), number("unexplained.channels[].rms", "in `unit`"),
        text("unexplained.channels[].unit", "K, um or urad"),
        number("unexplained.channels[].sigmas", "beyond what noise would have, in standard deviations of that"),
        sometimes(

@@ -86,17 +86,16 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
                   "Root mean squares and peaks on rows that were kept out of the fit. Noise floor: the scatter of the "
                   "readings alone.",
               .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
-  Table full{
-      .title = "The same with other models on these rows, and over all rows",
-      .caption =
-          "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
-          "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers. "
-          "Extended is no worse than as "
-          "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
-          "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
-          "to which its numbers were fitted.",
-      .columns = {{.title = "channel"}, {.key = "unit", .title = "unit"}},
-      .detail = true};
+  Table full{.title = "The same with other models on these rows, and over all rows",
+             .caption =
+                 "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
+                 "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers. "
+                 "Extended is no worse than as "
+                 "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
+                 "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
+                 "to which its numbers were fitted.",
+             .columns = {{.title = "channel"}, {.key = "unit", .title = "unit"}},
+             .detail = true};
   const std::set<std::string> of_first_table = {"rmse_before", "rmse_after", "noise_floor", "peak_before", "peak_after"};
   for (const auto& [key, title] : {std::pair{"rmse_before", "as written"},
                                    {"rmse_calibrated", "scatter alone"},
@@ -113,8 +112,8 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
     full.columns.push_back({.title = title, .digits = kNumbersDigits});
   }
   for (const auto& g : d.gain)
-    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after,
-                          g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
+    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_of_drive,
+                          g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
                           g.rmse_written});
   full.rows = table.rows;
   add(section, std::move(table));

@@ -6,7 +6,7 @@
 
 #include "tests/shared/lumped_records.hpp"
 
-namespace driftwright::diagnosis::inquiry_test {
+namespace driftwright::diagnosis::leftover_test {
 namespace {
 
 constexpr const char* kBox = R"(name: box
@@ -31,7 +31,7 @@ constexpr double kNoise_K = 0.03;
 
 // A thermometer that bends away by 2 K in a parabola over its record, of which the last third is not known. Curves that
 // are fitted to two thirds say anything of the last one.
-TEST(TwoRecords, NothingIsLeftWhereThereIsNoReading) {
+TEST(Leftover, NothingIsLeftWhereThereIsNoReading) {
   const Beside beside(write_file("plain.yaml", kBox),
                       noisy_records(write_file("truth.yaml", kBox), "box_", {.noise_K = kNoise_K, .noise_um = 0.1}));
   std::vector<MeasuredRun> runs = beside.runs;
@@ -57,4 +57,4 @@ TEST(TwoRecords, NothingIsLeftWhereThereIsNoReading) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis::inquiry_test
+}  // namespace driftwright::diagnosis::leftover_test
