@@ -134,8 +134,6 @@ double law_price(const Candidate& candidate) {
 }
 
 Variant law_of(const effects::Doubt& doubt) {
-  std::string adds;
-  for (const effects::Effect& e : doubt.added) adds += e.kind->key + " ";
   Variant v{.law = doubt.when.empty() ? doubt.law : doubt.law + ", " + doubt.when,
             .knobs = knobs_of(doubt),
             .trial_x = doubt.trial,
@@ -143,8 +141,7 @@ Variant law_of(const effects::Doubt& doubt) {
             .at_speed_rpm = doubt.at_speed_rpm,
             .all_or_nothing = doubt.all_or_nothing,
             .price_nats = doubt.rarity + kFurtherNumber * static_cast<double>(doubt.numbers.size() - 1),
-            .in = doubt.added.front().in,
-            .adds = std::move(adds)};
+            .in = doubt.added.front().in};
   if (effects::can_be_of_some_runs(doubt)) v.of_some_runs = std::make_shared<const effects::Doubt>(doubt);
   return v;
 }
@@ -169,17 +166,6 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     }
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
-  return list;
-}
-
-std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list) {
-  std::set<std::string> silent;
-  for (const MeasuredRun& run : runs) {
-    if (std::all_of(run.channels.begin(), run.channels.end(), [](const auto& c) { return c.value.array().isNaN().all(); }))
-      silent.insert(run.name);
-  }
-  for (Candidate& c : list) std::erase_if(c.variants, [&](const Variant& v) { return silent.contains(v.in); });
-  std::erase_if(list, [](const Candidate& c) { return c.variants.empty(); });
   return list;
 }
 

@@ -25,8 +25,7 @@ struct Variant {
   bool seen = false;               ///< its times were chosen by these same readings: simulated records cannot test its odds
   std::string in = {};             ///< run in which it exists or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
-      {};                 ///< doubt that it was made of, if that can be limited to some records
-  std::string adds = {};  ///< keys of the effects that it adds to the machine
+      {};  ///< doubt that it was made of, if that can be limited to some records
 };
 
 /// A doubt as a law of a candidate.
@@ -49,11 +48,6 @@ struct Candidate {
 /// Adds windows that were found as further laws of temporary heat or exchange, and stops of the spindle at the same
 /// times.
 void add_events(std::vector<Candidate>& list, const std::vector<Event>& events, const std::set<std::string>& without);
-
-/// The candidates that the readings can show. One that exists or begins only in a run without readings looks, in the
-/// other runs, like one that is always there.
-/// @param runs  with NaN for readings that must not be used
-[[nodiscard]] std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list);
 
 /// The knobs of a doubt: the first adds its effects to a state, the others change numbers of those effects.
 [[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);

@@ -15,21 +15,19 @@ constexpr double kStrong = 20.0;      // nats of a cause that may be written alo
 }  // namespace
 
 std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult& result,
-                                        const std::map<std::string, NoiseModel>& noise, const HeldOut& held) {
-  if (fitter.runs().size() != 1 || held.n_searched == 0) return std::nullopt;
+                                        const std::map<std::string, NoiseModel>& noise) {
+  if (fitter.runs().size() != 1) return std::nullopt;
   std::vector<std::size_t> strong;  // the strongest first
   for (std::size_t c = 0; c < result.findings.size(); ++c) {
     // An event of this record says nothing about another one.
-    if (result.findings[c].log_evidence_gain >= kStrong && held.n_again[c] == held.n_searched &&
-        !has_time(result.hypothesis[c]))
-      strong.push_back(c);
+    if (result.findings[c].log_evidence_gain >= kStrong && !has_time(result.hypothesis[c])) strong.push_back(c);
   }
   std::stable_sort(strong.begin(), strong.end(), [&](std::size_t a, std::size_t b) {
     return result.findings[a].log_evidence_gain > result.findings[b].log_evidence_gain;
   });
   Fold ahead = ahead_of(fitter.runs());
   Fitter whole(fitter.twin(), fitter.runs(), {}, {});
-  whole.set_noise(fitter.noise(), fitter.shared_noise());
+  whole.set_noise(fitter.noise());
   const Fitter part(whole, ahead.fitted);
   Judge judge(fitter, result, noise, {ahead});
   const std::vector<Prediction> written = judge.written();

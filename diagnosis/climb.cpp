@@ -14,10 +14,6 @@ constexpr double kConverged = 0.02;  // decrease of Φ below which a fit has con
 constexpr double kFar = 2.0;         // distance in sigmas after which scatter's slopes are recomputed
 constexpr double kPromised = 1.0;    // decrease of Φ that the slopes predicted but that did not happen
 constexpr int kMostRetakes = 3;
-constexpr int kPatience = 5;           // after this number of steps a fit is given up if its misfit is
-constexpr double kOutOfReach = 3.0;    // this many times the misfit of interest,
-constexpr double kOutOfReachBy = 100;  // larger by this difference,
-constexpr double kFallen = 0.7;        // and has not fallen to this share in three steps
 
 /// Solves H s = g within bounds of the first numbers of x: a number whose step would pass its bound ends there, and the
 /// others are solved again.
@@ -56,8 +52,8 @@ class Fitter::Climb {
   /// @throws SolveError  when the machine has no solution at the start
   Climb(const Fitter& fitter, const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held,
         Twin::Workspace& workspace, Slopes slopes);
-  /// The fit at the least Φ; an empty one where it was given up.
-  Fit best(double of_interest);
+  /// The fit at the least Φ.
+  Fit best();
 
  private:
   struct Direction {
@@ -305,8 +301,7 @@ void Fitter::Climb::weigh() {
   }
 }
 
-Fit Fitter::Climb::best(double of_interest) {
-  std::vector<double> passed;  // misfits
+Fit Fitter::Climb::best() {
   double searched_at = 1e300;  // misfit at which no other time was better
   const bool search_times = std::any_of(knobs_.begin(), knobs_.end(), [](const Knob* k) { return k->is_time; });
   // Times are fixed during the first step: linear theory chose them together with moves of all other numbers, and before
@@ -322,10 +317,6 @@ Fit Fitter::Climb::best(double of_interest) {
       move_times();
       searched_at = f_.misfit < unsearched ? 1e300 : f_.misfit;
     }
-    passed.push_back(f_.misfit);
-    if (iteration >= kPatience && f_.misfit > kOutOfReach * of_interest + kOutOfReachBy &&
-        f_.misfit > kFallen * passed[passed.size() - 4])
-      return {};
     if (!times_wait && before - f_.misfit < kConverged && !retake(0.5 * to.gradient.dot(to.step))) break;
   }
   differentiate(true);
@@ -333,16 +324,15 @@ Fit Fitter::Climb::best(double of_interest) {
   return std::move(f_);
 }
 
-Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
-                double of_interest) const {
+Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
   Eigen::VectorXd x(n_nuisance() + start.size());
   x << nuisance_, start;
-  return Climb(*this, hypothesis, std::move(x), -1, workspace, Slopes::kTakenAnew).best(of_interest);
+  return Climb(*this, hypothesis, std::move(x), -1, workspace, Slopes::kTakenAnew).best();
 }
 
 Fit Fitter::fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                       Twin::Workspace& workspace, double of_interest, Slopes slopes) const {
-  return Climb(*this, hypothesis, start, held, workspace, slopes).best(of_interest);
+                       Twin::Workspace& workspace, Slopes slopes) const {
+  return Climb(*this, hypothesis, start, held, workspace, slopes).best();
 }
 
 }  // namespace driftwright::diagnosis

@@ -22,10 +22,6 @@ namespace driftwright::diagnosis {
 namespace {
 
 const double kSureOdds = std::log(kSure / (1.0 - kSure));  // for a number that moved too far [nats]
-constexpr double kWrongAmbient_K = 1.0;                    // offset above which an ambient is wrong; thrice its prior
-constexpr double kMostWork = 2e7;                          // largest cost of repeated searches, about ten seconds
-constexpr double kSmallMachine = 15.0;                     // states, below which a prediction has constant cost
-constexpr double kNotLinear = 6.0;                         // cost relative to a linear machine
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -166,15 +162,6 @@ void write_nothing(Diagnosis& d, const std::string& why) {
   d.misses.extended = d.misses.as_written;
 }
 
-/// The largest offset of a record's ambient, as fitted with all causes.
-double largest_offset_K(const std::vector<Knob>& scatter, const Eigen::VectorXd& x) {
-  double largest_K = 0.0;
-  for (std::size_t i = 0; i < scatter.size(); ++i) {
-    if (!scatter[i].in.empty()) largest_K = std::max(largest_K, std::abs(scatter[i].value(x[static_cast<Eigen::Index>(i)])));
-  }
-  return largest_K;
-}
-
 /// Removes the certainty of every cause.
 void doubt_all(Diagnosis& d, const std::string& why) {
   for (Cause& c : d.causes) {
@@ -204,10 +191,9 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
                .causes_alone = true,
                .why_nothing =
                    "for a single record with an unexplained rest, a cause is written only if it has 20 nats, has no time of "
-                   "its own, is "
-                   "found again without the last third of the record, and does not worsen the prediction of this third"};
+                   "its own, and does not worsen the prediction of the last third of the record"};
   Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
-  numbers_as_written.set_noise(fitter.noise(), fitter.shared_noise());
+  numbers_as_written.set_noise(fitter.noise());
   d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
   d.holdout = alone.how;
   d.gain = alone.channels;
@@ -234,14 +220,6 @@ void leave_incomplete(Diagnosis& d, const std::string& stage) {
                          d.causes.empty() ? "No cause was found so far." : "So far: " + reason_of(d));
 }
 
-/// Laws times readings times records times the cost of a prediction: the time of one search without each record.
-double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
-  const auto& system = fitter.twin().machine().system;
-  const double size = std::max(1.0, system.size() / kSmallMachine) * (system.is_linear() ? 1.0 : kNotLinear);
-  return static_cast<double>(laws_of(list).size()) * static_cast<double>(fitter.comparison().n()) *
-         static_cast<double>(fitter.runs().size()) * size;
-}
-
 /// The causes that the search found, with intervals, and what cannot be distinguished from them.
 void add_causes_found(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
   const std::vector<Candidate>& list = d.search.candidates;
@@ -266,7 +244,7 @@ void add_causes_found(Diagnosis& d, const Fitter& fitter, const Listener& listen
   }
 }
 
-/// What kept-out records, and an ambient that is far off, say against the causes that are named.
+/// What kept-out records say against the causes that are named.
 void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
@@ -274,18 +252,13 @@ void doubt_by_kept_out(Diagnosis& d, const HeldOut& held) {
     if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
     d.unexplained->fails_held_out = true;
   }
-  if (const double offset_K = largest_offset_K(d.scatter, d.search.fit.x); is_any_named && offset_K > kWrongAmbient_K) {
-    if (!d.unexplained && held.elsewhere_at) d.unexplained.emplace().channels.push_back(*held.elsewhere_at);
-    if (d.unexplained) d.unexplained->ambient_off_K = offset_K;
-  }
 }
 
 /// Where something is left that nothing explains: writes only what holds nevertheless.
-void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs, const HeldOut& held,
-                Twin::Workspace& workspace, const Listener& listener) {
+void write_less(Diagnosis& d, const Fitter& fitter, const std::vector<MeasuredRun>& runs, Twin::Workspace& workspace,
+                const Listener& listener) {
   if (runs.size() == 1) {
-    const std::optional<CausesAlone> alone =
-        listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
+    const std::optional<CausesAlone> alone = listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise);
     if (alone) {
       write_alone(d, *alone, fitter, workspace, listener);
     } else if (d.written.keeps_numbers) {
@@ -337,19 +310,17 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
                              .candidates = standing,
                              .fresh = fresh,
                              .as_written = d.as_written};
-  Inquiry own = inquire(ground, runs, true, listener);
+  Inquiry own = inquire(ground, runs, listener);
   const Fitter& fitter = *own.fitter;
   d.noise = std::move(own.noise);
   d.search = std::move(own.search);
   d.statements = d.search.statements;
   d.unexplained = std::move(own.unexplained);
-  d.wander = std::move(own.wander);
   d.weighed_by_model_error = own.weighed_by_model_error;
   d.moved = std::move(own.moved);
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
   d.scatter = fitter.scatter();  // with priors of faults for numbers that moved too far
-  const std::vector<Candidate>& list = d.search.candidates;
   d.n_candidates = static_cast<int>(standing.size());
   if (const auto nameless = without_name(fitter, d.search, d.statements, d.noise)) {
     if (!d.unexplained) d.unexplained = nameless;
@@ -357,14 +328,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   add_causes_found(d, fitter, listener);
   listener.begin("measuring the gain");
-  SearchAgain search_again;
-  if (search_work(fitter, list) <= kMostWork) {
-    search_again = [&](const std::vector<MeasuredRun>& fitted) {
-      listener.begin("searching again without a record");
-      return inquire(ground, fitted, false, listener.within()).search;
-    };
-  }
-  const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again, listener);
+  const HeldOut held = held_out_gain(fitter, d.search, d.noise, listener);
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended =
       d.written.keeps_numbers ? fitter.predict_machine(d.written.hypothesis, d.written.fit.x, workspace) : d.as_written;
@@ -387,7 +351,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
   }
   if (d.verdict == Verdict::kUnexplained) doubt_all(d, "more is left than it explains");
-  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) write_less(d, fitter, runs, held, workspace, listener);
+  if (d.verdict != Verdict::kInsufficientData && is_more_left(d)) write_less(d, fitter, runs, workspace, listener);
   add_experiment(d, fitter, listener);
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "diagnosis/experiment.hpp"
-#include "diagnosis/heat_wander.hpp"
 #include "diagnosis/posterior.hpp"
 #include "diagnosis/search.hpp"
 
@@ -53,8 +52,7 @@ struct Cause {
   /// its place within the kind.
   double share = 1.0;
   Odds odds = {};
-  int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and how many of them found it again
-  std::string own = {};             ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
+  std::string own = {};  ///< the scenario's effects that it changes (own_effects.hpp); "": it only adds something
 };
 
 /// The content of extended.yaml: claims that predict kept-out rows better, and the scenario's own numbers as fitted with
@@ -87,17 +85,16 @@ struct ChannelGain {
   /// RMSE over all rows of all records, to which the numbers were fitted: of the scenario as written, and of the written
   /// file; NaN if that was not simulated.
   double rmse_all_before = 0.0, rmse_written = 0.0;
-  /// On kept-out rows as rmse_after: with the named causes and the scenario's numbers fitted with them; and with what the
-  /// searches without these rows found, whether it is written or not, so that these rows had no influence. NaN if there
-  /// is none.
-  double rmse_named = std::numeric_limits<double>::quiet_NaN(), rmse_found = std::numeric_limits<double>::quiet_NaN();
+  /// On kept-out rows as rmse_after: with the named causes and the scenario's numbers fitted with them. NaN if there are
+  /// none.
+  double rmse_named = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Root mean squares of kept-out errors divided by the noise of their channels, over all channels; the same versions as
 /// in ChannelGain.
 struct KeptOutMisses {
   double as_written = 0.0, calibrated = 0.0, extended = 0.0;
-  double named = std::numeric_limits<double>::quiet_NaN(), found = std::numeric_limits<double>::quiet_NaN();
+  double named = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The part of the residual that no candidate explains.
@@ -112,7 +109,6 @@ struct Unexplained {
   std::optional<std::size_t>
       statement;                ///< index in Diagnosis::statements of the statement that has no name in the catalogue
   bool fails_held_out = false;  ///< the causes predict kept-out data worse than scatter alone
-  double ambient_off_K = 0.0;   ///< offset of the ambient record that the causes require; 0: it is small
 };
 
 struct Diagnosis {
@@ -125,9 +121,8 @@ struct Diagnosis {
   /// Causes, intervals and gains treat the model's error as noise, because it is far larger than the noise with any
   /// claim.
   bool weighed_by_model_error = false;
-  std::optional<HeatWander> wander;  ///< with weighed_by_model_error: random heat in bodies, by which readings are moved
-  std::string ended_at;              ///< the step in which the user ended it; empty: it is complete
-  std::string holdout;               ///< how the gain was held out
+  std::string ended_at;  ///< the step in which the user ended it; empty: it is complete
+  std::string holdout;   ///< how the gain was held out
   std::vector<ChannelGain> gain;
   KeptOutMisses misses;
   std::vector<DataFinding> data;

@@ -79,25 +79,20 @@ class Fitter {
   /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and
   /// statements look for it.
   void hold_within(double sigmas) { most_sigmas_ = sigmas; }
-  /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
-  void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
+  /// Whitens anew. @param noise  by channel
+  void set_noise(const std::map<std::string, NoiseModel>& noise);
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
   /// Scatter's slopes of the last settle(); or recomputed where a fit has moved far.
   enum class Slopes { kKept, kTakenAnew };
-  /// @param start       x of the claims, in order; scatter starts where it was last settled
-  /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one
-  ///                    that has no solution
+  /// @param start  x of the claims, in order; scatter starts where it was last settled
   /// @throws SolveError  when the machine has no solution there
-  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
-                        double of_interest = kAny) const;
+  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
   /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its
   /// value
   [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                               Twin::Workspace& workspace, double of_interest = kAny,
-                               Slopes slopes = Slopes::kTakenAnew) const;
-  static constexpr double kAny = 1e300;
+                               Twin::Workspace& workspace, Slopes slopes = Slopes::kTakenAnew) const;
 
   /// Scatter and linear columns of the last settle().
   [[nodiscard]] const Eigen::VectorXd& settled() const { return nuisance_; }
@@ -105,8 +100,7 @@ class Fitter {
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
   [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
-  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }           ///< by channel
-  [[nodiscard]] const std::shared_ptr<const SharedNoise>& shared_noise() const { return shared_; }  ///< null: none
+  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
   [[nodiscard]] const Twin& twin() const { return twin_; }
   /// W f's slopes by scatter and linear columns.
@@ -160,9 +154,8 @@ class Fitter {
   const std::vector<MeasuredRun>& runs_;
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
-  double most_sigmas_ = kAny;
+  double most_sigmas_ = 1e300;
   std::map<std::string, NoiseModel> noise_;
-  std::shared_ptr<const SharedNoise> shared_;
   std::optional<Comparison> comparison_;
   Eigen::VectorXd nuisance_;             ///< where it was settled
   std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened

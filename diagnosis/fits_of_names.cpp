@@ -8,10 +8,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostRounds = 6;
-constexpr double kSettled = 0.05;  // of Φ
-constexpr int kMostTurnsOfRival = 3;
+constexpr double kSettled = 0.05;          // of Φ
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full where
@@ -21,28 +19,16 @@ constexpr int kLeastLaws = 2;             // of a candidate that are fitted in a
 constexpr std::size_t kFitsTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
 
-/// Whether one of a fit's last claims is a factor so close to one that it changes nothing in practice.
-bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
-  Eigen::Index at = fit.x.size();
-  for (auto claim = last.rbegin(); claim != last.rend() && fit.x.size() > 0; ++claim) {
-    at -= static_cast<Eigen::Index>(claim->knobs.size());
-    if (claim->knobs[0].scale == Knob::Scale::kLog && std::abs(fit.x[at]) < kLeastFactor) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                         double of_interest, Fitter::Slopes slopes) {
+                         Fitter::Slopes slopes) {
   std::vector<Fit> fits(hypotheses.size());
   for_each_index(
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
         const auto& [hypothesis, start] = hypotheses[i];
-        const auto fit = [&] {
-          fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest, slopes);
-        };
+        const auto fit = [&] { fits[i] = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, slopes); };
         if (!has_solution(fit)) fits[i] = Fit{};  // a state without solution is no explanation
       });
   return fits;
@@ -111,7 +97,7 @@ struct Trials {
         hoped.push_back(s.gain);
       }
     }
-    std::vector<Fit> fits = fit_all(ground.fitter, jobs, base_fit.misfit, Fitter::Slopes::kKept);
+    std::vector<Fit> fits = fit_all(ground.fitter, jobs, Fitter::Slopes::kKept);
     for (std::size_t i = 0; i < jobs.size(); ++i)
       fitted.push_back({jobs[i].first.back(), std::move(fits[i]), hoped[i], true});
     refine();
@@ -145,7 +131,6 @@ struct Trials {
   }
   /// Best first, one law per candidate.
   [[nodiscard]] std::vector<FittedClaim> best_first() && {
-    std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
     const auto value = [&](const FittedClaim& f) {
       return f.fit.log_evidence - law_price(ground.candidates[f.claim.candidate]);
     };
@@ -163,8 +148,7 @@ struct Trials {
 /// The names of one place that are not fitted yet.
 class NamesOfPlace {
  public:
-  NamesOfPlace(const Ground::OfPlace& stated, const std::vector<Candidate>& candidates)
-      : stated_(stated), candidates_(candidates) {}
+  explicit NamesOfPlace(const Ground::OfPlace& stated) : stated_(stated) {}
   void add(const Score& law) { left_.push_back(law); }  ///< best first
   [[nodiscard]] bool is_open() const { return next() != left_.end(); }
   [[nodiscard]] double quotient() const { return stated_.probability / static_cast<double>(n_taken_ + 1); }
@@ -173,42 +157,22 @@ class NamesOfPlace {
     Score taken = *law;
     left_.erase(law);
     ++n_taken_;
-    ++let_down_[family_of(taken.candidate, taken.variant)];  // until it is fitted
     return taken;
   }
-  /// @param hoped  the law's score in linear theory. @param gain  of its full fit. @param must_bring  gain above which the
-  ///               law is the stated one
-  void learn(const Score& hoped, double gain, double must_bring) {
+  /// @param gain  of a law's full fit. @param must_bring  gain above which the law is the stated one
+  void learn(double gain, double must_bring) {
     best_ = std::max(best_, gain);
     answered_ = answered_ || gain > must_bring;
-    if (gain > kHopeless * hoped.gain) --let_down_[family_of(hoped.candidate, hoped.variant)];
   }
 
  private:
-  /// Laws of a candidate that add the same effect to the machine, at any time and in any record.
-  using Family = std::pair<std::size_t, std::string>;
-  [[nodiscard]] Family family_of(std::size_t candidate, std::size_t variant) const {
-    return {candidate, candidates_[candidate].variants[variant].adds};
-  }
-  /// The likeliest law by linear theory, among the families in which linear theory was wrong least often.
+  /// The likeliest law by linear theory.
   [[nodiscard]] std::vector<Score>::const_iterator next() const {
-    const auto n_let_down = [&](const Score& law) {
-      const auto n = let_down_.find(family_of(law.candidate, law.variant));
-      return n == let_down_.end() ? 0 : n->second;
-    };
-    auto first = left_.end();
-    int least = 0;
-    for (auto law = left_.begin(); law != left_.end(); ++law) {
-      if (answered_ && !(law->gain > kHopeless * best_ - kHope)) continue;
-      const int n = n_let_down(*law);
-      if (first == left_.end() || n < least) first = law, least = n;
-    }
-    return first;
+    return std::find_if(left_.begin(), left_.end(),
+                        [&](const Score& law) { return !answered_ || law.gain > kHopeless * best_ - kHope; });
   }
   Ground::OfPlace stated_;
-  const std::vector<Candidate>& candidates_;
   std::vector<Score> left_;
-  std::map<Family, int> let_down_;
   std::size_t n_taken_ = 0;
   double best_ = 0.0;
   bool answered_ = false;
@@ -229,7 +193,7 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
     if (ground.candidates[s.candidate].variants[s.variant].all_or_nothing) continue;
     const StatedPlace& name = ground.names[s.candidate];
     const auto stated = ground.of_place.find(name);
-    if (stated != ground.of_place.end()) places.try_emplace(name, stated->second, ground.candidates).first->second.add(s);
+    if (stated != ground.of_place.end()) places.try_emplace(name, stated->second).first->second.add(s);
   }
   for (int n_tried = 0; n_tried < n && !listener.wants_end();) {
     listener.share(static_cast<double>(n_tried) / n);
@@ -250,7 +214,7 @@ std::vector<FittedClaim> fit_names(const Ground& ground, const Hypothesis& base,
                                   [&](const FittedClaim& done) {
                                     return done.claim.candidate == law.candidate && done.claim.variant == law.variant;
                                   });
-      places.at(ground.names[law.candidate]).learn(law, trials.gain(*f), trials.must_bring(law.candidate));
+      places.at(ground.names[law.candidate]).learn(trials.gain(*f), trials.must_bring(law.candidate));
     }
   }
   return std::move(trials).best_first();
@@ -300,18 +264,6 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
     Fit again = fit_one(fitter, hypothesis, fit.claim_x(fitter.n_nuisance()));
     if (again.prediction.empty()) return;  // the last fit is kept
     const double gained = fit.misfit - again.misfit;
-    fit = std::move(again);
-    if (gained < kSettled) return;
-  }
-}
-
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
-  Twin::Workspace workspace(fitter.twin());
-  for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
-    Fit again;
-    if (!has_solution([&] { again = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); })) return;
-    const double gained = fit.misfit - again.misfit;
-    if (!(gained > 0.0)) return;
     fit = std::move(again);
     if (gained < kSettled) return;
   }

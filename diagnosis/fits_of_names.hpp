@@ -119,11 +119,9 @@ struct Worth {
   }
 };
 
-/// Fits several hypotheses in parallel, each from a start of all numbers. @param of_interest, slopes  as
-/// Fitter::fit_others()
+/// Fits several hypotheses in parallel, each from a start of all numbers. @param slopes  as Fitter::fit_others()
 [[nodiscard]] std::vector<Fit> fit_all(const Fitter& fitter,
                                        const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
-                                       double of_interest = Fitter::kAny,
                                        Fitter::Slopes slopes = Fitter::Slopes::kTakenAnew);
 /// Fits one hypothesis from the last settled scatter.
 [[nodiscard]] Fit fit_one(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims);
@@ -142,9 +140,6 @@ struct Worth {
 /// Recomputes scatter's slopes at the end of a fit and fits again, until this gains nothing. Otherwise this gain would be
 /// credited to the next claim.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
-/// Continues the fit of a rival from its end, as settle_well() does for the hypothesis with which it is compared: slopes
-/// computed elsewhere must be no disadvantage.
-void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit);
 /// The odds of one statement in addition to some claims.
 [[nodiscard]] StatementOptions of_one_beside(const StatementOptions& prior, std::size_t n_claims, double explained);
 

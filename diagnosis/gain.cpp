@@ -85,12 +85,6 @@ Subset kept_claims(Judge& judge, std::size_t n_claims) {
     if (best == kept) break;
     kept = best;
   }
-  // A claim that was removed because of another one returns if that one is removed, too.
-  for (std::size_t c = 0; c < n_claims; ++c) {
-    const Subset with = kept | (1U << c);
-    if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
-      kept = with;
-  }
   return kept;
 }
 
@@ -137,33 +131,10 @@ Subset written_claims(HeldOut& held, Judge& judge, const SearchResult& result) {
   return kept;
 }
 
-/// The search made again without kept-out rows, which its finds predict. @param kept  ends empty if they are harmed by them
-void search_without(HeldOut& held, Judge& judge, Subset& kept, Models& models, const SearchAgain& search_again,
-                    const Listener& listener) {
-  Judge::Refound again = judge.refound(search_again, kept, listener);
-  models.calibrated = std::move(again.calibrated);
-  models.found = std::move(again.extended);
-  // If a search finds causes that harm unseen rows, it would harm future records as well.
-  if (kept != 0 && judge.squares_over_noise(models.found) > kWorseForeseen * judge.squares_over_noise(models.calibrated)) {
-    for (std::size_t c = 0; c < held.why_not_written.size(); ++c) {
-      if (((kept >> c) & 1U) != 0)
-        held.why_not_written[c] =
-            "when the search was repeated without some rows, what it found predicted these rows worse than the scenario "
-            "with only "
-            "its own numbers fitted";
-    }
-    kept = 0;
-  }
-  models.extended = kept != 0 ? models.found : models.calibrated;
-  held.how += "; the search for what is wrong was made again without them";
-  held.n_searched = again.n_searched;
-  held.n_again = std::move(again.n_again);
-}
-
 }  // namespace
 
 HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
-                      const SearchAgain& search_again, const Listener& listener) {
+                      const Listener& listener) {
   if (listener.wants_end()) return not_held_out(fitter, result, noise);
   HeldOut held;
   const std::size_t n_claims = result.hypothesis.size();
@@ -186,20 +157,12 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   kept = written_claims(held, judge, result);
   Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(kept)};
   if (named != 0) models.named = judge.filed(named);
-  if (n_claims == 0) {
-    // Nothing is claimed, so there is no choice that kept-out rows could judge: only the scenario's own numbers.
-  } else if (search_again) {
-    search_without(held, judge, kept, models, search_again, listener);
-  } else {
-    held.how += "; which effect it is was decided on all rows";
-  }
+  if (n_claims != 0) held.how += "; which effect it is was decided on all rows";
   const double as_written = judge.squares_over_noise(models.written);
   if (judge.squares_over_noise(models.extended) > as_written) {
     held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
-  } else if (const auto elsewhere = judge.filed_elsewhere(kept);
-             judge.squares_over_noise(elsewhere) > kWorseForeseen * as_written) {
+  } else if (judge.squares_over_noise(judge.filed_elsewhere(kept)) > kWorseForeseen * as_written) {
     held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
-    held.elsewhere_at = worst_channel(judge, noise, elsewhere, models.written);
   }
   if (!held.why_nothing.empty()) models.extended = models.written;
   held.misses = misses_of(judge, models);

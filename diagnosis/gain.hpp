@@ -17,36 +17,21 @@ struct HeldOut {
   std::vector<std::string> doubt;
   /// For each claim: the reason why it is not written, a clause; otherwise "". It is doubted; or kept-out rows are
   /// predicted no better with it; or it happens in several records at times that are unknown in advance, and the numbers
-  /// fitted with it predict a record with unknown times worse; or a search without the kept-out rows finds something that
-  /// harms them.
+  /// fitted with it predict a record with unknown times worse.
   std::vector<std::string> why_not_written;
-  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one
-  /// that cannot be distinguished from it.
-  int n_searched = 0;
-  std::vector<int> n_again = {};
   bool fails = false;  ///< the claims together predict kept-out rows clearly worse than no claim
   /// If they fail: the channel with the worst prediction, and the rest of its kept-out rows.
   Unexplained::Channel fails_at;
-  /// The same for the file to be written, without parts that belong to single records, if the scenario as written then
-  /// predicts better.
-  std::optional<Unexplained::Channel> elsewhere_at = {};
   std::string why_nothing = {};  ///< reason why neither causes nor fitted numbers are written, a clause; otherwise ""
 };
-
-/// A search for faults in records with only some of their readings; noise, thresholds, numbers and process noise come
-/// from these.
-using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& fitted)>;
 
 /// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the
 /// rest. Events in a single run, or at a time of the only run, are judged on blocks of it, with every other block kept
 /// out. All numbers are fitted anew each time. Errors are those of a written file: of the machine's effects and numbers,
 /// without unknown warm starts or mesh errors.
-/// @param search_again  repeats the search without the rows of each run, or of the last third, if something is claimed;
-/// null: the claims were found on all rows
 /// @param listener      after a request to end, the errors are those of fitted rows, and nothing is written
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
-                                    const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again,
-                                    const Listener& listener = {});
+                                    const std::map<std::string, NoiseModel>& noise, const Listener& listener = {});
 
 /// Whether the file to be written, with numbers fitted to the records of other duty cycles, predicts whole duty cycles
 /// worse than the scenario as written, over all cycles. If the model has an unexplained error, a fit also predicts other
@@ -68,11 +53,9 @@ struct CausesAlone {
   KeptOutMisses misses = {};
 };
 
-/// The claims with at least 20 nats that are found again without the last third of the record and that are not events, if
-/// they predict this third better than the scenario as written, by a tenth of the squares, with no channel worse; if all
-/// together do not, the strongest one.
-/// @param held  from held_out_gain(), which repeated the search
+/// The claims with at least 20 nats that are not events, if they predict the last third of the record better than the
+/// scenario as written, by a tenth of the squares, with no channel worse; if all together do not, the strongest one.
 [[nodiscard]] std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult& result,
-                                                      const std::map<std::string, NoiseModel>& noise, const HeldOut& held);
+                                                      const std::map<std::string, NoiseModel>& noise);
 
 }  // namespace driftwright::diagnosis

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kShortestWindow_s = 1.0;       // least length of a window that was shortened by its fitted length
 constexpr std::size_t kWindowsFittedAlone = 5;  // up to this number, windows' times are fitted separately
-constexpr double kTurnsGoOn = 2.0;              // times the longest run: length for which turns are written
 // Exponent of the speed by which heat of bearings and motors usually grows: start value for a fit of another speed.
 constexpr double kUsualExponent = 1.5;
 
@@ -73,32 +72,6 @@ std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::
     }
   }
   return numbers;
-}
-
-/// Begin, length and period of repeating windows, each known to about one row.
-std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double row_min) {
-  const double begin_min = h.in.front().second.front().first / 60.0,
-               length_min = (h.in.front().second.front().second - h.in.front().second.front().first) / 60.0;
-  effects::DoubtedNumber begin = effects::doubted("begin", "min", 2.0 * row_min, 0.2 * row_min, begin_min);
-  begin.low = 0.0;
-  begin.set = [](std::span<effects::Effect> added, double value) {
-    TimeSeries& rows = added[0].tables.at(effects::kWindows);
-    rows = {{60.0 * value}, {60.0 * value + rows.value[0] - rows.time_s[0]}};
-  };
-  effects::DoubtedNumber length = effects::doubted("length", "min", 2.0 * row_min, 0.2 * row_min, length_min);
-  length.low = kShortestWindow_s / 60.0;
-  length.high = h.every_s / 60.0;
-  length.set = [](std::span<effects::Effect> added, double value) {
-    TimeSeries& rows = added[0].tables.at(effects::kWindows);
-    rows.value[0] = rows.time_s[0] + 60.0 * value;
-  };
-  effects::DoubtedNumber every = effects::doubted("every", "min", row_min, 0.1 * row_min, h.every_s / 60.0);
-  every.low = length_min;
-  every.set = [](std::span<effects::Effect> added, double value) {
-    const TimeSeries& rows = added[0].tables.at(effects::kWindows);
-    added[0].set("every", std::max(60.0 * value, rows.value[0] - rows.time_s[0]));
-  };
-  return {begin, length, every};
 }
 
 /// One window: its begin and length are fitted numbers, whose cost is part of their evidence.
@@ -167,7 +140,6 @@ std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::
 }
 
 bool is_unseen(const Happening& happening) {
-  if (happening.every_s > 0.0) return false;
   double all_s = 0.0, unseen_s = 0.0;
   for (const auto& [run, windows] : happening.in) {
     for (const auto& [begin_s, end_s] : windows) {
@@ -185,14 +157,14 @@ double share_of_time(const Happening& happening) {
     for (const auto& [begin_s, end_s] : windows) windows_s += end_s - begin_s;
     all_s += run->time_s.back();
   }
-  return windows_s / (happening.every_s > 0.0 ? happening.every_s : all_s);
+  return windows_s / all_s;
 }
 
 std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
   auto asked = asked_of(twin, scene, h);
   if (!asked) return std::nullopt;
   auto& [window, size, where, to, trial] = *asked;
-  if (h.every_s == 0.0 && h.in.size() == 1 && h.in.front().second.size() == 1) {
+  if (h.in.size() == 1 && h.in.front().second.size() == 1) {
     auto event = one_event(scene, h, window, size);
     if (event) {
       event->doubt.where = where;
@@ -207,7 +179,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   std::vector<std::string> times;
   for (const auto& [run, windows] : h.in) {
     effects::Effect in_run = window;
-    if (h.every_s == 0.0) in_run.in = run->name;
+    in_run.in = run->name;
     TimeSeries& rows = in_run.tables[effects::kWindows];
     rows = {};
     for (const auto& [begin_s, end_s] : windows) {
@@ -219,18 +191,12 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     }
     if (rows.time_s.empty()) continue;
     longest_row_s = std::max(longest_row_s, row_s(*run));
-    if (h.every_s > 0.0) {
-      in_run.set("every", h.every_s);
-      in_run.set("until_time", kTurnsGoOn * scene.longest_s());
-    }
     d.added.push_back(std::move(in_run));
   }
   if (n_windows == 0) return std::nullopt;
-  const bool is_fitted = h.every_s == 0.0 && n_windows <= kWindowsFittedAlone && n_windows == h.wide_s.size();
+  const bool is_fitted = n_windows <= kWindowsFittedAlone && n_windows == h.wide_s.size();
   d.numbers = {size};
-  if (h.every_s > 0.0) {
-    for (effects::DoubtedNumber& n : times_of_turns(h, longest_row_s / 60.0)) d.numbers.push_back(std::move(n));
-  } else if (is_fitted) {
+  if (is_fitted) {
     for (effects::DoubtedNumber& n : times_of_windows(d.added, h.wide_s, longest_row_s / 60.0))
       d.numbers.push_back(std::move(n));
     // Each prior is as wide as the uncertainty of its detection: that part of the choice among all rows is in the price
@@ -242,9 +208,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   d.finding = window.kind->key;
   d.where = where;
   const std::string how_many = n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows);
-  if (h.every_s > 0.0) {
-    d.law = fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to, times.front());
-  } else if (is_fitted) {
+  if (is_fitted) {
     std::vector<std::string> in;
     for (const effects::Effect& e : d.added) in.push_back(e.in);
     d.law = fmt::format("{}{}, in {}", how_many, to, fmt::join(in, " and "));

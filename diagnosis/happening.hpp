@@ -12,7 +12,7 @@ namespace driftwright::diagnosis {
 /// Windows as one cause of the catalogue.
 struct Event {
   effects::Doubt
-      doubt;  ///< windows of heat, exchange or another speed; its numbers: the size, and how much longer, or when they repeat
+      doubt;  ///< windows of heat, exchange or another speed; its numbers: the size, and when they are, or how much longer
   double price_nats = 0.0;  ///< cost of their times, which were chosen by the data
   struct Window {
     std::string in;  ///< run
@@ -31,12 +31,10 @@ struct Happening {
   effects::Body body;
   std::optional<effects::Body> other = {};  ///< an exchange with this body; none: heat
   bool is_speed = false;  ///< of the spindle, with any body: the size is the relative increase of the heat of turning
-  std::vector<std::pair<const MeasuredRun*, Times>> in =
-      {};  ///< each run with windows; no run: one window in each turn of all runs
+  std::vector<std::pair<const MeasuredRun*, Times>> in = {};  ///< each run with windows
   /// Uncertainty of each begin and end [s], in the order of all windows: range that fits as well; empty: unknown.
   Times wide_s = {};
-  double every_s = 0.0;  ///< period of windows that repeat
-  double size = 0.0;     ///< W, W/K or 1
+  double size = 0.0;  ///< W, W/K or 1
   double price_nats = 0.0;
 };
 
@@ -50,11 +48,10 @@ inline constexpr double kUnknownSpeed = 0.7;
 [[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a,
                                                              const effects::Body& b);
 
-/// Whether at least half of the windows' time lies in holes of their records, so that it was not observed. Repeating
-/// windows were observed in other turns.
+/// Whether at least half of the windows' time lies in holes of their records, so that it was not observed.
 [[nodiscard]] bool is_unseen(const Happening& happening);
 
-/// Share of the records' time that the windows take; for repeating windows, share of a turn.
+/// Share of the records' time that the windows take.
 [[nodiscard]] double share_of_time(const Happening& happening);
 
 /// @returns  nothing if there is no window, or none with an allowed size

@@ -55,51 +55,26 @@ bool widen_moved(Inquiry& of) {
   return any;
 }
 
-/// A number that is back within its limit, beside the other faults, is no fault: it gets the scenario's prior again.
-/// @param known  with the scenario's priors. @returns  whether there are any
-bool narrow_returned(Inquiry& of, const std::vector<Knob>& known) {
-  return std::erase_if(of.moved, [&](std::size_t i) {
-           const double sd = known[i].prior_sd;
-           const bool is_back = std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) < kTooFar * sd;
-           if (is_back) of.fitter->set_prior_sd(i, sd);
-           return is_back;
-         }) > 0;
-}
-
 /// Searches; as long as further numbers turn out to be faults, searches once more with these numbers free.
 void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const SearchOptions& how,
-                         const std::vector<Knob>& known, const Listener& listener) {
+                         const Listener& listener) {
   of.search = search(*of.fitter, names, how, &of.search, listener);
   while (widen_moved(of)) {  // each turn frees one number at least
     if (listener.wants_end()) return;
     of.search = search(*of.fitter, names, how, &of.search, listener);
   }
-  if (!narrow_returned(of, known)) return;
-  Twin::Workspace workspace(of.fitter->twin());
-  of.fitter->settle(of.search.hypothesis, of.search.fit);
-  of.search.fit = of.fitter->fit(of.search.hypothesis, of.search.fit.claim_x(of.fitter->n_nuisance()), workspace);
-  (void)has_solution([&] { of.search.without = of.fitter->fit({}, Eigen::VectorXd(0), workspace); });
 }
 
-/// Searches again with the model's error as process noise (heat in its bodies) or as slow noise of its channels.
+/// Searches again with the model's error as slow noise of its channels.
 void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
-                          const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
-                          Twin::Workspace& workspace, const Listener& listener) {
+                          const std::vector<Candidate>& names, const SearchOptions& how,
+                          const std::map<std::string, NoiseModel>& rough, Inquiry& of, const Listener& listener) {
   listener.begin("weighing again by what the model misses");
-  std::map<std::string, NoiseModel> rough = of.noise;
-  std::shared_ptr<const SharedNoise> shared;
-  (void)has_solution([&] {
-    const TwinState state = of.fitter->state(of.search.hypothesis, of.search.fit.x);
-    of.wander = heat_wander(*of.fitter, state, of.search.fit.prediction, workspace);
-    if (of.wander) shared = std::make_shared<const SharedNoise>(std::move(of.wander->readings));
-  });
-  const Prediction& best = of.wander ? of.wander->prediction : of.search.fit.prediction;
-  if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->hold_within(kTooFar);
   of.moved.clear();
-  of.fitter->set_noise(rough, shared);
-  search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
+  of.fitter->set_noise(rough);
+  search_beside_moved(of, names, how, listener);
   of.weighed_by_model_error = true;
 }
 
@@ -147,10 +122,10 @@ Fitter begun(Diagnosis& d, const Twin& twin, const Twin* coarse, const std::vect
   return fresh;
 }
 
-Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {
+Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Listener& listener) {
   const DiagnosisOptions& options = ground.options;
   Inquiry of;
-  const std::vector<Candidate> names = told_of_by(runs, ground.candidates);
+  const std::vector<Candidate>& names = ground.candidates;
   const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->hold_within(kTooFar);
@@ -165,7 +140,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   });
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    search_beside_moved(of, names, how, ground.fresh.scatter(), listener);
+    search_beside_moved(of, names, how, listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       const NoiseModel& before = of.noise.at(s.first);
@@ -179,18 +154,14 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
     }
   }
   Twin::Workspace workspace(ground.twin);
-  const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
-  if (of_all || is_rough) {
-    listener.begin("looking at what is left");
-    of.unexplained = what_is_left(ground, runs, of, workspace);
-  }
-  if (of.unexplained && is_rough) {
-    weigh_by_model_error(ground, runs, names, how, of, workspace, listener);
+  const auto rough = listener.wants_end() ? std::nullopt : models_own_error(runs, of.search.fit.prediction, of.noise);
+  listener.begin("looking at what is left");
+  of.unexplained = what_is_left(ground, runs, of, workspace);
+  if (of.unexplained && rough) {
+    weigh_by_model_error(ground, runs, names, how, *rough, of, listener);
     if (auto left = unexplained_of(*of.fitter, of.search, of.noise)) of.unexplained = std::move(left);
   }
-  if (of_all && !listener.wants_end()) {
-    weigh_findings(*of.fitter, how, of.search, listener);
-  }
+  if (!listener.wants_end()) weigh_findings(*of.fitter, how, of.search, listener);
   return of;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
-// What some rows of the records say by themselves: noise, process noise, causes, numbers that have gone too far. Of all rows
-// it is what a diagnosis says; without some of them it is what would have been said had they never been read, so that they
-// can judge it.
+// What the records say: noise, causes, numbers that have gone too far.
 
 #include "diagnosis/diagnosis.hpp"
 
@@ -11,7 +9,7 @@ namespace driftwright::diagnosis {
 /// exceeds that of what is known: u²/2 = log(60 candidates) + log(0.7 / 0.1) + (0.1 u / 0.7)²/2.
 inline constexpr double kTooFar = 3.5;
 
-/// What all inquiries about a machine begin with; none of it is fitted to readings.
+/// What an inquiry about a machine begins with; none of it is fitted to readings.
 struct InquiryGround {
   const Twin& twin;
   const Twin* coarse;  ///< null: there is one mesh
@@ -24,7 +22,6 @@ struct InquiryGround {
 struct Inquiry {
   std::map<std::string, NoiseModel> noise;
   bool weighed_by_model_error = false;
-  std::optional<HeatWander> wander;
   std::vector<std::size_t>
       moved;  ///< of scatter: numbers that have gone so far that they are causes; their priors are those of faults
   std::unique_ptr<Fitter> fitter;  ///< settled where the search ended, with its noise and those priors
@@ -32,10 +29,8 @@ struct Inquiry {
   std::optional<Unexplained> unexplained;
 };
 
-/// @param runs     all records, readings that are not to be known missing; outlive the result
-/// @param of_all   these are all rows: what is left is looked at whether or not it changes how readings are weighed
-[[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all,
-                              const Listener& listener);
+/// @param runs  all records; outlive the result
+[[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Listener& listener);
 
 /// The beginning of a diagnosis: its data, its uncertain numbers and the scenario as written. @returns  a fitter of all
 /// rows, without noise

@@ -22,12 +22,6 @@ constexpr double kMuchWorse = 1.25;              // ratio of the squares: eviden
 constexpr int kMostAgain = 6;                    // largest number of further climbs from the end of the last one
 constexpr double kStoppedShort = 0.3;            // nats; a climb that gains less is converged
 
-/// The kind of a cause, regardless of whether it lasts or comes in windows, or of a path that the scenario has or lacks:
-/// with fewer rows these may look alike.
-std::string_view lasting_kind(std::string_view effect) {
-  return effect == "heat_window" ? "heat_source" : effect == "exchange_window" || effect == "link" ? "contact" : effect;
-}
-
 /// Climbs until convergence: a premature stop in one fold would give a false difference of evidence.
 void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
   for (int again = 0; again < kMostAgain; ++again) {
@@ -130,37 +124,6 @@ double Judge::least_evidence(Subset claims, Subset without) {
   return least;
 }
 
-Judge::Refound Judge::refound(const SearchAgain& search_again, Subset kept, const Listener& listener) {
-  Refound found{filed(kept), filed(0), std::vector<int>(result_.hypothesis.size(), 0), 0};
-  for (std::size_t f = 0; f < folds_.size(); ++f) {
-    if (!folds_[f].is_searched()) continue;
-    if (listener.wants_end()) break;
-    listener.share(static_cast<double>(f) / static_cast<double>(folds_.size()));
-    SearchResult again;
-    if (!has_solution([&] { again = search_again(folds_[f].fitted); })) continue;
-    ++found.n_searched;
-    found.calibrated[f] = filed({}, again.without.x, f);
-    found.extended[f] = filed(again.hypothesis, again.fit.x, f);
-    for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
-      found.n_again[c] += std::any_of(again.hypothesis.begin(), again.hypothesis.end(),
-                                      [&](const Claim& claim) { return is_told_as(c, again.candidates[claim.candidate]); });
-    }
-  }
-  return found;
-}
-
-bool Judge::is_told_as(std::size_t claim, const Candidate& found) const {
-  const auto is_same = [&](const Claim& told) {
-    const Candidate& c = result_.candidates[told.candidate];
-    return lasting_kind(c.effect) == lasting_kind(found.effect) && c.where == found.where;
-  };
-  const std::string& effect = result_.candidates[result_.hypothesis[claim].candidate].effect;
-  const auto& others = result_.findings[claim].alternatives;
-  return is_same(result_.hypothesis[claim]) ||
-         (found.effect == effect &&
-          std::any_of(others.begin(), others.end(), [&](const auto& a) { return is_same(a.claim); }));
-}
-
 std::vector<Prediction> Judge::regressed(Regressors regressors) const {
   std::vector<Prediction> predicted;
   for (const Fold& fold : folds_)
@@ -225,7 +188,6 @@ KeptOutMisses misses_of(const Judge& judge, const Models& models) {
                        .calibrated = judge.over_noise(models.calibrated),
                        .extended = judge.over_noise(models.extended)};
   if (!models.named.empty()) misses.named = judge.over_noise(models.named);
-  if (!models.found.empty()) misses.found = judge.over_noise(models.found);
   return misses;
 }
 
@@ -266,7 +228,6 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
   add(models.calibrated, &ChannelGain::rmse_calibrated, nullptr);
   add(models.extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
   add(models.named, &ChannelGain::rmse_named, nullptr);
-  add(models.found, &ChannelGain::rmse_found, nullptr);
   return gains;
 }
 

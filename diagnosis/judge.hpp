@@ -40,14 +40,6 @@ class Judge {
   /// The least evidence of a claim in the fitted rows of a fold [nats], without its cost: what would be known without
   /// some rows.
   [[nodiscard]] double least_evidence(Subset claims, Subset without);
-  /// The results of repeated searches without the kept-out rows; for a fold of blocks, in which something happened, those
-  /// of the claims.
-  struct Refound {
-    std::vector<Prediction> extended, calibrated;
-    std::vector<int> n_again;  ///< per claim: searches that found its effect at its place, or at one like it
-    int n_searched = 0;
-  };
-  [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept, const Listener& listener);
   /// Predictions of regressions without a machine model.
   [[nodiscard]] std::vector<Prediction> regressed(Regressors regressors) const;
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
@@ -82,9 +74,6 @@ class Judge {
       }
     }
   }
-  /// Whether a search result is the same as a claim: of the same lasting_kind(), or its effect at a place that cannot be
-  /// distinguished.
-  [[nodiscard]] bool is_told_as(std::size_t claim, const Candidate& found) const;
   /// @param x  empty: no fit, and the scenario stays as written
   [[nodiscard]] Prediction filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const;
 
@@ -99,7 +88,7 @@ class Judge {
 
 /// Predictions of all folds by several models; empty: not available.
 struct Models {
-  std::vector<Prediction> written, calibrated, extended, named = {}, found = {};
+  std::vector<Prediction> written, calibrated, extended, named = {};
 };
 
 [[nodiscard]] KeptOutMisses misses_of(const Judge& judge, const Models& models);

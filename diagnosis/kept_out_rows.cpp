@@ -66,9 +66,7 @@ bool has_time(const Claim& claim) {
 
 Fold ahead_of(const std::vector<MeasuredRun>& runs) {
   const double from_s = kFitted * runs[0].time_s.back();
-  Fold fold = fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; });
-  fold.is_ahead = true;
-  return fold;
+  return fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; });
 }
 
 Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace) {

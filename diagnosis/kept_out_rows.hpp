@@ -14,8 +14,6 @@ inline constexpr const char* kAheadWords =
 struct Fold {
   std::vector<MeasuredRun> fitted, kept_out;
   std::vector<std::size_t> whole = {};  ///< runs that are kept out completely
-  bool is_ahead = false;                ///< the end of the only run is kept out
-  [[nodiscard]] bool is_searched() const { return !whole.empty() || is_ahead; }
 };
 
 /// Whether a claim happens at a certain time.

@@ -16,7 +16,6 @@ namespace {
 
 using Words = std::set<std::string>;
 
-constexpr std::size_t kLeastTurns = 3;  // least number of equally spaced windows that count as repeating
 constexpr double kAlways = 0.9;  // share of its records' time: a longer window is no window, and its pauses were not chosen
 
 /// The quantities that a key of the catalogue can mean.
@@ -74,17 +73,6 @@ bool has_common(const Words& a, const Words& b) {
   return std::any_of(a.begin(), a.end(), [&](const std::string& w) { return b.contains(w); });
 }
 
-/// Whether windows are equally spaced, to the width of the cells that they were found in. @returns  their distance, or 0
-double even_distance_s(const std::vector<StatedWindow>& windows) {
-  if (windows.size() < kLeastTurns || windows.front().run != windows.back().run) return 0.0;
-  const double every_s = (windows.back().begin_s - windows.front().begin_s) / static_cast<double>(windows.size() - 1);
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    const double off_s = windows[i].begin_s - windows.front().begin_s - static_cast<double>(i) * every_s;
-    if (std::abs(off_s) > windows[i].wide_s) return 0.0;
-  }
-  return every_s;
-}
-
 /// The body with this name; none if it is a surface or an instrument.
 std::optional<effects::Body> body_called(const effects::DoubtScene& scene, const std::string& name) {
   if (name == effects::kAmbientName) return effects::ambient_node();
@@ -95,20 +83,20 @@ std::optional<effects::Body> body_called(const effects::DoubtScene& scene, const
 }
 
 /// The windows of a statement as heat, an exchange or another speed of the catalogue.
-std::vector<Happening> happenings_of(const Stated::Windows& stated, const effects::DoubtScene& scene,
-                                     const std::vector<MeasuredRun>& runs) {
+std::optional<Happening> happening_of(const Stated::Windows& stated, const effects::DoubtScene& scene,
+                                      const std::vector<MeasuredRun>& runs) {
   const Statement& s = stated.says;
-  if (s.windows.empty()) return {};
+  if (s.windows.empty()) return std::nullopt;
   Happening h;
   h.is_speed = s.quantity == StatedQuantity::kSpeed;
-  if (s.quantity != StatedQuantity::kHeat && s.quantity != StatedQuantity::kExchange && !h.is_speed) return {};
+  if (s.quantity != StatedQuantity::kHeat && s.quantity != StatedQuantity::kExchange && !h.is_speed) return std::nullopt;
   if (!h.is_speed) {
     const auto body = s.at.empty() ? body_called(scene, s.place.front()) : effects::surface(s.at);
-    if (!body) return {};
+    if (!body) return std::nullopt;
     h.body = *body;
     if (s.quantity == StatedQuantity::kExchange) {
       const auto other = s.place.size() > 1 ? body_called(scene, s.place[1]) : effects::ambient_node();
-      if (!other) return {};
+      if (!other) return std::nullopt;
       h.other = *other;
     }
   }
@@ -123,16 +111,7 @@ std::vector<Happening> happenings_of(const Stated::Windows& stated, const effect
   }
   const auto n = static_cast<double>(s.windows.size());
   h.price_nats = 2.0 * n * std::log(rows / n) - std::lgamma(n + 1.0);  // the order does not matter
-  std::vector<Happening> list = {h};
-  if (const double every_s = even_distance_s(s.windows); every_s > 0.0) {
-    Happening turns = h;
-    turns.in = {{h.in.front().first, {h.in.front().second.front()}}};
-    turns.wide_s.clear();
-    turns.every_s = every_s;
-    turns.price_nats = 3.0 * std::log(rows / n);  // for begin, length and distance
-    list.push_back(std::move(turns));
-  }
-  return list;
+  return h;
 }
 
 /// Limits laws that hold in all records to those of a statement. The inclusion of each record is one choice of two.
@@ -247,11 +226,10 @@ std::vector<Candidate> named_by(const Posterior& posterior, std::vector<Candidat
       try_at(stated.windows->says.windows, runs, c);
     }
     if (!stated.windows) continue;
-    for (const Happening& h : happenings_of(*stated.windows, scene, runs)) {
-      if (is_unseen(h) || share_of_time(h) > kAlways) continue;
-      if (auto event = event_of(twin, scene, h)) events.push_back(*std::move(event));
-      for (Event& visit : visits_of(scene, h)) events.push_back(std::move(visit));
-    }
+    const std::optional<Happening> h = happening_of(*stated.windows, scene, runs);
+    if (!h || is_unseen(*h) || share_of_time(*h) > kAlways) continue;
+    if (auto event = event_of(twin, scene, *h)) events.push_back(*std::move(event));
+    for (Event& visit : visits_of(scene, *h)) events.push_back(std::move(visit));
   }
   add_events(catalogue, events, without);
   return catalogue;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <numeric>
-#include <string_view>
 
 namespace driftwright::diagnosis {
 namespace {
@@ -13,22 +11,7 @@ bool is_of_kind(const Rival& rival, const Rival& claim) {
   return rival.says_the_same || rival.effect == claim.effect;
 }
 
-bool is_one_of(const std::string& effect, std::initializer_list<std::string_view> list) {
-  return std::find(list.begin(), list.end(), effect) != list.end();
-}
-bool releases(const std::string& effect) {
-  return is_one_of(effect, {"heat_source", "heat_window", "friction_law"});
-}
-bool exchanges(const std::string& effect) {
-  return is_one_of(
-      effect, {"contact", "convection", "exchange_window", "forced_convection", "link", "natural_convection", "radiation"});
-}
-
 }  // namespace
-
-bool are_apart(const std::string& effect, const std::string& other) {
-  return (releases(effect) && exchanges(other)) || (exchanges(effect) && releases(other));
-}
 
 std::vector<double> shares_of(const std::vector<Rival>& rivals) {
   double most = rivals.front().log_evidence, sum = 0.0;

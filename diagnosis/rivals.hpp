@@ -20,10 +20,6 @@ struct Rival {
   bool says_the_same = false;  ///< the same meaning as the first one, in other words
 };
 
-/// Whether one kind releases heat and the other changes an exchange: these never mean the same, even if no reading can
-/// distinguish them.
-[[nodiscard]] bool are_apart(const std::string& effect, const std::string& other);
-
 struct Odds {
   double kind = 1.0, place = 1.0;
 };

@@ -11,11 +11,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSureCause = 20.0;  // nats, with which no smaller rest matters
-constexpr int kSomeSearches = 2;
+constexpr double kSureCause = 20.0;   // nats, with which no smaller rest matters
 constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
-constexpr double kOpenWidth = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases with one or two faults move at most one number; models with fewer bodies than the truth a dozen
 constexpr std::ptrdiff_t kMostPlaces = 4;  // most places that are listed by name
@@ -91,19 +89,11 @@ std::ptrdiff_t n_far(const Diagnosis& d) {
          });
 }
 
-/// Whether a claim beside a stronger one was found in none of several searches without a part of the rows: then it is
-/// only an error of the stronger one in these rows.
-bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
-  if (held.n_searched < kSomeSearches || held.n_again[claim] > 0) return false;
-  return std::any_of(d.search.findings.begin(), d.search.findings.end(),
-                     [&](const Finding& f) { return f.log_evidence_gain > d.search.findings[claim].log_evidence_gain; });
-}
-
 }  // namespace
 
 bool is_more_left(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0) return true;
+  if (d.causes.empty() || d.unexplained->fails_held_out) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
@@ -161,11 +151,6 @@ std::string reason_of(const Diagnosis& d) {
         return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
                            in_words(d.unexplained->channels.front()), text);
       }
-      if (d.unexplained && d.unexplained->ambient_off_K > 0.0) {
-        return fmt::format(
-            "What fits best needs an ambient that is {:.1f} K off its record, and something is left, most of all {}: {}.",
-            d.unexplained->ambient_off_K, in_words(d.unexplained->channels.front()), text);
-      }
       if (d.unexplained->statement)
         return fmt::format("Something is missing that the catalogue has no name for: {}; beside it: {}.", statement_words(d),
                            text);
@@ -177,14 +162,6 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
-/// Whether only the sign of a cause's size is known.
-bool is_size_open(const Cause& cause) {
-  if (cause.parameters.empty()) return false;
-  const Estimate& size = cause.parameters.front();
-  const double least = std::min(std::abs(size.low), std::abs(size.high));
-  return size.low * size.high > 0.0 && std::max(std::abs(size.low), std::abs(size.high)) > kOpenWidth * least;
-}
-
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
@@ -192,17 +169,11 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
     const Finding& finding = d.search.findings[c];
-    cause.n_searched = held.n_searched;
-    if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (!finding.is_named) {
       cause.doubt = fmt::format("its statement has a probability of {:.0f} %", 100.0 * finding.probability);
       continue;
     }
     cause.doubt = held.doubt[c];
-    if (cause.doubt.empty() && is_found_once(d, c, held))
-      cause.doubt = "it was found only together with a stronger cause, and no search without a part of the rows found it";
-    if (cause.doubt.empty() && is_size_open(cause))
-      cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;
     cause.standing = cause.odds.kind >= kSure ? Standing::kNamed : Standing::kAmbiguous;
   }

@@ -22,7 +22,7 @@ TimeSeries& rows(std::span<effects::Effect> added) {
 }  // namespace
 
 std::vector<Event> visits_of(const effects::DoubtScene& scene, const Happening& h) {
-  if (h.is_speed || h.every_s > 0.0 || h.in.size() != 1 || (h.other && !(*h.other == effects::ambient_node()))) return {};
+  if (h.is_speed || h.in.size() != 1 || (h.other && !(*h.other == effects::ambient_node()))) return {};
   const auto to =
       std::find_if(scene.materials.begin(), scene.materials.end(), [&](const auto& m) { return m.body == h.body; });
   const bool has_one = std::any_of(scene.own.begin(), scene.own.end(), [&](const effects::Effect& e) {

@@ -4,34 +4,14 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "diagnosis/fits_of_names.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNearBest = 12.0;    // nats: what fits on may make up for
 constexpr double kSame = 6.0;         // squares of whitened readings: what noise makes of two numbers more, at 95 %
 constexpr double kLeastRival = 0.01;  // probability of a statement whose name is an alternative
-
-/// The bodies named by a place.
-std::set<std::string> bodies_in(const std::string& where) {
-  std::set<std::string> names;
-  std::istringstream list(where);
-  for (std::string name; std::getline(list, name, ',');) {
-    if (name != effects::kAmbientName) names.insert(name);
-  }
-  return names;
-}
-
-/// Whether two claims about the same bodies mean the same, so that no reading could distinguish them, such as a window that
-/// lasts to the end and heat from a time on.
-bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
-  if (bodies_in(a.where) != bodies_in(b.where) || are_apart(a.effect, b.effect)) return false;
-  const Comparison& c = fitter.comparison();
-  return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
-}
 
 /// The probability that something is wrong at one of these places, for statements that exclude each other.
 double probability_of(const Posterior& stated, const std::set<StatedPlace>& places) {
@@ -111,13 +91,15 @@ InItsPlace find_rivals(const Ground& ground, const Worth& worth, const SearchRes
   for (FittedClaim& f : fit_instead(ground, others, fit, worth.options.refits, nullptr, listener)) {
     if (f.claim.candidate == claim.candidate) continue;
     const Hypothesis instead = with(others, f.claim);
-    if (worth.evidence(candidates, f.fit, instead) > best_value - kNearBest) fit_on(ground.fitter, instead, f.fit);
     if (f.fit.prediction.empty()) continue;  // no solution near it
     in.full[f.claim.candidate] = f.fit.log_evidence - fit.log_evidence;
     const double value = worth.evidence(candidates, f.fit, instead);
     in.rivals.push_back(rival(f.claim, value));
+    // Names of one statement with the same readings, such as a window that lasts to the end and heat from a time on.
+    const Comparison& c = ground.fitter.comparison();
     in.rivals.back().says_the_same =
-        says_the_same(ground.fitter, candidates[claim.candidate], result.fit, candidates[f.claim.candidate], f.fit);
+        ground.names[f.claim.candidate] == ground.names[claim.candidate] &&
+        (c.whitened(result.fit.prediction) - c.whitened(f.fit.prediction)).squaredNorm() < kSame;
     in.fitted.push_back({.claim = std::move(f.claim), .fit = std::move(f.fit), .log_evidence_gain = value - without_value});
   }
   return in;

@@ -78,13 +78,6 @@ Section one_cause_statistics(const diagnosis::Diagnosis& d, std::size_t i) {
     add(section,
         Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
                          std::abs(c.kept_out_nats), c.kept_out_nats < 0.0 ? "less" : "more")});
-  if (c.n_searched > 0)
-    add(section,
-        Text{fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
-                         c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
-                         c.n_again == 0              ? "in none of them"
-                         : c.n_again == c.n_searched ? "each time"
-                                                     : fmt::format("{} of them", c.n_again))});
   Table table{
       .title =
           c.alternatives.empty()

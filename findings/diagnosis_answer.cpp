@@ -86,9 +86,6 @@ std::string unexplained_text(const Diagnosis& d) {
   if (d.causes.empty()) return fmt::format("{} The program weighed {} candidates.", text, d.n_candidates);
   if (d.unexplained && d.unexplained->fails_held_out)
     return text + " What fits best predicts kept-out readings worse than no cause does.";
-  if (d.unexplained && d.unexplained->ambient_off_K > 0.0)
-    return fmt::format("{} What fits best would need an ambient that differs from its record by {:.1f} K.", text,
-                       d.unexplained->ambient_off_K);
   return fmt::format("{} {} below {} only suspected, because more is left than {}.", text,
                      counted(d.causes.size(), "cause", "causes"), d.causes.size() == 1 ? "is" : "are",
                      d.causes.size() == 1 ? "it explains" : "they explain");

@@ -28,10 +28,6 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   if (!c.doubt.empty()) put(item, "doubt", c.doubt);
   put(item, "written", c.is_written);
   if (!c.is_written) put(item, "why_not_written", c.why_not_written);
-  if (c.n_searched > 0) {
-    put(item, "found_again.searches", c.n_searched);
-    put(item, "found_again.found", c.n_again);
-  }
   put(item, "kept_out_nats", c.kept_out_nats);
   put(item, "probability", c.probability);
   put(item, "odds.share", c.share);

@@ -247,11 +247,10 @@ void add_judgement(Section& numbers, const DiagnosisFindings& found) {
   numbers.sections.push_back(gain_section(d, found.file, found.remainder));
 }
 
-/// What only an expert needs, folded: where the model errs, every channel of every record, ISO 230-3.
+/// What only an expert needs, folded: every channel of every record, ISO 230-3.
 /// @param after  name of Diagnosis::extended
 void add_evidence(Section& experts, const DiagnosisFindings& found, const std::string& after) {
   const diagnosis::Diagnosis& d = found.diagnosis;
-  experts.sections.push_back(d.wander ? wander_section(*d.wander) : Section{.blocks = {Value{.key = "process_noise"}}});
   for (Section& record : residual_sections(found.measured, d, after)) experts.sections.push_back(std::move(record));
   const std::vector<Iso230Run> iso = measured_iso230_3(found.measured);
   Table figures = iso230_3_table(iso);

@@ -25,11 +25,6 @@ std::string number_name(const diagnosis::Estimate& e) {
   return e.line > 0 ? fmt::format("{}, line {}", e.name, e.line) : e.name;
 }
 
-const char* limit_words(diagnosis::HeatWander::Limit limit) {
-  using Limit = diagnosis::HeatWander::Limit;
-  return limit == Limit::kAtMost ? "at most" : limit == Limit::kAtLeast ? "at least" : "about";
-}
-
 /// What could be learned beside the file, and the command that does so.
 void add_remainder(Section& section, const studies::Remainder& remainder, const std::string& file) {
   if (!remainder.why_not.empty()) {
@@ -76,32 +71,10 @@ Section unexplained_section(const diagnosis::Diagnosis& d) {
   for (const auto& c : u.channels) table.rows.push_back({c.name, c.rms, c.unit, c.times_noise});
   add(section, std::move(table));
   if (u.fails_held_out) put("fails_held_out", true);
-  if (u.ambient_off_K > 0.0) put("ambient_off_K", u.ambient_off_K);
   if (u.statement) {
     put("statement", static_cast<std::int64_t>(*u.statement));
     put("statement_in_words", diagnosis::words(d.statements.stated[*u.statement].says));
   }
-  return section;
-}
-
-Section wander_section(const diagnosis::HeatWander& wander) {
-  Section section{.key = "process_noise", .title = "Where the model errs", .detail = true};
-  add(section,
-      Text{fmt::format("Heat that comes and goes in its bodies, alike for {} {:.0f} min{}, would explain what the first "
-                       "search left. Causes are weighed beside this process noise.",
-                       limit_words(wander.limit), wander.time_s / 60.0,
-                       wander.limit == diagnosis::HeatWander::Limit::kNone ? "" : ", an end of the times that were tried")});
-  add(section, Value{.key = "stays_alike_min", .datum = wander.time_s / 60.0});
-  using Limit = diagnosis::HeatWander::Limit;
-  if (wander.limit != Limit::kNone)
-    add(section, Value{.key = wander.limit == Limit::kAtMost ? "at_most" : "at_least", .datum = true});
-  Table table{
-      .key = "bodies",
-      .columns = {{.key = "where", .title = "body"},
-                  {.key = "standard_deviation_W", .title = "heat, 1 sigma", .unit = "W", .digits = output::significant(2)},
-                  {.key = "share", .title = "share of what it does to the readings", .digits = output::percent(0)}}};
-  for (const auto& b : wander.bodies) table.rows.push_back({b.body.name, b.sd_W, b.share});
-  add(section, std::move(table));
   return section;
 }
 
@@ -113,23 +86,21 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
                   "Root mean squares and peaks on rows that were kept out of the fit. Noise floor: the scatter of the "
                   "readings alone.",
               .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
-  Table full{
-      .title = "The same with other models on these rows, and over all rows",
-      .caption =
-          "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
-          "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers; "
-          "found: what the searches without these rows found, whatever of it is written. Extended is no worse than as "
-          "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
-          "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
-          "to which its numbers were fitted.",
-      .columns = {{.title = "channel"}, {.key = "unit", .title = "unit"}},
-      .detail = true};
+  Table full{.title = "The same with other models on these rows, and over all rows",
+             .caption =
+                 "Regression: ridge on memories of speed, ambient and whatever else drives, which knows nothing of the "
+                 "machine; then with readings of thermometers too. Named causes: these alone beside the scenario's numbers. "
+                 "Extended is no worse than as "
+                 "written by choice: where it was worse on these rows, nothing is written; how much rows weigh in a "
+                 "calibration was chosen by them. The file: what the written scenario gives over the whole of all records, "
+                 "to which its numbers were fitted.",
+             .columns = {{.title = "channel"}, {.key = "unit", .title = "unit"}},
+             .detail = true};
   const std::set<std::string> of_first_table = {"rmse_before", "rmse_after", "noise_floor", "peak_before", "peak_after"};
   for (const auto& [key, title] : {std::pair{"rmse_before", "as written"},
                                    {"rmse_calibrated", "scatter alone"},
                                    {"rmse_named", "named causes"},
                                    {"rmse_after", "extended"},
-                                   {"rmse_found", "found"},
                                    {"rmse_regression_drive", "regression"},
                                    {"rmse_regression_readings", "with thermometers"},
                                    {"noise_floor", "noise floor"},
@@ -141,8 +112,8 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
     full.columns.push_back({.title = title, .digits = kNumbersDigits});
   }
   for (const auto& g : d.gain)
-    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_found,
-                          g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
+    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_of_drive,
+                          g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_all_before,
                           g.rmse_written});
   full.rows = table.rows;
   add(section, std::move(table));
@@ -151,8 +122,7 @@ Section gain_section(const diagnosis::Diagnosis& d, const std::string& file, con
   for (const auto& [key, over_noise] : {std::pair{"over_noise.as_written", d.misses.as_written},
                                         {"over_noise.calibrated", d.misses.calibrated},
                                         {"over_noise.named", d.misses.named},
-                                        {"over_noise.extended", d.misses.extended},
-                                        {"over_noise.found", d.misses.found}})
+                                        {"over_noise.extended", d.misses.extended}})
     add(section, Value{.key = key, .datum = over_noise});
   const bool numbers_stay =
       std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return !e.is_written; });

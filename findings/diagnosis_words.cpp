@@ -45,9 +45,6 @@ std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
       m.as_written, m.calibrated);
   if (!std::isnan(m.named)) text += fmt::format("; {:.2f} with the named causes beside these", m.named);
   text += fmt::format("; {:.2f} with all that is written", m.extended);
-  if (!std::isnan(m.found) && std::abs(m.found - m.extended) > 0.005 * m.extended)
-    text +=
-        fmt::format("; {:.2f} with all that the searches without these rows found, whether or not it is written", m.found);
   std::vector<std::string> open;
   for (const auto& g : d.gain) {
     if (std::isnan(g.rmse_before)) open.push_back(diagnosis::channel_text(g.name, g.unit));

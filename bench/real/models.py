@@ -91,11 +91,10 @@ def regression(case, fit, folder, channel):
 
 def observed(case, program, scenario, fit, folder, channel):
     """RMS of the observer on the kept-out rows of a displacement; None where `validate` has none."""
-    with open(scenario, encoding="utf-8") as file:
-        text = re.sub(r"^study:\n(?:[ #].*\n|\n)*", "", file.read(), count=1, flags=re.M)
+    text = re.sub(r"^study:\n(?:[ #].*\n|\n)*", "", runs.text_from_anywhere(scenario), count=1, flags=re.M)
     study = os.path.join(folder, f"observer_{channel}.yaml")
     with open(study, "w", encoding="utf-8") as out:
-        out.write(re.sub(r"\bcsv: (?![/\"])", f"csv: {os.path.dirname(scenario)}/", text) + f"\nstudy: {{target: {records.base(channel)}, tolerance: 10 um}}\n")
+        out.write(text + f"\nstudy: {{target: {records.base(channel)}, tolerance: 10 um}}\n")
     arguments = [program, "validate", study, "-o", study[:-5]]
     for path in fit:
         arguments += ["--train", path]

@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import models
+import program
 import records
 
 
@@ -41,6 +42,14 @@ class Models(unittest.TestCase):
             self.assertIsNone(models.regression(case, paths[:2], folder, "tail_um"))
             late = records.Case("made up", "", "nose_um", [], [], [], judge_files=[paths[2]], judge_rows=lambda t_s: t_s > 3e4)
             self.assertNotEqual(models.regression(late, paths[:2], folder, "noise_um"), left)
+
+    def test_a_scenario_is_read_from_any_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "extended.yaml")
+            with open(path, "w", encoding="utf-8") as out:
+                out.write('a: {csv: "../run.csv", measured: true}\nb: {csv: days.csv}\nc: {csv: "/run.csv"}\nd: {csv: /run.csv}\n')
+            self.assertEqual(program.text_from_anywhere(path),
+                             f'a: {{csv: "{folder}/../run.csv", measured: true}}\nb: {{csv: {folder}/days.csv}}\nc: {{csv: "/run.csv"}}\nd: {{csv: /run.csv}}\n')
 
 
 if __name__ == "__main__":

@@ -113,18 +113,22 @@ def raw_rows(path):
         return list(csv.reader(file))
 
 
+def text_from_anywhere(scenario):
+    """The text of a scenario whose tables and records are found from any folder: their paths, quoted or not, are made absolute."""
+    with open(scenario, encoding="utf-8") as file:
+        return re.sub(r'\b(csv: "?)(?![/"])', lambda m: f"{m.group(1)}{os.path.dirname(os.path.abspath(scenario))}/", file.read())
+
+
 def simulated_channels(program, scenario, record, folder, name, ambient=""):
     """{header: [(time, measured, simulated)]} of all channels that record and simulation have, by the scenario driven as the record says; None and why where that fails.
 
     ambient: the channel of the surroundings, where it is not called so."""
-    with open(scenario, encoding="utf-8") as file:
-        text = re.sub(r"\bcsv: (?![/\"])", f"csv: {os.path.dirname(scenario)}/", file.read())
+    text = text_from_anywhere(scenario)
     text = re.sub(r"^cyclograms:.*\n", lambda m: m.group(0) + f"  kept_out: {{csv: {record}}}\n", text, count=1, flags=re.M)
     rows = raw_rows(record)
     ambient = "ambient" if "ambient_degC" in rows[0] else ambient
     if ambient:
         text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: {ambient}}}", text, count=1, flags=re.M)
-    # paths of extended.yaml are absolute; it may lie anywhere
     edited, log, out = (os.path.join(folder, name + end) for end in (".yaml", ".log", ""))
     with open(edited, "w", encoding="utf-8") as file:
         file.write(text)

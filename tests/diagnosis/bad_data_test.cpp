@@ -187,9 +187,6 @@ TEST(Happening, OfWhichHalfLiesInAHoleIsUnseen) {
   EXPECT_TRUE(is_unseen(happening(700.0, 1600.0)));
   EXPECT_FALSE(is_unseen(happening(700.0, 2000.0)));
   EXPECT_FALSE(is_unseen(happening(1200.0, 1500.0)));
-  Happening in_each_turn = happening(650.0, 1100.0);
-  in_each_turn.every_s = 1800.0;
-  EXPECT_FALSE(is_unseen(in_each_turn));
 }
 
 TEST(MissingData, NamesNothingAndWritesNothing) {  // 54 readings, of which one thermometer is plainly off

@@ -48,14 +48,6 @@ TEST(Odds, OfOneKindAtTwoPlacesLeaveThePlaceOpenAlone) {
   EXPECT_THAT(open_rivals(rivals), ElementsAre(1));
 }
 
-TEST(Kinds, OfHeatThatIsReleasedAndOfAnExchangeAreNoWordsForOneThing) {
-  EXPECT_TRUE(are_apart("heat_window", "contact"));
-  EXPECT_TRUE(are_apart("link", "friction_law"));
-  EXPECT_FALSE(are_apart("heat_window", "heat_source"));
-  EXPECT_FALSE(are_apart("link", "contact"));
-  EXPECT_FALSE(are_apart("coolant", "heat_source"));  // a circuit may take away a constant heat
-}
-
 TEST(Odds, OfWhatSaysTheSameInOtherWordsTakeNothingAway) {
   const std::vector<Rival> rivals = {{"heat_source", "chamber", 30.0}, {"heat_window", "chamber", 29.9, true}};
   EXPECT_EQ(odds_of(rivals).kind, 1.0);
