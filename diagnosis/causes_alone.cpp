@@ -27,7 +27,7 @@ std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult
   });
   Fold ahead = ahead_of(fitter.runs());
   Fitter whole(fitter.twin(), fitter.runs(), {}, {});
-  whole.set_noise(fitter.noise());
+  whole.set_noise(fitter.noise(), fitter.shared_noise());
   const Fitter part(whole, ahead.fitted);
   Judge judge(fitter, result, noise, {ahead});
   const std::vector<Prediction> written = judge.written();

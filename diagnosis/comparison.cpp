@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.hpp"
 #include "diagnosis/residual_structure.hpp"
 #include "effects/reading_chain.hpp"
 
@@ -10,14 +11,16 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kSlow_s = 1200.0;           // time constant of the slow errors of instruments and integrators
+constexpr double kNoMatter = 1e-3;           // least variance of shared noise along a direction, over the channels' own
 constexpr Eigen::Index kFewestForNoise = 4;  // least readings of a channel in a record
 constexpr std::size_t kRowsForColumns = 60;  // with fewer, noise and columns cannot be distinguished
 
 }  // namespace
 
-Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise) {
+Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
+                       const SharedNoise& shared) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    runs_.push_back({.first_block = blocks_.size(), .n_blocks = runs[r].channels.size(), .first = n_});
+    runs_.push_back({.first_block = blocks_.size(), .n_blocks = runs[r].channels.size(), .first = n_, .q = {}, .taken = {}});
     for (const MeasuredChannel& c : runs[r].channels) {
       whiteners_.emplace_back(noise.at(c.name), runs[r].time_s, present(c.value));
       blocks_.push_back({r, c.name, c.output, n_, whiteners_.back().n()});
@@ -26,6 +29,7 @@ Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std:
       n_ += n;
     }
     runs_.back().n = n_ - runs_.back().first;
+    if (!shared.empty() && shared[r].cols() > 0) take_shared(runs_.back(), shared[r]);
   }
   measured_.resize(n_);
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -35,6 +39,31 @@ Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std:
       readings.row(static_cast<Eigen::Index>(c)) = runs[r].channels[c].value.transpose();
     whiten(r, readings, measured_.segment(runs_[r].first, runs_[r].n));
   }
+}
+
+/// (I + U U')^-1/2 = I - Q diag(1 - 1/sqrt(1 + s^2)) Q' with U = Q diag(s) V', U the root once each channel's own noise
+/// is white.
+void Comparison::take_shared(Run& run, const Eigen::MatrixXd& root) {
+  const Eigen::Index n_times = root.rows() / static_cast<Eigen::Index>(run.n_blocks);
+  Eigen::MatrixXd u(run.n, root.cols());
+  for (std::size_t c = 0; c < run.n_blocks; ++c) {
+    const Block& block = blocks_[run.first_block + c];
+    const auto rows = root.middleRows(static_cast<Eigen::Index>(c) * n_times, n_times);
+    for (Eigen::Index k = 0; k < u.cols(); ++k)
+      whiteners_[run.first_block + c].apply(rows.col(k), u.col(k).segment(block.first - run.first, block.n));
+  }
+  const dense::SymmetricEigen eigen(u.transpose() * u);
+  const Eigen::VectorXd squares = eigen.eigenvalues().cwiseMax(0.0);
+  const auto n_kept = (squares.array() > kNoMatter).count();
+  const Eigen::VectorXd kept = squares.tail(n_kept);
+  run.q = u * eigen.eigenvectors().rightCols(n_kept) * kept.cwiseSqrt().cwiseInverse().asDiagonal();
+  run.taken = 1.0 - (1.0 + kept.array()).rsqrt();
+}
+
+void Comparison::without_shared(const Run& run, Eigen::Ref<Eigen::VectorXd> whitened) const {
+  if (run.taken.size() == 0) return;
+  const Eigen::VectorXd along = run.taken.cwiseProduct(run.q.transpose() * whitened);
+  whitened.noalias() -= run.q * along;
 }
 
 void Comparison::whiten(std::size_t r, const Eigen::Ref<const Eigen::MatrixXd>& readings,
@@ -49,6 +78,7 @@ void Comparison::whiten(std::size_t r, const Eigen::Ref<const Eigen::MatrixXd>& 
     else
       whiteners_[run.first_block + c].apply(of_channel.transpose(), to);
   }
+  without_shared(run, whitened);
 }
 
 Eigen::VectorXd Comparison::whitened(const Prediction& prediction) const {
@@ -57,6 +87,7 @@ Eigen::VectorXd Comparison::whitened(const Prediction& prediction) const {
     const Eigen::VectorXd series = prediction[blocks_[b].run].row(blocks_[b].output).transpose();
     whiteners_[b].apply(series, w.segment(blocks_[b].first, blocks_[b].n));
   }
+  for (const Run& run : runs_) without_shared(run, w.segment(run.first, run.n));
   return w;
 }
 

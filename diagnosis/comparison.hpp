@@ -13,6 +13,11 @@ namespace driftwright::diagnosis {
 /// Outputs of all runs, each n_outputs x n_times.
 using Prediction = std::vector<Eigen::MatrixXd>;
 
+/// Noise that the channels of a run share, in addition to the noise of each channel: a root R of its covariance; the
+/// readings of all channels then have the covariance of their noise plus R R'. For each run (n_channels n_times) x
+/// n_pieces, channel after channel; no columns: no shared noise.
+using SharedNoise = std::vector<Eigen::MatrixXd>;
+
 /// Sums `together` neighbouring rows and divides by the root of their number. @returns  how many rows that are
 template <class In, class Out>
 Eigen::Index gather(const In& rows, Eigen::Index together, Out&& few) {
@@ -29,8 +34,10 @@ Eigen::Index gather(const In& rows, Eigen::Index together, Out&& few) {
 
 class Comparison {
  public:
-  /// @param noise  for each measured channel, by name
-  Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise);
+  /// @param noise   for each measured channel, by name
+  /// @param shared  for each run, or empty
+  Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
+             const SharedNoise& shared = {});
 
   [[nodiscard]] Eigen::Index n() const { return n_; }
   /// W y of a prediction, or of a difference of two.
@@ -49,6 +56,7 @@ class Comparison {
     Eigen::Index first, n;  ///< of the whitened vector
   };
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  /// The whitener of one channel's own noise.
   [[nodiscard]] const Whitener& whitener(std::size_t block) const { return whiteners_[block]; }
   [[nodiscard]] Eigen::Index first_of(std::size_t run) const { return runs_[run].first; }  ///< of the whitened vector
   [[nodiscard]] Eigen::Index n_of(std::size_t run) const { return runs_[run].n; }
@@ -78,10 +86,15 @@ class Comparison {
   };
   void condense(std::size_t first_block, std::size_t n_blocks, const Eigen::Ref<const Eigen::MatrixXd>& whitened,
                 Eigen::Ref<Eigen::MatrixXd> few) const;
+  /// I - Q diag(taken) Q' whitens what a run's channels share, once each channel's own noise is white.
   struct Run {
     std::size_t first_block = 0, n_blocks = 0;
     Eigen::Index first = 0, n = 0;
+    Eigen::MatrixXd q;
+    Eigen::VectorXd taken;
   };
+  void take_shared(Run& run, const Eigen::MatrixXd& root);
+  void without_shared(const Run& run, Eigen::Ref<Eigen::VectorXd> whitened) const;
 
   std::vector<Run> runs_;
   std::vector<Block> blocks_;

@@ -193,7 +193,7 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
                    "for a single record with an unexplained rest, a cause is written only if it has 20 nats, has no time of "
                    "its own, and does not worsen the prediction of the last third of the record"};
   Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
-  numbers_as_written.set_noise(fitter.noise());
+  numbers_as_written.set_noise(fitter.noise(), fitter.shared_noise());
   d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
   d.holdout = alone.how;
   d.gain = alone.channels;
@@ -316,6 +316,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.search = std::move(own.search);
   d.statements = d.search.statements;
   d.unexplained = std::move(own.unexplained);
+  d.wander = std::move(own.wander);
   d.weighed_by_model_error = own.weighed_by_model_error;
   d.moved = std::move(own.moved);
   std::vector<double> known_to;

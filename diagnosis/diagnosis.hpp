@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "diagnosis/experiment.hpp"
+#include "diagnosis/heat_wander.hpp"
 #include "diagnosis/posterior.hpp"
 #include "diagnosis/search.hpp"
 
@@ -121,8 +122,9 @@ struct Diagnosis {
   /// Causes, intervals and gains treat the model's error as noise, because it is far larger than the noise with any
   /// claim.
   bool weighed_by_model_error = false;
-  std::string ended_at;  ///< the step in which the user ended it; empty: it is complete
-  std::string holdout;   ///< how the gain was held out
+  std::optional<HeatWander> wander;  ///< with weighed_by_model_error: random heat in bodies, by which readings are moved
+  std::string ended_at;              ///< the step in which the user ended it; empty: it is complete
+  std::string holdout;               ///< how the gain was held out
   std::vector<ChannelGain> gain;
   KeptOutMisses misses;
   std::vector<DataFinding> data;

@@ -112,7 +112,7 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       nuisance_(other.nuisance_),
       differences_(other.differences_),
       written_differences_(other.written_differences_) {
-  if (other.comparison_) set_noise(other.noise_);
+  if (other.comparison_) set_noise(other.noise_, other.shared_);
 }
 
 double heavy_tailed_width(double prior_sd, double x) {
@@ -293,9 +293,10 @@ void Fitter::add_linear(const std::vector<Prediction>& columns) {
   nuisance_.tail(n_nuisance() - before).setZero();
 }
 
-void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
+void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared) {
   noise_ = noise;
-  comparison_.emplace(runs_, noise);
+  shared_ = std::move(shared);
+  comparison_.emplace(runs_, noise, shared_ ? *shared_ : SharedNoise{});
   whiten_slopes();
   written_slopes_ = whitened_slopes(written_differences_);
   written_squares_.noalias() = written_slopes_.transpose() * written_slopes_;

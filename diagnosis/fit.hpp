@@ -79,8 +79,8 @@ class Fitter {
   /// Largest distance of scatter's numbers from the scenario's values. A number that is further off is a fault, and
   /// statements look for it.
   void hold_within(double sigmas) { most_sigmas_ = sigmas; }
-  /// Whitens anew. @param noise  by channel
-  void set_noise(const std::map<std::string, NoiseModel>& noise);
+  /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
+  void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
@@ -100,7 +100,8 @@ class Fitter {
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
   [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
-  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
+  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }           ///< by channel
+  [[nodiscard]] const std::shared_ptr<const SharedNoise>& shared_noise() const { return shared_; }  ///< null: none
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
   [[nodiscard]] const Twin& twin() const { return twin_; }
   /// W f's slopes by scatter and linear columns.
@@ -156,6 +157,7 @@ class Fitter {
   std::vector<Prediction> linear_;
   double most_sigmas_ = 1e300;
   std::map<std::string, NoiseModel> noise_;
+  std::shared_ptr<const SharedNoise> shared_;
   std::optional<Comparison> comparison_;
   Eigen::VectorXd nuisance_;             ///< where it was settled
   std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened

@@ -65,15 +65,24 @@ void search_beside_moved(Inquiry& of, const std::vector<Candidate>& names, const
   }
 }
 
-/// Searches again with the model's error as slow noise of its channels.
+/// Searches again with the model's error as process noise (heat in its bodies) or as slow noise of its channels.
 void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs,
-                          const std::vector<Candidate>& names, const SearchOptions& how,
-                          const std::map<std::string, NoiseModel>& rough, Inquiry& of, const Listener& listener) {
+                          const std::vector<Candidate>& names, const SearchOptions& how, Inquiry& of,
+                          Twin::Workspace& workspace, const Listener& listener) {
   listener.begin("weighing again by what the model misses");
+  std::map<std::string, NoiseModel> rough = of.noise;
+  std::shared_ptr<const SharedNoise> shared;
+  (void)has_solution([&] {
+    const TwinState state = of.fitter->state(of.search.hypothesis, of.search.fit.x);
+    of.wander = heat_wander(*of.fitter, state, of.search.fit.prediction, workspace);
+    if (of.wander) shared = std::make_shared<const SharedNoise>(std::move(of.wander->readings));
+  });
+  const Prediction& best = of.wander ? of.wander->prediction : of.search.fit.prediction;
+  if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->hold_within(kTooFar);
   of.moved.clear();
-  of.fitter->set_noise(rough);
+  of.fitter->set_noise(rough, shared);
   search_beside_moved(of, names, how, listener);
   of.weighed_by_model_error = true;
 }
@@ -154,11 +163,11 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
     }
   }
   Twin::Workspace workspace(ground.twin);
-  const auto rough = listener.wants_end() ? std::nullopt : models_own_error(runs, of.search.fit.prediction, of.noise);
+  const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
   listener.begin("looking at what is left");
   of.unexplained = what_is_left(ground, runs, of, workspace);
-  if (of.unexplained && rough) {
-    weigh_by_model_error(ground, runs, names, how, *rough, of, listener);
+  if (of.unexplained && is_rough) {
+    weigh_by_model_error(ground, runs, names, how, of, workspace, listener);
     if (auto left = unexplained_of(*of.fitter, of.search, of.noise)) of.unexplained = std::move(left);
   }
   if (!listener.wants_end()) weigh_findings(*of.fitter, how, of.search, listener);

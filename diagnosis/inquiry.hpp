@@ -1,5 +1,5 @@
 #pragma once
-// What the records say: noise, causes, numbers that have gone too far.
+// What the records say: noise, process noise, causes, numbers that have gone too far.
 
 #include "diagnosis/diagnosis.hpp"
 
@@ -22,6 +22,7 @@ struct InquiryGround {
 struct Inquiry {
   std::map<std::string, NoiseModel> noise;
   bool weighed_by_model_error = false;
+  std::optional<HeatWander> wander;
   std::vector<std::size_t>
       moved;  ///< of scatter: numbers that have gone so far that they are causes; their priors are those of faults
   std::unique_ptr<Fitter> fitter;  ///< settled where the search ended, with its noise and those priors

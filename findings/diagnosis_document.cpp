@@ -251,6 +251,7 @@ void add_judgement(Section& numbers, const DiagnosisFindings& found) {
 /// @param after  name of Diagnosis::extended
 void add_evidence(Section& experts, const DiagnosisFindings& found, const std::string& after) {
   const diagnosis::Diagnosis& d = found.diagnosis;
+  experts.sections.push_back(d.wander ? wander_section(*d.wander) : Section{.blocks = {Value{.key = "process_noise"}}});
   for (Section& record : residual_sections(found.measured, d, after)) experts.sections.push_back(std::move(record));
   const std::vector<Iso230Run> iso = measured_iso230_3(found.measured);
   Table figures = iso230_3_table(iso);

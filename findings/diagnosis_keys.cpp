@@ -138,7 +138,15 @@ void add_unexplained(std::vector<ResultKey>& keys) {
        sometimes(
            flag("unexplained.fails_held_out", "true where the causes predict kept-out rows clearly worse than none does")),
        sometimes(count("unexplained.statement", "of `statements`, counted from 0: that the catalogue has no name for")),
-       sometimes(text("unexplained.statement_in_words", "the same"))});
+       sometimes(text("unexplained.statement_in_words", "the same")),
+       or_null(object("process_noise", "where the model errs more than three times the noise")),
+       number("process_noise.stays_alike_min", "time for which the heat stays alike [min]"),
+       sometimes(flag("process_noise.at_most", "true where that time is the shortest of those tried")),
+       sometimes(flag("process_noise.at_least", "true where it is the longest of them")),
+       object("process_noise.bodies[]"),
+       text("process_noise.bodies[].where", "body"),
+       number("process_noise.bodies[].standard_deviation_W", "of heat that comes and goes [W]"),
+       number("process_noise.bodies[].share", "of what all of it does to the readings")});
 }
 
 void add_gain(std::vector<ResultKey>& keys) {

@@ -25,6 +25,11 @@ std::string number_name(const diagnosis::Estimate& e) {
   return e.line > 0 ? fmt::format("{}, line {}", e.name, e.line) : e.name;
 }
 
+const char* limit_words(diagnosis::HeatWander::Limit limit) {
+  using Limit = diagnosis::HeatWander::Limit;
+  return limit == Limit::kAtMost ? "at most" : limit == Limit::kAtLeast ? "at least" : "about";
+}
+
 /// What could be learned beside the file, and the command that does so.
 void add_remainder(Section& section, const studies::Remainder& remainder, const std::string& file) {
   if (!remainder.why_not.empty()) {
@@ -75,6 +80,27 @@ Section unexplained_section(const diagnosis::Diagnosis& d) {
     put("statement", static_cast<std::int64_t>(*u.statement));
     put("statement_in_words", diagnosis::words(d.statements.stated[*u.statement].says));
   }
+  return section;
+}
+
+Section wander_section(const diagnosis::HeatWander& wander) {
+  Section section{.key = "process_noise", .title = "Where the model errs", .detail = true};
+  add(section,
+      Text{fmt::format("Heat that comes and goes in its bodies, alike for {} {:.0f} min{}, would explain what the first "
+                       "search left. Causes are weighed beside this process noise.",
+                       limit_words(wander.limit), wander.time_s / 60.0,
+                       wander.limit == diagnosis::HeatWander::Limit::kNone ? "" : ", an end of the times that were tried")});
+  add(section, Value{.key = "stays_alike_min", .datum = wander.time_s / 60.0});
+  using Limit = diagnosis::HeatWander::Limit;
+  if (wander.limit != Limit::kNone)
+    add(section, Value{.key = wander.limit == Limit::kAtMost ? "at_most" : "at_least", .datum = true});
+  Table table{
+      .key = "bodies",
+      .columns = {{.key = "where", .title = "body"},
+                  {.key = "standard_deviation_W", .title = "heat, 1 sigma", .unit = "W", .digits = output::significant(2)},
+                  {.key = "share", .title = "share of what it does to the readings", .digits = output::percent(0)}}};
+  for (const auto& b : wander.bodies) table.rows.push_back({b.body.name, b.sd_W, b.share});
+  add(section, std::move(table));
   return section;
 }
 

@@ -9,6 +9,7 @@ namespace driftwright::findings {
 
 /// @pre something is unexplained
 [[nodiscard]] output::Section unexplained_section(const diagnosis::Diagnosis& d);
+[[nodiscard]] output::Section wander_section(const diagnosis::HeatWander& wander);
 /// @param file  that was written  @param remainder  what could be learned beside it, or null
 [[nodiscard]] output::Section gain_section(const diagnosis::Diagnosis& d, const std::string& file,
                                            const studies::Remainder* remainder);

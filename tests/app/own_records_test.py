@@ -51,7 +51,7 @@ def judge(diagnosis):
     d = json.loads(diagnosis.read_text())
     if d["verdict"] != "consistent":
         failures.append(("verdict " + d["verdict"], [diagnosis.parent.name], d["reason"][:300]))
-    wanted = {"verdict", "reason", "causes", "discriminating_experiment", "unexplained", "gain", "data", "calibrated", "complete", "n_candidates", "statements", "probability_nothing_wrong", "extended"}
+    wanted = {"verdict", "reason", "causes", "discriminating_experiment", "unexplained", "gain", "data", "calibrated", "process_noise", "complete", "n_candidates", "statements", "probability_nothing_wrong", "extended"}
     of_a_channel = {"name", "unit", "rmse_before", "rmse_calibrated", "rmse_after", "rmse_written", "noise_floor"}
     missing = wanted - d.keys() | {"gain.holdout" for _ in [0] if "holdout" not in d["gain"]} | of_a_channel - d["gain"]["channels"][0].keys()
     if missing:
