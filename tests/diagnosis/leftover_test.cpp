@@ -9,31 +9,13 @@
 namespace driftwright::diagnosis::leftover_test {
 namespace {
 
-constexpr const char* kBox = R"(name: box
-reference_temperature: 20 degC
-machine: {generator: lumped}
-effects:
-  - {type: node, node: heater, capacity: 2400 J/K}
-  - {type: node, node: wall, capacity: 9000 J/K}
-  - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
-  - {type: link, node: heater, to: wall, conductance: 3 W/K}
-  - {type: link, node: wall, to: ambient, conductance: 1.5 W/K}
-ambient: [[0 h, 21 degC]]
-sensors:
-  - {name: heater, node: heater}
-  - {name: wall, node: wall}
-cyclograms:
-  day: [[60 min, 1000 rpm], [40 min, 0 rpm], [90 min, 1000 rpm], [50 min, 500 rpm]]
-  evening: [[50 min, 400 rpm], [70 min, 1000 rpm], [40 min, 0 rpm], [60 min, 800 rpm]]
-solver: {output_interval: 60 s}
-)";
 constexpr double kNoise_K = 0.03;
 
 // A thermometer that bends away by 2 K in a parabola over its record, of which the last third is not known. Curves that
 // are fitted to two thirds say anything of the last one.
 TEST(Leftover, NothingIsLeftWhereThereIsNoReading) {
-  const Beside beside(write_file("plain.yaml", kBox),
-                      noisy_records(write_file("truth.yaml", kBox), "box_", {.noise_K = kNoise_K, .noise_um = 0.1}));
+  const Beside beside(write_file("plain.yaml", kTwoNodes), noisy_records(write_file("truth.yaml", kTwoNodes), "leftover_",
+                                                                         {.noise_K = kNoise_K, .noise_um = 0.1}));
   std::vector<MeasuredRun> runs = beside.runs;
   MeasuredRun& run = runs[0];
   Prediction none;
@@ -49,7 +31,7 @@ TEST(Leftover, NothingIsLeftWhereThereIsNoReading) {
     if (i < n_known) squares += bent_K * bent_K;
   }
   run.channels.resize(1);
-  runs[1].channels.clear();
+  for (std::size_t r = 1; r < runs.size(); ++r) runs[r].channels.clear();
   const NoiseModel noise{.white = kNoise_K};
   const std::vector<Leftover> left = leftovers(runs, none, {{run.channels[0].name, noise}});
   ASSERT_EQ(left.size(), 1U);
