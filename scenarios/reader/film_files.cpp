@@ -48,8 +48,8 @@ constexpr Placeholder kPlaceholders[] = {
   throw InputError(e.reference_where.at("file"), message);
 }
 
-/// All files of a pattern, by rising operating point or time. `over`: what the placeholder in the file names is, speed or
-/// time.
+/// All files of a pattern, by rising operating point or time. `over`: what replaces the placeholder in their names, speed
+/// or time.
 std::vector<FilmFile> files_of(const Effect& e, FieldOver& over) {
   const fs::path path = e.words.at("file");
   const Placeholder* holder = nullptr;

@@ -153,7 +153,7 @@ TEST_F(ContinuedRecords, ASimulatedRunIsCorrectedAsItWasJudged) {
   EXPECT_THAT(compensate(noisy, "ridge_all_sensors.json", "--through none --cyclogram steps").output,
               HasSubstr("it was fitted on"));
 
-  // a plan is none of what was judged
+  // no plan was among the strategies that were judged
   const CommandOutcome planned = compensate(noisy, "ridge_all_sensors.json", "--through schedule");
   EXPECT_EQ(planned.exit_code, 0) << planned.output;
   EXPECT_THAT(planned.output, AllOf(HasSubstr("follows readings live"), HasSubstr("margin of")));
