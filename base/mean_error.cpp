@@ -24,8 +24,11 @@ MeanError mean_error(std::span<const double> values) {
 
 double surely_above(const MeanError& error) {
   if (error.n < 2) return -std::numeric_limits<double>::infinity();
-  const boost::math::students_t t(static_cast<double>(error.n - 1));
-  return error.mean - boost::math::quantile(t, 0.95) * error.standard_error;
+  return error.mean - student_quantile(static_cast<double>(error.n - 1), 0.95) * error.standard_error;
+}
+
+double student_quantile(double degrees, double share) {
+  return boost::math::quantile(boost::math::students_t(degrees), share);
 }
 
 }  // namespace driftwright

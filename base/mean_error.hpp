@@ -19,4 +19,7 @@ struct MeanError {
 /// fewer than two values.
 [[nodiscard]] double surely_above(const MeanError& error);
 
+/// Quantile of Student's t. @param degrees  of freedom, above 0. @param share  in (0, 1)
+[[nodiscard]] double student_quantile(double degrees, double share);
+
 }  // namespace driftwright

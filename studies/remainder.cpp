@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 
 #include "base/errors.hpp"
+#include "base/mean_error.hpp"
 #include "base/normal.hpp"
 #include "base/quantity.hpp"
 #include "base/record_channel.hpp"
@@ -244,8 +244,8 @@ double remaining_sd(const identification::IdentifiedChannel& channel) {
   const MeanError& square = channel.square_kept_out;
   if (square.n == 0) return 0.0;
   const double noise = std::isfinite(channel.noise) ? channel.noise : 0.0;
-  const boost::math::students_t t(static_cast<double>(square.n));
-  return boost::math::quantile(t, 0.975) / kNormal95 * std::sqrt(std::max(0.0, square.mean - noise * noise));
+  return student_quantile(static_cast<double>(square.n), 0.975) / kNormal95 *
+         std::sqrt(std::max(0.0, square.mean - noise * noise));
 }
 
 std::vector<effects::Effect> learned_effects(const identification::Identified& extension) {
