@@ -96,7 +96,8 @@ Remainder without_claims(const Hypothesis& hypothesis, const std::vector<std::si
 
 Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter,
                std::vector<Prediction> linear, const Listener& listener)
-    : twin_(twin), runs_(runs), scatter_(std::move(scatter)), linear_(std::move(linear)) {
+    : twin_(twin), runs_(runs), scatter_(std::move(scatter)), linear_rows_(runs.size()) {
+  take_linear(std::move(linear));
   nuisance_ = Eigen::VectorXd::Zero(n_nuisance());
   const Eigen::VectorXd x = nuisance_;
   take_slopes({}, x, {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
@@ -108,11 +109,23 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       runs_(runs),
       scatter_(other.scatter_),
       linear_(other.linear_),
+      linear_rows_(other.linear_rows_),
       most_sigmas_(other.most_sigmas_),
       nuisance_(other.nuisance_),
       differences_(other.differences_),
       written_differences_(other.written_differences_) {
   if (other.comparison_) set_noise(other.noise_, other.shared_);
+}
+
+void Fitter::take_linear(std::vector<Prediction> columns) {
+  for (Prediction& column : columns) {
+    for (std::size_t run = 0; run < column.size(); ++run) {
+      for (Eigen::Index channel = 0; channel < column[run].rows(); ++channel) {
+        if (!column[run].row(channel).isZero(0.0)) linear_rows_[run].push_back({linear_.size(), channel});
+      }
+    }
+    linear_.push_back(std::move(column));
+  }
 }
 
 double heavy_tailed_width(double prior_sd, double x) {
@@ -212,9 +225,9 @@ Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction
 Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                  Eigen::MatrixXd response) const {
   Eigen::MatrixXd readings = twin_.read(state, runs_[run], std::move(response));
-  for (std::size_t l = 0; l < linear_.size(); ++l) {
-    const double amplitude = x[static_cast<Eigen::Index>(scatter_.size() + l)];
-    if (amplitude != 0.0) readings += amplitude * linear_[l][run];
+  for (const LinearRow& row : linear_rows_[run]) {
+    const double amplitude = x[static_cast<Eigen::Index>(scatter_.size() + row.of)];
+    if (amplitude != 0.0) readings.row(row.channel) += amplitude * linear_[row.of][run].row(row.channel);
   }
   return readings;
 }
@@ -287,7 +300,7 @@ void Fitter::whiten_slopes() {
 }
 
 void Fitter::add_linear(const std::vector<Prediction>& columns) {
-  linear_.insert(linear_.end(), columns.begin(), columns.end());
+  take_linear(columns);
   const Eigen::Index before = nuisance_.size();
   nuisance_.conservativeResize(n_nuisance());
   nuisance_.tail(n_nuisance() - before).setZero();

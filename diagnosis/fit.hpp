@@ -136,6 +136,7 @@ class Fitter {
 
  private:
   class Climb;  ///< one fit (climb.cpp)
+  void take_linear(std::vector<Prediction> columns);
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;
@@ -155,6 +156,11 @@ class Fitter {
   const std::vector<MeasuredRun>& runs_;
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
+  struct LinearRow {
+    std::size_t of;  ///< index of the column
+    Eigen::Index channel;
+  };
+  std::vector<std::vector<LinearRow>> linear_rows_;  ///< by run: where columns are not zero
   double most_sigmas_ = 1e300;
   std::map<std::string, NoiseModel> noise_;
   std::shared_ptr<const SharedNoise> shared_;
