@@ -24,8 +24,20 @@ class Impossible(Exception):
 @functools.lru_cache(maxsize=None)
 def catalogue(path=None):
     """way -> how it is drawn, what it does and what it is called; a set may have further ways in a file of its own."""
-    out = yaml.safe_load((FOLDER / "faults.yaml").read_text())
-    return out | (yaml.safe_load(pathlib.Path(path).read_text()) if path else {})
+    out = yaml.safe_load((FOLDER / "faults.yaml").read_text()) | (yaml.safe_load(pathlib.Path(path).read_text()) if path else {})
+    return {way: whole(out, way) for way in out}
+
+
+def whole(ways, way):
+    """A way with what it has from the one that it is `like`, and with what need not be written."""
+    spec = ways[way]
+    if "like" in spec:
+        base = whole(ways, spec["like"])
+        spec = {**base, **spec, "draw": {**base.get("draw", {}), **spec.get("draw", {})}}
+        spec = {k: {a: b for a, b in x.items() if b is not None} if k == "draw" else x for k, x in spec.items() if k != "like" and x is not None}
+    if "key" in spec and "where" not in spec:
+        spec = spec | {"where": next(x for x in ("node", "name") if x in spec.get("draw", {}) or x in spec.get("late", {}))}
+    return spec
 
 
 def bounded(low, high):
@@ -440,8 +452,9 @@ def candidates(words, at, when, records, ambient):
 def told_alike(words, fault, judge, scale):
     """Those of the candidates that leave less than LEAST_NATS of it, by linear nats about the nominal numbers with their size free; `scale`: refitted over linear nats of the fault."""
     spec = fault.told["spec"]
-    at = spec.get("alike", [])
+    at = spec.get("alike", [x for x in spec["where"].split(",") if x in spec.get("draw", {}) or x in spec.get("late", {})])
     at = [name(x, fault.names) for x in at] if isinstance(at, list) else laws.value(at, fault.names)
+    at = [b for x in at for b in (x if isinstance(x, list) else [x]) if b in words.machine.bodies]
     d, out = judge.deviation([fault], 1), []
     for effect, where, other in candidates(words, list(at), fault.told["when"], fault.records, spec.get("alike_ambient")):
         beside = judge.deviation([other], 1)[0]
