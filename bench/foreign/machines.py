@@ -64,7 +64,7 @@ def parts(rng, m, spec):
 def machine(rng, family, spec):
     """(the machine, how its records are)."""
     m = Machine(family)
-    m.title, m.groups = spec["title"], spec.get("groups", {})
+    m.title, m.groups = spec.get("title", family.replace("_", " ")), spec.get("groups", {})
     parts(rng, m, spec)
     for more in spec.get("maybe", []):
         if rng.random() < more["chance"]:
