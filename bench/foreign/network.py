@@ -415,8 +415,9 @@ class Truth:
         heats = {}
 
         def heat_of(i, T, k):
-            q = heats.setdefault(i, self.heat_of(i)[0])[:, k]
-            return q * np.exp(-self.numbers.get(f"decay {i}", 0.0) * (T[:, self.index[self.machine.heats[i]["node"]]] - self.machine.t_ref))
+            if i not in heats:
+                heats[i] = self.heat_of(i)[0]
+            return heats[i][:, k] * np.exp(-self.numbers.get(f"decay {i}", 0.0) * (T[:, self.index[self.machine.heats[i]["node"]]] - self.machine.t_ref))
         states, state = {}, lambda f: states.setdefault(id(f), {})
 
         def watts(T, k):
