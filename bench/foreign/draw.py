@@ -31,7 +31,7 @@ TRIES = 150
 NATS = dict(A=[16, 400], C16=[16, 400], C8=[8, 16], D=[16, 400])      # of the refitted value, where a set does not say others
 COLUMNS = [("sun", "W_m2"), ("valve", "percent"), ("purge", "1"), ("lamp", "V"), ("aux_power", "W"), ("conveyor", "count"), ("loop", "degC")]
 DEFAULTS = dict(families=[], cases={}, nats={}, drives=list(drives.STYLES), logger=dict(rows=[75, 900], styles=dict(even=0.4, gaps=0.15, lost=0.15, slower=0.1, watched=0.2), records=[1, 1, 2, 2, 3, 3, 4, 5]),
-                instruments={}, start=dict(hall=0.45, steady=0.35, degC=[10, 38]), coloured=0.3, missing=[0.75, 0.005, 0.03], columns=COLUMNS, faults=None)
+                instruments={}, start=dict(hall=0.45, steady=0.35, degC=[10, 38]), coloured=0.3, missing=[0.75, 0.005, 0.03], columns=COLUMNS, hall_noise=None, faults=None)
 
 
 def read_set(path):
@@ -138,7 +138,7 @@ def the_records(rng, a_set, machine, plan, column, n_records):
         styles = [str(rng.choice(a_set["drives"])) for _ in range(3)]
         record = drives.record(rng, f"measured_{r + 1}" if r < n_records else "holdout_1", plan, time_s, styles, column)
         out.append(drives.thinned(record, 5) if style == "on_change" else record)
-    if any(max(np.ptp(x) for x in [r.speed, r.power, *r.feeds.values()]) == 0 or (column and np.ptp(r.columns[column[0]][1]) == 0) for r in out):
+    if any(max(np.ptp(x) for x in [r.speed, r.power, *r.feeds.values(), *(r.columns[c][1] for c in plan.get("columns", {}))]) == 0 or (column and np.ptp(r.columns[column[0]][1]) == 0) for r in out):
         raise Impossible
     return out, dt, style
 
@@ -192,7 +192,11 @@ def attempt(a_set, index, number, cls, ways, order):
         t, u = (a[0] for a in simulate(machine, numbers, r, hidden, np.array([offsets[r.name]])))
         if too_warm(t):
             raise Impossible
-        files[r.name + ".csv"] = record_csv(machine, r, noisy(rng, t, noise["temperature"], noise["coloured"], r.time_s), noisy(rng, u, noise["displacement"], noise["coloured"], r.time_s), rng, missing)
+        told = r
+        if a_set["hall_noise"]:      # what records the ambient has noise, too
+            told = copy.copy(r)
+            told.hall = r.hall + rng.uniform(*a_set["hall_noise"]) * rng.standard_normal(len(r.hall))
+        files[r.name + ".csv"] = record_csv(machine, told, noisy(rng, t, noise["temperature"], noise["coloured"], r.time_s), noisy(rng, u, noise["displacement"], noise["coloured"], r.time_s), rng, missing)
     files["scenario.yaml"] = scenario(machine, dt)
     effects = []
     for f, w, l in zip(hidden, worth, line):

@@ -470,7 +470,7 @@ def thinned(record, every):
 
 
 def record(rng, name, plan, time_s, styles, column=None):
-    """`plan`: `records` of the machine's family: drive, hours, top, power, feeds, outdoor, days or week. styles: of speed, of power, of feeds."""
+    """`plan`: `records` of the machine's family: drive, hours, top, power, feeds, columns, outdoor, days or week. styles: of speed, of power, of feeds."""
     n, days, drive = len(time_s), plan.get("days") or plan.get("week"), plan["drive"]
     speed, power, feeds = np.zeros(n), np.zeros(n), {}
     if drive == "wind":
@@ -489,4 +489,7 @@ def record(rng, name, plan, time_s, styles, column=None):
             f = np.where(speed > 0, f, np.where(rng.random(n) < 0.1, 0.3 * f, 0.0))
         feeds[axis] = np.round(f, 0) / 60000
     columns = {column[0]: (column[1], further(rng, time_s, column[1]))} if column else {}
+    for c, how in plan.get("columns", {}).items():      # of the machine's own
+        low, top = how.get("low", 0.0), how["top"]
+        columns[c] = (how["unit"], np.round(low + driven(rng, time_s, how.get("style", styles[1]), top - low, days), 1 if top < 1000 else 0))
     return Record(name, time_s, speed, feeds, power, hall(rng, time_s, plan.get("outdoor", False)), columns)

@@ -85,7 +85,7 @@ def new_day(case, rng, sections):
         return np.array([float(s.get(key, 0.0)) for s in sections])[section]
 
     hall = np.round(np.interp(time_s, even, drives.hall(rng, even, case.plan.get("outdoor", False))), 2)
-    columns = {}
+    columns = {c: (how["unit"], np.full(len(time_s), how.get("low", 0.0))) for c, how in case.plan.get("columns", {}).items()}
     if case.column:
         name, unit = case.column
         columns[name] = (unit, drives.further(rng, time_s, unit))

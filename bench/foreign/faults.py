@@ -24,8 +24,20 @@ class Impossible(Exception):
 @functools.lru_cache(maxsize=None)
 def catalogue(path=None):
     """way -> how it is drawn, what it does and what it is called; a set may have further ways in a file of its own."""
-    out = yaml.safe_load((FOLDER / "faults.yaml").read_text())
-    return out | (yaml.safe_load(pathlib.Path(path).read_text()) if path else {})
+    out = yaml.safe_load((FOLDER / "faults.yaml").read_text()) | (yaml.safe_load(pathlib.Path(path).read_text()) if path else {})
+    return {way: whole(out, way) for way in out}
+
+
+def whole(ways, way):
+    """A way with what it has from the one that it is `like`, and with what need not be written."""
+    spec = ways[way]
+    if "like" in spec:
+        base = whole(ways, spec["like"])
+        spec = {**base, **spec, "draw": {**base.get("draw", {}), **spec.get("draw", {})}}
+        spec = {k: {a: b for a, b in x.items() if b is not None} if k == "draw" else x for k, x in spec.items() if k != "like" and x is not None}
+    if "key" in spec and "where" not in spec:
+        spec = spec | {"where": next(x for x in ("node", "name") if x in spec.get("draw", {}) or x in spec.get("late", {}))}
+    return spec
 
 
 def bounded(low, high):
@@ -64,11 +76,19 @@ class Words:
         return dict(bodies=list(m.bodies), solid=solid, air=m.air, links=m.links, joints=[x for x in m.links if x[1] != "hall"], films=[a for a, b in m.links if b == "hall"], circuits=m.circuits, heats=m.heats, t_ref=m.t_ref, start=m.start,
                     sensors=m.sensors, thermometers=[n for n, _ in m.sensors], displacements=m.displacements, channels=[d[0] for d in m.displacements], linked={frozenset(x) for x in m.links}, longest_step=m.longest_step_s,
                     speeds=speeds, servos=kinds(lambda h: h["kind"] == "servo_loss"), loads=kinds(lambda h: h["kind"] == "cutting_heat"), driven=list(dict.fromkeys(m.heats[k]["node"] for k in by_power)), driven_bodies={m.heats[k]["node"] for k in speeds},
-                    watts=max(value(f"P {i}") * (plan["power"] if h["kind"] == "cutting_heat" else 1) for i, h in enumerate(m.heats)), g=float(np.median([value(f"G {a} {b}") for a, b in m.links])),
+                    watts=max(value(f"P {i}") * self.full(h) for i, h in enumerate(m.heats)), recorded=sorted(plan.get("columns", {})), full=self.full, g=float(np.median([value(f"G {a} {b}") for a, b in m.links])),
                     top=plan.get("top", 0), full_power=plan.get("power", 0), powered="power" in plan, axes=sorted(plan.get("feeds", {})), top_feed=lambda a: plan["feeds"][a] / 60000, outdoor=plan.get("outdoor", False), week=plan.get("week", False),
                     value=value, heavy=heavy, label=lambda a, b: f"G {a} {b}" if f"G {a} {b}" in m.numbers else f"G {b} {a}", beside=lambda b: [y if x == b else x for x, y in m.links if b in (x, y) and "hall" not in (x, y)],
                     passage=lambda b: laws.passes(value, b), borne=lambda b, slope: 0.7 * value("C " + b) / m.longest_step_s / slope,      # the size up to which steps bear heat that hangs on temperatures
                     bounded=bounded, work=m.groups.get("work", []), high=m.groups.get("high", []), fluid=m.groups.get("fluid", []), inside_guard=m.groups.get("inside", []), bed=m.groups.get("bed"))
+
+    def full(self, h):
+        """What a recorded power, or a recorded column, is at its greatest."""
+        return {"cutting_heat": lambda: self.plan["power"], "recorded_drive": lambda: self.plan["columns"][h["column"]]["top"]}.get(h["kind"], lambda: 1)()
+
+    def own(self, r):
+        """Columns that the model has, too: from 0 to 1."""
+        return [r.columns[c][1] / how["top"] for c, how in self.plan.get("columns", {}).items()]
 
     def of_records(self):
         measured, records = self.measured, self.records
@@ -147,13 +167,13 @@ class Words:
         """1 where the machine is driven: it turns, or what is recorded of power or feeds is more than nothing."""
         if self.names["speeds"]:
             return (r.speed > 0).astype(float)
-        return ((r.power > 0) | np.any([f > 0 for f in r.feeds.values()] or [r.power > 0], axis=0)).astype(float)
+        return ((r.power > 0) | np.any([f > 0 for f in [*r.feeds.values(), *self.own(r)]] or [r.power > 0], axis=0)).astype(float)
 
     def load(self, r):
         """From 0 to 1: what is recorded of power, or else of feeds, or else of speed."""
         if "power" in self.plan:
             return r.power / self.plan["power"]
-        return np.mean([f / (self.plan["feeds"][a] / 60000) for a, f in r.feeds.items()], axis=0) if r.feeds else r.speed / self.plan["top"]
+        return np.mean([f / (self.plan["feeds"][a] / 60000) for a, f in r.feeds.items()], axis=0) if r.feeds else r.speed / self.plan["top"] if "top" in self.plan else np.mean(self.own(r), axis=0)
 
     def level(self, i, r):
         """What heat `i` is of its greatest, by nominal numbers and without idle heat."""
@@ -161,6 +181,8 @@ class Words:
         e = self.machine.numbers[f"e {i}"][0] if h["has_exponent"] else 1.0
         if h["kind"] == "cutting_heat":
             return r.power / self.plan["power"]
+        if h["kind"] == "recorded_drive":
+            return r.columns[h["column"]][1] / self.full(h)
         if h["kind"] == "servo_loss":
             return (r.feeds[h["axis"]] / (self.plan["feeds"][h["axis"]] / 60000)) ** e
         if h["has_exponent"]:
@@ -307,6 +329,8 @@ def terms(specs, names):
 
 
 def replaced(x, word):
+    if isinstance(x, dict):
+        return {replaced(k, word): replaced(y, word) for k, y in x.items()}
     if isinstance(x, list):
         return [replaced(y, word) for y in x]
     return re.sub(r"\bit\b", word, x) if isinstance(x, str) else x
@@ -428,8 +452,9 @@ def candidates(words, at, when, records, ambient):
 def told_alike(words, fault, judge, scale):
     """Those of the candidates that leave less than LEAST_NATS of it, by linear nats about the nominal numbers with their size free; `scale`: refitted over linear nats of the fault."""
     spec = fault.told["spec"]
-    at = spec.get("alike", [])
+    at = spec.get("alike", [x for x in spec["where"].split(",") if x in spec.get("draw", {}) or x in spec.get("late", {})])
     at = [name(x, fault.names) for x in at] if isinstance(at, list) else laws.value(at, fault.names)
+    at = [b for x in at for b in (x if isinstance(x, list) else [x]) if b in words.machine.bodies]
     d, out = judge.deviation([fault], 1), []
     for effect, where, other in candidates(words, list(at), fault.told["when"], fault.records, spec.get("alike_ambient")):
         beside = judge.deviation([other], 1)[0]

@@ -3,9 +3,11 @@
 usage: foundry.py [--out foundry] [--check] [--only N]
 Driftwright (DW) meshes the machine and writes its reduced model (matrices); the truth is integrated here from these matrices with the scattered
 numbers and with the fault, which may look at temperatures, times and its own memory. Needs numpy and scipy; one core."""
-import os, sys, json, math, shutil, subprocess, argparse, tempfile
+import os, re, sys, json, math, shutil, subprocess, argparse, tempfile
 for k in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"): os.environ[k] = "1"
 import numpy as np
+import laws
+from machines import rounded
 DW = os.environ.get("DW", "driftwright")
 SEED = 71923
 COUNTS = {"A": 32, "B": 18, "D": 12}
@@ -50,11 +52,15 @@ def box_mesh(boxes):
 def plane(name, region, p, nrm):
     return "    - {name: %s, region: %s, plane: {through: [%g mm, %g mm, %g mm], normal: [%g, %g, %g]}}" % ((name, region) + tuple(p) + tuple(nrm))
 def rest(name, region): return "    - {name: %s, region: %s, remaining: true}" % (name, region)
-def S(name, region, *at): return "  - {name: %s, region: %s, at: [%g mm, %g mm, %g mm]}" % ((name, region) + at)
-def N(name, node): return "  - {name: %s, node: %s}" % (name, node)
-def D(name, along, r1, a1, r2=None, a2=None):
-    s = "  - {name: %s, along: %s, tool: {region: %s, at: [%g mm, %g mm, %g mm]}" % ((name, along, r1) + tuple(a1))
-    return s + (", table: {region: %s, at: [%g mm, %g mm, %g mm]}}" % ((r2,) + tuple(a2)) if r2 else "}")
+def films(**of): return [E("convection", surface=k, film=(float(x), F)) for k, x in of.items()]
+def contacts(of): return [E("contact", joint=k, conductance=(float(x), F)) for k, x in of.items()]
+def thermometers(**at):
+    """name: (region, x, y, z) or (node,)"""
+    return dict(sensors={k: "  - {name: %s, region: %s, at: [%g mm, %g mm, %g mm]}" % (k, *x) if x[1:] else "  - {name: %s, node: %s}" % (k, *x) for k, x in at.items()}, sensor_body={k: x[0] for k, x in at.items()})
+def drawn(**of):
+    """name: (direction, region, place[, region, place])"""
+    at = lambda what, r, p: "%s: {region: %s, at: [%g mm, %g mm, %g mm]}" % (what, r, *p)
+    return {k: "  - {name: %s, along: %s, %s}" % (k, x[0], ", ".join([at("tool", *x[1:3])] + ([at("table", *x[3:])] if x[3:] else []))) for k, x in of.items()}
 
 def families():
     """A table, one machine after the other."""
@@ -76,15 +82,12 @@ def families():
         supports="  - {surface: foot, fixed: [x, y, z]}\n", joints="",
         effects=[E("heat_source", region="bearing_front", power=(28., W), at_speed=(2000., "rpm"), exponent=1.4), E("heat_source", region="bearing_rear", power=(11., W), at_speed=(2000., "rpm"), exponent=1.4),
             E("heat_source", region="headstock", power=(90., W), at_speed=(2000., "rpm"), exponent=1.3), E("motor_loss", region="motor", power=(70., W), at_speed=(2000., "rpm"), exponent=1.2, idle=(25., W)),
-            E("convection", surface="column_outer", film=(9., F)), E("convection", surface="column_inner", film=(3., F)), E("convection", surface="headstock_outer", film=(9., F)), E("convection", surface="headstock_inner", film=(2., F)),
-            E("convection", surface="motor_outer", film=(10., F)), E("forced_convection", surface="motor_outer", growth=(20., F), at_speed=(2000., "rpm"), exponent=0.7),
-            E("convection", surface="knee_outer", film=(9., F)), E("convection", surface="table_outer", film=(9., F)), E("convection", surface="quill_outer", film=(9., F), surrounding="air_nose"), E("convection", surface="spindle_nose", film=(18., F), surrounding="air_nose"),
+            *films(column_outer=9, column_inner=3, headstock_outer=9, headstock_inner=2, motor_outer=10), E("forced_convection", surface="motor_outer", growth=(20., F), at_speed=(2000., "rpm"), exponent=0.7),
+            *films(knee_outer=9, table_outer=9), E("convection", surface="quill_outer", film=(9., F), surrounding="air_nose"), E("convection", surface="spindle_nose", film=(18., F), surrounding="air_nose"),
             E("air_node", node="air_nose", capacity=(60., "J/K"), exchange=(1.5, WK)),
-            E("contact", joint="column/headstock", conductance=(1500., F)), E("contact", joint="column/knee", conductance=(1500., F)), E("contact", joint="knee/table", conductance=(1200., F)), E("contact", joint="headstock/motor", conductance=(800., F)),
-            E("contact", joint="headstock/quill", conductance=(900., F)), E("contact", joint="bearing_front/quill", conductance=(2500., F)), E("contact", joint="bearing_front/spindle", conductance=(2500., F)), E("contact", joint="bearing_rear/quill", conductance=(2500., F)), E("contact", joint="bearing_rear/spindle", conductance=(2500., F))],
-        sensors={"t_head_front": S("t_head_front", "headstock", 170, 180, 1320), "t_head_back": S("t_head_back", "headstock", 170, -350, 1320), "t_roof": S("t_roof", "headstock", 0, -80, 1490), "t_motor": S("t_motor", "motor", 0, -660, 1430), "t_quill": S("t_quill", "quill", 0, 285, 1382.5), "t_column": S("t_column", "column", 0, 0, 1000), "t_column_side": S("t_column_side", "column", 240, -280, 600), "t_table": S("t_table", "table", 120, 320, 840), "t_air": N("t_air", "air_nose")},
-        sensor_body=dict(t_head_front="headstock", t_head_back="headstock", t_roof="headstock", t_motor="motor", t_quill="quill", t_column="column", t_column_side="column", t_table="table", t_air="air_nose"),
-        displacements={"drift_y": D("drift_y", "y", "quill", (55, 320, 1320), "table", (120, 320, 840)), "drift_z": D("drift_z", "z", "quill", (0, 305, 1382.5), "table", (120, 320, 840)), "drift_x": D("drift_x", "x", "quill", (62.5, 305, 1320), "table", (120, 320, 840))},
+            *contacts({"column/headstock": 1500, "column/knee": 1500, "knee/table": 1200, "headstock/motor": 800, "headstock/quill": 900, "bearing_front/quill": 2500, "bearing_front/spindle": 2500, "bearing_rear/quill": 2500, "bearing_rear/spindle": 2500})],
+        **thermometers(t_head_front=("headstock", 170, 180, 1320), t_head_back=("headstock", 170, -350, 1320), t_roof=("headstock", 0, -80, 1490), t_motor=("motor", 0, -660, 1430), t_quill=("quill", 0, 285, 1382.5), t_column=("column", 0, 0, 1000), t_column_side=("column", 240, -280, 600), t_table=("table", 120, 320, 840), t_air=("air_nose",)),
+        displacements=drawn(drift_y=("y", "quill", (55, 320, 1320), "table", (120, 320, 840)), drift_z=("z", "quill", (0, 305, 1382.5), "table", (120, 320, 840)), drift_x=("x", "quill", (62.5, 305, 1320), "table", (120, 320, 840))),
         regions=["column", "headstock", "quill", "motor", "table", "knee"], dummies=["headstock", "quill", "column", "motor", "table"])
     # 2: small bench mill with a milling programme: feeds along x, cutting power
     fam["bench_mill"] = dict(inp=None, cad=dict(top=6000, feeds=("x", "y"), cut=500),
@@ -101,16 +104,14 @@ def families():
   table: {width: 550 mm, depth: 260 mm, thickness: 60 mm, gap: 30 mm}
 """, materials=dict(column="cast_iron_gjs400", headstock="cast_iron_gjl250", quill="steel_16mncr5", spindle="steel_42crmo4", bearing_front="bearing_steel", bearing_rear="bearing_steel", motor="motor_mean", knee="cast_iron_gjl250", table="cast_iron_gjs400"),
         supports="  - {surface: foot, springs: [2e8 N/m, 2e8 N/m, 6e8 N/m]}\n", joints="",
-        effects=[E("bearing_friction", region="bearing_front", count=2, f0=0.6, viscosity="15 mm^2/s", mean_diameter="55 mm", f1="0.0009", load=(300., "N")), E("heat_source", region="bearing_rear", power=(9., W), at_speed=(4000., "rpm"), exponent=1.4),
-            E("motor_loss", region="motor", power=(85., W), at_speed=(4000., "rpm"), exponent=1.3, idle=(15., W)), E("heat_source", region="headstock", power=(35., W), at_speed=(4000., "rpm"), exponent=1.2),
-            E("servo_loss", region="knee", axis="x", power=(45., W), at_feed=(4., "m/min"), exponent=1.0, idle=(6., W)), E("guideway_friction", region="table", axis="y", friction=0.08, load="1800 N", share=0.5), E("cutting_heat", region="table", share=0.12),
-            E("convection", surface="column_outer", film=(10., F)), E("convection", surface="column_inner", film=(3., F)), E("convection", surface="headstock_outer", film=(10., F)), E("convection", surface="motor_outer", film=(8., F)), E("forced_convection", surface="motor_outer", growth=(25., F), at_speed=(4000., "rpm"), exponent=0.7),
-            E("convection", surface="knee_outer", film=(9., F)), E("convection", surface="table_outer", film=(12., F)), E("convection", surface="quill_outer", film=(12., F)), E("convection", surface="spindle_nose", film=(20., F)),
-            E("contact", joint="column/headstock", conductance=(1800., F)), E("contact", joint="column/knee", conductance=(900., F)), E("contact", joint="knee/table", conductance=(700., F)), E("contact", joint="headstock/motor", conductance=(500., F)),
-            E("contact", joint="headstock/quill", conductance=(900., F)), E("contact", joint="bearing_front/quill", conductance=(2500., F)), E("contact", joint="bearing_front/spindle", conductance=(2500., F)), E("contact", joint="bearing_rear/quill", conductance=(2500., F)), E("contact", joint="bearing_rear/spindle", conductance=(2500., F))],
-        sensors={"head_side": S("head_side", "headstock", 120, 100, 920), "head_top": S("head_top", "headstock", 0, -60, 1040), "motor": S("motor", "motor", 0, -410, 1000), "quill": S("quill", "quill", 0, 205, 965), "column": S("column", "column", 0, 0, 700), "knee": S("knee", "knee", 110, 150, 420), "table": S("table", "table", 275, 150, 540)},
-        sensor_body=dict(head_side="headstock", head_top="headstock", motor="motor", quill="quill", column="column", knee="knee", table="table"),
-        displacements={"err_y": D("err_y", "y", "quill", (38, 230, 920), "table", (100, 220, 570)), "err_z": D("err_z", "z", "quill", (0, 215, 965), "table", (100, 220, 570))},
+        effects=[E("bearing_friction", region="bearing_front", count=2, f0=0.6, viscosity="15 mm^2/s", mean_diameter="55 mm", f1="0.0009", load=(300., "N")),
+            E("heat_source", region="bearing_rear", power=(9., W), at_speed=(4000., "rpm"), exponent=1.4), E("motor_loss", region="motor", power=(85., W), at_speed=(4000., "rpm"), exponent=1.3, idle=(15., W)),
+            E("heat_source", region="headstock", power=(35., W), at_speed=(4000., "rpm"), exponent=1.2), E("servo_loss", region="knee", axis="x", power=(45., W), at_feed=(4., "m/min"), exponent=1.0, idle=(6., W)),
+            E("guideway_friction", region="table", axis="y", friction=0.08, load="1800 N", share=0.5), E("cutting_heat", region="table", share=0.12), *films(column_outer=10, column_inner=3, headstock_outer=10, motor_outer=8),
+            E("forced_convection", surface="motor_outer", growth=(25., F), at_speed=(4000., "rpm"), exponent=0.7), *films(knee_outer=9, table_outer=12, quill_outer=12, spindle_nose=20),
+            *contacts({"column/headstock": 1800, "column/knee": 900, "knee/table": 700, "headstock/motor": 500, "headstock/quill": 900, "bearing_front/quill": 2500, "bearing_front/spindle": 2500, "bearing_rear/quill": 2500, "bearing_rear/spindle": 2500})],
+        **thermometers(head_side=("headstock", 120, 100, 920), head_top=("headstock", 0, -60, 1040), motor=("motor", 0, -410, 1000), quill=("quill", 0, 205, 965), column=("column", 0, 0, 700), knee=("knee", 110, 150, 420), table=("table", 275, 150, 540)),
+        displacements=drawn(err_y=("y", "quill", (38, 230, 920), "table", (100, 220, 570)), err_z=("z", "quill", (0, 215, 965), "table", (100, 220, 570))),
         regions=["column", "headstock", "quill", "motor", "table", "knee"], dummies=["headstock", "quill", "column", "knee", "table"])
     # 3: table of a gantry mill with a workpiece: feeds, hydraulics, a foundation as a lumped node
     fam["gantry"] = dict(inp=None, cad=dict(top=8000, feeds=("x",), cut=900),
@@ -124,16 +125,15 @@ def families():
 """, materials=dict(table="cast_iron_gjl250", bed="cast_iron_gjs400", workpiece="aluminium_6082"),
         supports="  - {surface: bed_underside, fixed: [z]}\n  - {surface: bed_underside, springs: [1e8 N/m, 1e8 N/m, 0 N/m]}\n  - {surface: table_underside, springs: [1e7 N/m, 1e7 N/m, 0 N/m]}\n",
         joints="joints:\n  - {name: table/workpiece, normal_stiffness: 1e9 N/m, tangential_stiffness: 1e7 N/m}\n  - {name: bed/table, normal_stiffness: 1e10 N/m, tangential_stiffness: 1e6 N/m}\n",
-        effects=[E("ball_screw", region="table", axis="x", torque=(4., "N m"), lead="20 mm", share=0.5), E("guideway_friction", region="table", axis="x", friction=0.07, load="12 kN", share=0.5), E("guideway_friction", region="bed", axis="x", friction=0.07, load="12 kN", share=0.5),
-            E("cutting_heat", region="workpiece", share=0.15), E("heat_source", surface="table_high_x", power=(160., W)), E("servo_loss", region="bed", axis="x", power=(120., W), at_feed=(6., "m/min"), exponent=1.2, idle=(20., W)),
-            E("heat_source", node="motor", power=(220., W), at_speed=(6000., "rpm"), exponent=1.3), E("link", node="motor", to="ambient", conductance=(9., WK)), E("node", node="motor", capacity=(14000., "J/K")),
-            E("convection", surface="table_top", film=(9., F)), E("convection", surface="table_low_x", film=(8., F)), E("convection", surface="table_high_x", film=(8., F)), E("convection", surface="table_low_y", film=(8., F)), E("convection", surface="table_high_y", film=(8., F)),
-            E("convection", surface="table_underside", film=(7., F), surrounding="air_below"), E("convection", surface="bed_top", film=(4., F), surrounding="air_below"), E("convection", surface="workpiece_outer", film=(10., F)), E("convection", surface="bed_sides", film=(7., F)),
-            E("air_node", node="air_below", capacity=(3000., "J/K"), exchange=(30., WK)), E("node", node="foundation", capacity=(8e6, "J/K")), E("link", surface="bed_underside", to="foundation", conductance=(60., WK)), E("link", node="foundation", to="ambient", conductance=(30., WK)),
-            E("contact", joint="bed/table", conductance=(150., F)), E("contact", joint="table/workpiece", conductance=(350., F))],
-        sensors={"table_mid": S("table_mid", "table", 0, 0, 0), "table_low": S("table_low", "table", -1100, 0, 0), "table_high": S("table_high", "table", 1150, 0, 0), "work": S("work", "workpiece", 400, 0, 200), "bed_1": S("bed_1", "bed", -1400, 0, -520), "bed_2": S("bed_2", "bed", 1400, 0, -520), "below": N("below", "air_below"), "motor": N("motor", "motor"), "foundation": N("foundation", "foundation")},
-        sensor_body=dict(table_mid="table", table_low="table", table_high="table", work="workpiece", bed_1="bed", bed_2="bed", below="air_below", motor="motor", foundation="foundation"),
-        displacements={"grow_x": D("grow_x", "x", "table", (1200, 0, 0), "table", (-1200, 0, 0)), "work_x": D("work_x", "x", "workpiece", (700, 0, 200), "bed", (0, 0, -300 - 220)), "sag_z": D("sag_z", "z", "table", (0, 0, 0), "table", (1200, 0, 0))},
+        effects=[E("ball_screw", region="table", axis="x", torque=(4., "N m"), lead="20 mm", share=0.5), E("guideway_friction", region="table", axis="x", friction=0.07, load="12 kN", share=0.5),
+            E("guideway_friction", region="bed", axis="x", friction=0.07, load="12 kN", share=0.5), E("cutting_heat", region="workpiece", share=0.15), E("heat_source", surface="table_high_x", power=(160., W)),
+            E("servo_loss", region="bed", axis="x", power=(120., W), at_feed=(6., "m/min"), exponent=1.2, idle=(20., W)), E("heat_source", node="motor", power=(220., W), at_speed=(6000., "rpm"), exponent=1.3),
+            E("link", node="motor", to="ambient", conductance=(9., WK)), E("node", node="motor", capacity=(14000., "J/K")), *films(table_top=9, table_low_x=8, table_high_x=8, table_low_y=8, table_high_y=8),
+            E("convection", surface="table_underside", film=(7., F), surrounding="air_below"), E("convection", surface="bed_top", film=(4., F), surrounding="air_below"), *films(workpiece_outer=10, bed_sides=7),
+            E("air_node", node="air_below", capacity=(3000., "J/K"), exchange=(30., WK)), E("node", node="foundation", capacity=(8e6, "J/K")), E("link", surface="bed_underside", to="foundation", conductance=(60., WK)),
+            E("link", node="foundation", to="ambient", conductance=(30., WK)), *contacts({"bed/table": 150, "table/workpiece": 350})],
+        **thermometers(table_mid=("table", 0, 0, 0), table_low=("table", -1100, 0, 0), table_high=("table", 1150, 0, 0), work=("workpiece", 400, 0, 200), bed_1=("bed", -1400, 0, -520), bed_2=("bed", 1400, 0, -520), below=("air_below",), motor=("motor",), foundation=("foundation",)),
+        displacements=drawn(grow_x=("x", "table", (1200, 0, 0), "table", (-1200, 0, 0)), work_x=("x", "workpiece", (700, 0, 200), "bed", (0, 0, -300 - 220)), sag_z=("z", "table", (0, 0, 0), "table", (1200, 0, 0))),
         regions=["table", "bed", "workpiece"], dummies=["table", "bed", "workpiece"])
     # 4: lathe of boxes, mesh written here
     lb = {"bed": ((0, 1600), (0, 350), (0, 300), (12, 4, 3)), "headstock": ((0, 400), (20, 330), (300, 460), (5, 4, 2)), "spindle": ((-60, 520), (130, 220), (460, 550), (10, 2, 2)), "cap": ((0, 400), (80, 270), (550, 620), (5, 3, 1)),
@@ -145,15 +145,14 @@ def families():
             "\n  joints:\n    - {name: bed/headstock, a: bed_ways, b: head_foot}\n    - {name: headstock/spindle, a: head_saddle, b: spindle_under}\n    - {name: cap/spindle, a: cap_under, b: spindle_over}\n    - {name: bed/carriage, a: bed_ways, b: carriage_under}\n    - {name: bed/tailstock, a: bed_ways, b: tail_under}\n",
         materials=dict(bed="cast_iron_gjl250", headstock="cast_iron_gjl250", spindle="steel_42crmo4", cap="cast_iron_gjs400", carriage="cast_iron_gjs400", tailstock="cast_iron_gjl250"),
         supports="  - {surface: bed_foot, fixed: [x, y, z]}\n", joints="",
-        effects=[E("heat_source", surface="spindle_under", power=(110., W), at_speed=(2000., "rpm"), exponent=1.5), E("heat_source", region="headstock", power=(120., W), at_speed=(2000., "rpm"), exponent=1.2), E("motor_loss", node="motor", power=(260., W), at_speed=(2000., "rpm"), exponent=1.2, idle=(40., W)),
-            E("node", node="motor", capacity=(11000., "J/K")), E("link", node="motor", to="ambient", conductance=(11., WK)), E("link", surface="head_outer", to="motor", conductance=(5., WK)),
-            E("ball_screw", region="bed", axis="x", torque=(2., "N m"), lead="10 mm", share=0.5), E("guideway_friction", region="carriage", axis="x", friction=0.08, load="4000 N", share=0.6), E("cutting_heat", region="carriage", share=0.06), E("cutting_heat", surface="nose", share=0.04),
-            E("convection", surface="bed_outer", film=(9., F)), E("convection", surface="bed_ways", film=(6., F)), E("convection", surface="head_outer", film=(10., F)), E("convection", surface="spindle_outer", film=(10., F)), E("forced_convection", surface="nose", growth=(45., F), at_speed=(2000., "rpm"), exponent=0.7),
-            E("convection", surface="cap_outer", film=(9., F)), E("convection", surface="carriage_outer", film=(10., F)), E("convection", surface="tail_outer", film=(9., F)),
-            E("contact", joint="bed/headstock", conductance=(1200., F)), E("contact", joint="headstock/spindle", conductance=(900., F)), E("contact", joint="cap/spindle", conductance=(700., F)), E("contact", joint="bed/carriage", conductance=(500., F)), E("contact", joint="bed/tailstock", conductance=(900., F))],
-        sensors={"th_front": S("th_front", "headstock", 400, 60, 400), "th_rear": S("th_rear", "headstock", 0, 60, 400), "th_cap": S("th_cap", "cap", 200, 175, 620), "th_nose": S("th_nose", "spindle", 500, 175, 550), "th_bed_left": S("th_bed_left", "bed", 200, 0, 220), "th_bed_right": S("th_bed_right", "bed", 1200, 0, 220), "th_carriage": S("th_carriage", "carriage", 900, 175, 420), "th_tail": S("th_tail", "tailstock", 1400, 175, 560), "th_motor": N("th_motor", "motor")},
-        sensor_body=dict(th_front="headstock", th_rear="headstock", th_cap="cap", th_nose="spindle", th_bed_left="bed", th_bed_right="bed", th_carriage="carriage", th_tail="tailstock", th_motor="motor"),
-        displacements={"ax_x": D("ax_x", "x", "carriage", (800, 175, 420), "spindle", (520, 175, 505)), "ax_z": D("ax_z", "z", "carriage", (800, 175, 420), "spindle", (520, 175, 505)), "tail_z": D("tail_z", "z", "tailstock", (1300, 175, 505), "spindle", (520, 175, 505)), "nose_z": D("nose_z", "z", "spindle", (520, 175, 505))},
+        effects=[E("heat_source", surface="spindle_under", power=(110., W), at_speed=(2000., "rpm"), exponent=1.5), E("heat_source", region="headstock", power=(120., W), at_speed=(2000., "rpm"), exponent=1.2),
+            E("motor_loss", node="motor", power=(260., W), at_speed=(2000., "rpm"), exponent=1.2, idle=(40., W)), E("node", node="motor", capacity=(11000., "J/K")), E("link", node="motor", to="ambient", conductance=(11., WK)),
+            E("link", surface="head_outer", to="motor", conductance=(5., WK)), E("ball_screw", region="bed", axis="x", torque=(2., "N m"), lead="10 mm", share=0.5),
+            E("guideway_friction", region="carriage", axis="x", friction=0.08, load="4000 N", share=0.6), E("cutting_heat", region="carriage", share=0.06), E("cutting_heat", surface="nose", share=0.04),
+            *films(bed_outer=9, bed_ways=6, head_outer=10, spindle_outer=10), E("forced_convection", surface="nose", growth=(45., F), at_speed=(2000., "rpm"), exponent=0.7), *films(cap_outer=9, carriage_outer=10, tail_outer=9),
+            *contacts({"bed/headstock": 1200, "headstock/spindle": 900, "cap/spindle": 700, "bed/carriage": 500, "bed/tailstock": 900})],
+        **thermometers(th_front=("headstock", 400, 60, 400), th_rear=("headstock", 0, 60, 400), th_cap=("cap", 200, 175, 620), th_nose=("spindle", 500, 175, 550), th_bed_left=("bed", 200, 0, 220), th_bed_right=("bed", 1200, 0, 220), th_carriage=("carriage", 900, 175, 420), th_tail=("tailstock", 1400, 175, 560), th_motor=("motor",)),
+        displacements=drawn(ax_x=("x", "carriage", (800, 175, 420), "spindle", (520, 175, 505)), ax_z=("z", "carriage", (800, 175, 420), "spindle", (520, 175, 505)), tail_z=("z", "tailstock", (1300, 175, 505), "spindle", (520, 175, 505)), nose_z=("z", "spindle", (520, 175, 505))),
         regions=["bed", "headstock", "spindle", "cap", "carriage", "tailstock"], dummies=["headstock", "spindle", "carriage", "bed", "cap"])
     # 5: surface grinder of boxes with a guard and a coolant tank as lumped nodes
     gb = {"base": ((0, 1400), (0, 900), (0, 350), (8, 5, 2)), "post": ((500, 900), (550, 850), (350, 1250), (3, 2, 7)), "wheelhead": ((520, 880), (150, 550), (850, 1150), (3, 4, 3)), "table": ((200, 1200), (150, 450), (350, 430), (8, 3, 1)), "chuck": ((400, 1000), (180, 420), (430, 490), (5, 2, 1)), "drive": ((560, 840), (300, 500), (1150, 1300), (3, 2, 2))}
@@ -164,20 +163,20 @@ def families():
             "\n  joints:\n    - {name: base/post, a: base_top, b: post_foot}\n    - {name: post/wheelhead, a: post_front, b: head_back}\n    - {name: base/table, a: base_top, b: table_under}\n    - {name: chuck/table, a: chuck_under, b: table_top}\n    - {name: drive/wheelhead, a: drive_under, b: head_top}\n",
         materials=dict(base="granite", post="cast_iron_gjl250", wheelhead="cast_iron_gjl250", table="cast_iron_gjs400", chuck="steel_c45", drive="motor_mean"),
         supports="  - {surface: base_foot, springs: [5e8 N/m, 5e8 N/m, 1e9 N/m]}\n", joints="joints:\n  - {name: base/table, normal_stiffness: 2e9 N/m, tangential_stiffness: 2e8 N/m}\n",
-        effects=[E("heat_source", surface="head_front", power=(130., W), at_speed=(2400., "rpm"), exponent=1.4), E("motor_loss", region="drive", power=(150., W), at_speed=(2400., "rpm"), exponent=1.3, idle=(30., W)), E("guideway_friction", region="table", axis="x", friction=0.06, load="2500 N", share=0.5), E("servo_loss", region="base", axis="x", power=(80., W), at_feed=(10., "m/min"), exponent=1.0, idle=(10., W)), E("cutting_heat", surface="chuck_top", share=0.2), E("cutting_heat", node="tank", share=0.4),
-            E("node", node="tank", capacity=(250e3, "J/K")), E("heat_source", node="tank", power=(140., W)), E("link", node="tank", to="ambient", conductance=(14., WK)), E("link", surface="chuck_top", to="tank", conductance=(12., WK)), E("link", surface="base_outer", to="tank", conductance=(7., WK)),
-            E("node", node="guard_air", capacity=(2400., "J/K")), E("link", node="guard_air", to="ambient", conductance=(11., WK)), E("convection", surface="chuck_outer", film=(9., F), surrounding="guard_air"), E("convection", surface="table_outer", film=(9., F), surrounding="guard_air"), E("convection", surface="head_front", film=(8., F), surrounding="guard_air"),
-            E("forced_convection", surface="head_front", growth=(10., F), at_speed=(2400., "rpm"), exponent=0.7, surrounding="guard_air"),
-            E("convection", surface="base_outer", film=(8., F)), E("convection", surface="post_outer", film=(9., F)), E("convection", surface="head_outer", film=(9., F)), E("convection", surface="drive_outer", film=(10., F)), E("forced_convection", surface="drive_outer", growth=(30., F), at_speed=(2400., "rpm"), exponent=0.8),
-            E("contact", joint="base/post", conductance=(900., F)), E("contact", joint="post/wheelhead", conductance=(500., F)), E("contact", joint="base/table", conductance=(200., F)), E("contact", joint="chuck/table", conductance=(900., F)), E("contact", joint="drive/wheelhead", conductance=(400., F))],
-        sensors={"g_head": S("g_head", "wheelhead", 520, 300, 1000), "g_front": S("g_front", "wheelhead", 700, 150, 900), "g_drive": S("g_drive", "drive", 700, 400, 1300), "g_post_low": S("g_post_low", "post", 500, 700, 500), "g_post_high": S("g_post_high", "post", 500, 700, 1150), "g_table": S("g_table", "table", 200, 300, 400), "g_chuck": S("g_chuck", "chuck", 400, 300, 470), "g_base": S("g_base", "base", 200, 0, 250), "g_tank": N("g_tank", "tank"), "g_air": N("g_air", "guard_air")},
-        sensor_body=dict(g_head="wheelhead", g_front="wheelhead", g_drive="drive", g_post_low="post", g_post_high="post", g_table="table", g_chuck="chuck", g_base="base", g_tank="tank", g_air="guard_air"),
-        displacements={"gap_z": D("gap_z", "z", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), "gap_y": D("gap_y", "y", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), "post_y": D("post_y", "y", "post", (700, 550, 1250))},
+        effects=[E("heat_source", surface="head_front", power=(130., W), at_speed=(2400., "rpm"), exponent=1.4), E("motor_loss", region="drive", power=(150., W), at_speed=(2400., "rpm"), exponent=1.3, idle=(30., W)),
+            E("guideway_friction", region="table", axis="x", friction=0.06, load="2500 N", share=0.5), E("servo_loss", region="base", axis="x", power=(80., W), at_feed=(10., "m/min"), exponent=1.0, idle=(10., W)),
+            E("cutting_heat", surface="chuck_top", share=0.2), E("cutting_heat", node="tank", share=0.4), E("node", node="tank", capacity=(250e3, "J/K")), E("heat_source", node="tank", power=(140., W)),
+            E("link", node="tank", to="ambient", conductance=(14., WK)), E("link", surface="chuck_top", to="tank", conductance=(12., WK)), E("link", surface="base_outer", to="tank", conductance=(7., WK)),
+            E("node", node="guard_air", capacity=(2400., "J/K")), E("link", node="guard_air", to="ambient", conductance=(11., WK)), E("convection", surface="chuck_outer", film=(9., F), surrounding="guard_air"),
+            E("convection", surface="table_outer", film=(9., F), surrounding="guard_air"), E("convection", surface="head_front", film=(8., F), surrounding="guard_air"),
+            E("forced_convection", surface="head_front", growth=(10., F), at_speed=(2400., "rpm"), exponent=0.7, surrounding="guard_air"), *films(base_outer=8, post_outer=9, head_outer=9, drive_outer=10),
+            E("forced_convection", surface="drive_outer", growth=(30., F), at_speed=(2400., "rpm"), exponent=0.8), *contacts({"base/post": 900, "post/wheelhead": 500, "base/table": 200, "chuck/table": 900, "drive/wheelhead": 400})],
+        **thermometers(g_head=("wheelhead", 520, 300, 1000), g_front=("wheelhead", 700, 150, 900), g_drive=("drive", 700, 400, 1300), g_post_low=("post", 500, 700, 500), g_post_high=("post", 500, 700, 1150), g_table=("table", 200, 300, 400), g_chuck=("chuck", 400, 300, 470), g_base=("base", 200, 0, 250), g_tank=("tank",), g_air=("guard_air",)),
+        displacements=drawn(gap_z=("z", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), gap_y=("y", "wheelhead", (700, 150, 850), "chuck", (700, 300, 490)), post_y=("y", "post", (700, 550, 1250))),
         regions=["base", "post", "wheelhead", "table", "chuck", "drive"], dummies=["wheelhead", "post", "table", "base", "drive"])
     return fam
 
 def region_of(fam, surface):
-    import re
     for line in fam["machine"].splitlines():
         m = re.search(r"name: %s, region: (\w+)" % surface, line)
         if m: return m.group(1)
@@ -343,10 +342,6 @@ def first_order(x, lag, t, x0=None):
     y = np.empty_like(x); y[0] = x[0] if x0 is None else x0
     for k in range(1, len(x)):
         e = math.exp(-(t[k] - t[k - 1]) / lag); m = (x[k] + x[k - 1]) / 2; y[k] = m + (y[k - 1] - m) * e
-    return y
-def play(x, b):
-    y = np.empty_like(x); y[0] = x[0]
-    for k in range(1, len(x)): y[k] = min(max(y[k - 1], x[k] - b), x[k] + b)
     return y
 st_ = lambda q, p, f: {"quantity": q, "place": p, "follows": f}
 
@@ -522,16 +517,10 @@ def make_fault(kind, rng, fam, case, a):
         return rd("displacement", [disp], "temperature of " + b, "the indicator's bracket of %s sits on %s and moves %.2f um/K" % (disp, b, g), g, lambda r, y, A: y.__setitem__(disp, y[disp] + g * (y["_mean"][b] - TREF)))
     if kind == "stick_slip":
         b = a * rng.uniform(3, 9)
-        def fn(r, y, A):
-            x = y[disp]; o = x.copy(); last = x[0]
-            for k in range(len(x)):
-                if abs(x[k] - last) > b: last = x[k]
-                o[k] = last
-            y[disp] = o
-        return rd("displacement", [disp], "stick-slip", "%s sticks and slips where it is %.1f um behind" % (disp, b), b, fn, False)
+        return rd("displacement", [disp], "stick-slip", "%s sticks and slips where it is %.1f um behind" % (disp, b), b, lambda r, y, A: y.__setitem__(disp, laws.sticks(y[disp][None], np.array([[b]]))[0]), False)
     if kind == "backlash":
         b = a * rng.uniform(2, 7)
-        return rd("displacement", [disp], "hysteresis", "%s has a play of %.1f um to each side" % (disp, b), b, lambda r, y, A: y.__setitem__(disp, play(y[disp], b)), False)
+        return rd("displacement", [disp], "hysteresis", "%s has a play of %.1f um to each side" % (disp, b), b, lambda r, y, A: y.__setitem__(disp, laws.play(y[disp][None], np.array([[b]]))[0]), False)
     seedr = int(rng.integers(1, 1 << 30))
     if kind == "loose_sensor":
         s = min(.9, a * rng.uniform(.3, .7))
@@ -585,7 +574,6 @@ def make_fault(kind, rng, fam, case, a):
     raise KeyError(kind)
 
 # ------------------------------------------------------------------------------------------------------------------ a case
-def round_sig(x, n=3): return float("%.*g" % (n, x))
 def scatter_num(rng, e, s=1.0):
     e = dict(e)
     for k, sig in SCATTER.items():
@@ -705,7 +693,7 @@ def draw_machine(rng, fname, fam):
     for e in fam["effects"]:
         e = dict(e)
         for k in ("power", "idle", "film", "growth", "conductance", "torque", "exchange"):
-            if isinstance(e.get(k), tuple): e[k] = (round_sig(e[k][0] * math.exp(.2 * rng.normal()), 2), e[k][1])
+            if isinstance(e.get(k), tuple): e[k] = (rounded(e[k][0] * math.exp(.2 * rng.normal()), 2), e[k][1])
         eff.append(e)
     case["effects"] = eff
     allS, allD = list(fam["sensors"]), list(fam["displacements"])
@@ -777,7 +765,7 @@ def build(no, cls, kinds, fname, out, tmp):
     open(d + "/scenario.yaml", "w").write(case_scenario(case, "%s_%04d" % (fname, no)))
     nrng = np.random.default_rng([SEED, no, 777])
     for r, y in zip(case["records"], final): write_record("%s/measured_%d.csv" % (d, r["no"]), case, r, y, nrng)
-    effects = [{"what": f.what, "kind": f.kind, "statements": f.statements, "records": f.records, "amplitude": round_sig(float(f.amplitude), 4), "residual_sigmas": round(i[0], 2), "remaining_nats": round(min(i[1], 1e6), 1), "sayable": f.sayable} for f, i in zip(faults, info)]
+    effects = [{"what": f.what, "kind": f.kind, "statements": f.statements, "records": f.records, "amplitude": rounded(float(f.amplitude), 4), "residual_sigmas": round(i[0], 2), "remaining_nats": round(min(i[1], 1e6), 1), "sayable": f.sayable} for f, i in zip(faults, info)]
     json.dump({"case": no, "class": cls, "family": fname, "sayable": all(f.sayable for f in faults), "start": case["start"], "effects": effects}, open(d + "/truth.json", "w"), indent=1)
     print("%4d %s %-14s n=%d rows=%s try=%d %s" % (no, cls, fname, model.n, [len(r["t"]) for r in case["records"]], attempt, [(f.kind, round(i[0], 1), round(i[1])) for f, i in zip(faults, info)]), flush=True)
 

@@ -151,6 +151,16 @@ def heap(r, y, on, swept_after, scale):
     return out
 
 
+def relaxing(r, on):
+    """From 0 to 1 by the logarithm of the time since it last went on or off: half of it within 20 min."""
+    on, out, level, since = np.asarray(on) > 0, np.zeros(len(r.time_s)), 0.0, 0.0
+    for k in range(1, len(out)):
+        level, since = (out[k - 1], 0.0) if on[k] != on[k - 1] else (level, since)
+        since += r.time_s[k] - r.time_s[k - 1]
+        out[k] = level + (on[k] - level) * min(1.0, np.log1p(since / 120) / np.log1p(120.0))
+    return out
+
+
 def burnt(r, top, fades):
     """What a spindle gives back as it brakes, as the mean of each row."""
     fallen, out, x = np.append(0.0, np.maximum(0, -np.diff((r.speed / top) ** 2))), np.zeros(len(r.time_s)), 0.0
@@ -253,6 +263,14 @@ def held(y, t, begin, minutes):
     return y + on * (y[:, k:k + 1] - y)
 
 
+def sticks(y, width):
+    """It stays until more than this is pent up, and then jumps there."""
+    out = y.copy()
+    for k in range(1, y.shape[1]):
+        out[:, k] = np.where(np.abs(y[:, k] - out[:, k - 1]) > width[:, 0], y[:, k], out[:, k - 1])
+    return out
+
+
 def rezeroed(y, t, times, share):
     out = y.copy()
     for k in np.searchsorted(t, np.asarray(times) - 1e-6):
@@ -287,6 +305,14 @@ def thermostat(state, T, k, low, high):
     return state["on"]
 
 
+def melting(state, T, k, h, at, g, most):
+    """Heat that a filling takes over `g` as it melts at `at`, `most` joules at the most; it gives them back as it freezes. h: lengths of steps."""
+    if state.get("k") != k:
+        state["has"] = np.clip(state.get("has", np.zeros_like(T)) + state.get("q", 0.0) * h[k - 1], 0, most)
+        state["k"], state["q"] = k, g * (T - at) * np.where(T > at, state["has"] < most, state["has"] > 0)
+    return -state["q"]
+
+
 def viscosity(T, at):
     """Of a mineral oil of VG 32, as a share of that at `at`: Vogel's law."""
     return np.exp(711 / (np.maximum(T, -40) + 95) - 711 / (at + 95))
@@ -298,5 +324,5 @@ def passes(n, node):
     return stream * (1 - np.exp(-n("passage " + node) / stream))
 
 
-LAWS = {f.__name__: f for f in (passes, stretches, rests, begins, pace, lagged, delayed, and_after, since_begin, on_time, off_time, at_some_times, in_some_programmes, positions, sun, stiff_start, heap, burnt, door_air, coasting, rate_of, inside,
-                                shifted, growth, stretching, play, mean_before, held, rezeroed, sampled, renewed, viscosity)} | {"STEFAN_BOLTZMANN": STEFAN_BOLTZMANN}
+LAWS = {f.__name__: f for f in (passes, stretches, rests, begins, pace, lagged, delayed, and_after, since_begin, on_time, off_time, at_some_times, in_some_programmes, positions, sun, stiff_start, heap, relaxing, burnt, door_air, coasting, rate_of, inside,
+                                shifted, growth, stretching, play, mean_before, held, sticks, rezeroed, sampled, renewed, viscosity)} | {"STEFAN_BOLTZMANN": STEFAN_BOLTZMANN}

@@ -9,7 +9,7 @@ from network import Machine
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "families"
 GUESS = float(np.log(2) / 0.1)      # a `guess` is known to a factor of 2
-KINDS = ("heat_source", "friction_law", "motor_loss", "servo_loss", "cutting_heat")
+KINDS = ("heat_source", "friction_law", "motor_loss", "servo_loss", "cutting_heat", "recorded_drive")
 
 
 @functools.lru_cache(maxsize=None)
@@ -41,6 +41,11 @@ def parts(rng, m, spec):
     m.air |= set(spec.get("air", []))
     for a, b, g in spec.get("links", []):
         m.link(a, b, of(g))
+    for a, b, g in spec.get("fans", []):
+        m.fan(a, b, of(g))
+    for x in spec.get("recorded", []):
+        how, = set(x) & {"opening", "warmth"}
+        m.by_column(x[how], x["column"], how, of(x["conductance"]))
     for c in spec.get("circuits", []):
         m.circuit(c["node"], of(c["flow"]), of(c["passage"]), of(c["set_point"]))
     for h in spec.get("heats", []):
@@ -49,7 +54,7 @@ def parts(rng, m, spec):
         drawn = {k: of(h[k]) for k in ("power", "exponent", "idle", "decay") if isinstance(h.get(k), list) or (k in h and k != "exponent")}
         if isinstance(h.get("exponent"), (int, float)):
             drawn["exponent"] = float(h["exponent"])
-        m.heat(kind, h[kind], at=of(at) if isinstance(at, list) else float(at), axis=h.get("axis"), turning=h.get("turning", False), **drawn)
+        m.heat(kind, h[kind], at=of(at) if isinstance(at, list) else float(at), axis=h.get("axis"), turning=h.get("turning", False), column=h.get("column"), **drawn)
     for name, d in spec.get("displacements", {}).items():
         m.displacement(name, d["axis"], {k: of(x) for k, x in d.items() if k != "axis"})
     if "start" in spec:
@@ -59,7 +64,7 @@ def parts(rng, m, spec):
 def machine(rng, family, spec):
     """(the machine, how its records are)."""
     m = Machine(family)
-    m.title, m.groups = spec["title"], spec.get("groups", {})
+    m.title, m.groups = spec.get("title", family.replace("_", " ")), spec.get("groups", {})
     parts(rng, m, spec)
     for more in spec.get("maybe", []):
         if rng.random() < more["chance"]:

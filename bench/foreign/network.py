@@ -16,7 +16,7 @@ A fault is a list of terms. Each is a dict of one of these forms; formulas are P
     {heat: A, W: formula, law: constant, turning, speed, feed or load, at:, exponent:, axis:, decay:, while:}
     {heat_like: I, node: A, share: formula}                           a share of heat number I arises in another body, too
     {heat: A, W: formula, of: signal}                                 heat that follows a signal
-    {fed: {A: formula, ...}}                                          heat that hangs on temperatures: T(body), hall, heat_of(i), thermostat(T, low, high), signals
+    {fed: {A: formula, ...}}                                          heat that hangs on temperatures: T(body), hall, heat_of(i), thermostat(T, low, high), melting(T, at, G, J), signals
     {start: A, K: formula} or {start: A, degC: formula}               the body begins warmer by so much, or at this temperature
     {drive: speed, power, feeds or hall, is: formula of x, while:}    what truly drives, step by step
     {record: {speed: formula, hall: ..., feed_x: ...}}                the same by laws of whole rows; one size at a time
@@ -46,6 +46,7 @@ class Machine:
 
     def __init__(self, family):
         self.family, self.title, self.groups, self.bodies, self.links, self.circuits, self.heats = family, "", {}, [], [], [], []
+        self.fans, self.recorded = [], []      # links while the spindle turns: (a, b); by columns that the model has, too: (node, column, opening or warmth)
         self.sensors, self.displacements, self.numbers, self.air, self.start, self.t_ref = [], [], {}, set(), "hall", 20.0
         self.longest_step_s, self.stated = 20.0, {}      # of steps, where heat hangs on temperatures
 
@@ -57,14 +58,22 @@ class Machine:
         self.links.append((a, b))
         self.numbers[f"G {a} {b}"] = (conductance, "log")
 
+    def fan(self, a, b, conductance):
+        self.fans.append((a, b))
+        self.numbers[f"fan {a} {b}"] = (conductance, "log")
+
+    def by_column(self, node, column, how, value):
+        self.recorded.append((node, column, how))
+        self.numbers[f"{how} {node}"] = (value, "log")
+
     def circuit(self, node, flow_L_min, passage, set_point):
         self.circuits.append((node, set_point))
         self.numbers["flow " + node] = (flow_L_min, "log")
         self.numbers["passage " + node] = (passage, "log")
 
-    def heat(self, kind, node, power, at=1.0, exponent=0.0, idle=0.0, decay=0.0, axis=None, turning=False):
+    def heat(self, kind, node, power, at=1.0, exponent=0.0, idle=0.0, decay=0.0, axis=None, turning=False, column=None):
         i = len(self.heats)
-        self.heats.append(heat_law(kind, node, at, axis, turning, exponent != 0.0, idle > 0, decay > 0))
+        self.heats.append(heat_law(kind, node, at, axis, turning, exponent != 0.0, idle > 0, decay > 0, column=column))
         for label, value, kind in (("P", power, "log"), ("e", exponent, "exponent"), ("idle", idle, "log"), ("decay", decay, "log")):
             if value != 0.0:
                 self.numbers[f"{label} {i}"] = (value, kind)
@@ -90,8 +99,8 @@ class Machine:
         return p
 
 
-def heat_law(kind, node, at=1.0, axis=None, turning=False, exponent=False, idle=False, decay=False, gate=None):
-    return dict(kind=kind, node=node, at=at, axis=axis, turning=turning, has_exponent=exponent, has_idle=idle, has_decay=decay, gate=gate)
+def heat_law(kind, node, at=1.0, axis=None, turning=False, exponent=False, idle=False, decay=False, gate=None, column=None):
+    return dict(kind=kind, node=node, at=at, axis=axis, turning=turning, has_exponent=exponent, has_idle=idle, has_decay=decay, gate=gate, column=column)
 
 
 def moved(value, kind, z, sigma_factor=1.0):
@@ -105,6 +114,8 @@ class Fault:
         self.way, self.terms, self.names, self.records, self.low, self.high, self.sign = way, terms, names or {}, records, low, high, sign
         self.windows, self.signals, self.told, self.size = windows or {}, signals or {}, told or {}, np.zeros(1)
         self.each_size = any("record" in t or "before" in t or ("while" in t and ("link" in t or "bath" in t) and laws.mentions(t["while"], "s")) for t in terms)
+
+        self.moves_stops = any("drive" in t and laws.mentions(t.get("while"), "s") for t in terms)
 
     def holds(self, record_name):
         return self.records is None or record_name in self.records
@@ -140,7 +151,7 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
     faults = [f for f in faults if f.holds(record.name)]
     n = len(next(iter(numbers.values())))
     offset = np.broadcast_to(np.reshape(np.asarray(offset_K, float), -1), (n,))
-    own = [f for f in faults if f.each_size]
+    own = [f for f in faults if f.each_size or (machine.fans and f.moves_stops)]
     sizes = np.stack([np.broadcast_to(f.size, (n,)) for f in own], 1) if own else np.zeros((n, 0))
     different = np.unique(sizes, axis=0)
     if len(different) == 1 or not own:
@@ -195,7 +206,8 @@ class Truth:
         first = lambda x, on: np.concatenate([[on, 0 * on], x])
         feed = {a: float(f.of(t.get("feeds", 0), axis=a)) for a in r.feeds}
         self.record = Record(r.name, np.concatenate([[0.0, ran_s], r.time_s + ran_s + f.of(t["pause_s"])]), first(r.speed, float(f.of(t["speed"]))), {a: first(x, feed[a]) for a, x in r.feeds.items()},
-                             first(r.power, float(f.of(t.get("power", 0)))), np.append([r.hall[0]] * 2, r.hall), r.columns)
+                             first(r.power, float(f.of(t.get("power", 0)))), np.append([r.hall[0]] * 2, r.hall),
+                             {c: (unit, np.append([x[0]] * 2, x)) for c, (unit, x) in r.columns.items()})
         self.first_row = 2
         for signals in self.signals.values():
             for k, x in signals.items():
@@ -290,6 +302,10 @@ class Truth:
             return self.record.columns[name][1]
         return np.full(len(self.record.time_s), float(self.value(f, name, **known)))
 
+    def column(self, name):
+        """A recorded column by step."""
+        return self.record.columns[name][1][self.row]
+
     # --- heats and links -----------------------------------------------------------------------------------------------------
     def heat_of(self, i):
         """Heat `i` by step at the reference temperature, and what of it there is at rest."""
@@ -298,6 +314,8 @@ class Truth:
         turning, still = self.speed > 0, np.zeros(self.n)
         if law["kind"] == "cutting_heat":
             q = p * self.power
+        elif law["kind"] == "recorded_drive":
+            q = p * self.column(law["column"])
         elif law["kind"] == "servo_loss":
             q, still = idle + p * (self.feeds[law["axis"]] / law["at"]) ** e, idle[:, 0]
         elif law["kind"] == "heat_source" and not law["has_exponent"]:
@@ -336,6 +354,13 @@ class Truth:
             values, level = self.levels(f, t)
             links[pair] = np.stack([self.per_variant(f, t["G"], g=links[pair][0][0], x=x) for x in values]), level
         out = [(a, b, g, level) for (a, b), (g, level) in links.items()]
+        out += [(a, b, np.array([[0.0], [1.0]]) * self.numbers[f"fan {a} {b}"], (self.speed[0] > 0).astype(int)) for a, b in self.machine.fans]
+        for node, column, how in self.machine.recorded:
+            g, x = self.numbers[f"{how} {node}"], self.column(column)
+            values, level = np.unique(np.append(0.0, x if how == "opening" else x > -300), return_inverse=True)      # the first one at standstill: nothing
+            out.append((node, "hall" if how == "opening" else "nothing", values[:, None] * g, level[1:]))
+            if how == "warmth":
+                self.heat[:, :, self.index[node]] += g[:, None] * x
         for f, t in self.terms("link"):
             if "while" in t or "open" in t:
                 values, level = self.levels(f, t)
@@ -390,15 +415,17 @@ class Truth:
         heats = {}
 
         def heat_of(i, T, k):
-            q = heats.setdefault(i, self.heat_of(i)[0])[:, k]
-            return q * np.exp(-self.numbers.get(f"decay {i}", 0.0) * (T[:, self.index[self.machine.heats[i]["node"]]] - self.machine.t_ref))
-        states = {}
+            if i not in heats:
+                heats[i] = self.heat_of(i)[0]
+            return heats[i][:, k] * np.exp(-self.numbers.get(f"decay {i}", 0.0) * (T[:, self.index[self.machine.heats[i]["node"]]] - self.machine.t_ref))
+        states, state = {}, lambda f: states.setdefault(id(f), {})
 
         def watts(T, k):
             out = []
             for f, t in self.fed:
                 names = {**{name: x[self.row[k]] for name, x in self.signals[id(f)].items()}, "T": lambda b: T[:, self.index[b]], "hall": self.hall0[:, k], "heat_of": lambda i: heat_of(i, T, k),
-                         "thermostat": lambda x, low, high: laws.thermostat(states.setdefault(id(f), {}), x, k, low, high)}
+                         "thermostat": lambda x, low, high: laws.thermostat(state(f), x, k, low, high),
+                         "melting": lambda x, at, g, most: laws.melting(state(f), x, k, self.h, at, g, most)}
                 out += [(self.index[b], self.value(f, x, **names)) for b, x in t["fed"].items()]
             return out
         return watts

@@ -12,6 +12,7 @@ import json
 import math
 import pathlib
 import re
+import statistics
 
 SUFFIX = re.compile(r"_(degC|um|urad)$")
 MINUTES = dict(min=1.0, s=1 / 60, h=60.0, d=1440.0)
@@ -34,6 +35,14 @@ def append_csv(path, rows):
     with open(path, "a", newline="") as file:
         out = csv.writer(file)
         out.writerows([["set", "diagnoses", "figure", "yes", "of", "share_percent", "low_percent", "high_percent"]] * fresh + rows)
+
+
+def cases(folder, name):
+    """(case, truth, diagnosis or None) of each case; diagnosis is {} where a run ended without one, None where there was none."""
+    for case in sorted(pathlib.Path(folder).glob("case_*")):
+        file = case / name / "diagnosis.json"
+        d = json.loads(file.read_text()) if file.exists() else {} if (case / (name + ".exit")).exists() else None
+        yield case, json.loads((case / "truth.json").read_text()), d
 
 
 def words(text):
@@ -155,34 +164,35 @@ def main():
     a = a.parse_args()
     count = collections.defaultdict(lambda: [0, 0])
     by_kind = collections.defaultdict(lambda: [0, 0, 0, 0, 0])
-    failed = skipped = 0
+    ratios, failed, skipped = collections.defaultdict(list), 0, 0
 
     def note(figure, yes):
         count[figure][0] += bool(yes)
         count[figure][1] += 1
 
-    for folder in sorted(pathlib.Path(a.cases).glob("case_*")):
-        truth = json.loads((folder / "truth.json").read_text())
-        file, ended = folder / a.diagnoses / "diagnosis.json", folder / (a.diagnoses + ".exit")
-        if not file.exists() and not ended.exists():
+    for folder, truth, d in cases(a.cases, a.diagnoses):
+        if d is None:
             skipped += 1
             continue
-        failed += not file.exists()
-        d = json.loads(file.read_text()) if file.exists() else dict(verdict="none", causes=[])
+        ended = bool(d)
+        failed += not ended
+        d = d or dict(verdict="none")
         causes = d.get("causes") or []
         named = [c for c in causes if c.get("standing") == "named"]
         loose = causes + [x for c in causes if c.get("standing") == "ambiguous" for x in c.get("alternatives") or []]
         said = [c for c in causes if c.get("standing") in ("named", "suspected")]
         effects, n, cls = truth["effects"], truth["n_records"], truth["class"]
         wrong = [c for c in named if not any(kind_right(c, e) for e in effects)] or (["verdict"] if d["verdict"] == "named" and not named else [])
-        note(f"{cls} ended with a diagnosis", file.exists())
+        note(f"{cls} ended with a diagnosis", ended)
         note(f"{cls} wrong name", wrong)
         note("all classes: wrong name", wrong)
         line = f"{folder.name} {cls:3s} {truth['family']:16s} {d['verdict']:12s}"
         if cls == "B":
             note("B verdict consistent", d["verdict"] == "consistent")
-            note("B nothing named", file.exists() and not named and d["verdict"] != "named")
-        if cls in ("A", "C16", "C8"):
+            note("B nothing named", ended and not named and d["verdict"] != "named")
+        if cls == "K":      # nothing but many small things
+            note("K named something", named or d["verdict"] == "named")
+        if cls in ("A", "C16", "C8", "F"):
             e = effects[0]
             kind, place = any(kind_right(c, e) for c in named), any(kind_right(c, e) and place_right(c, e, n) for c in named)
             some = any(kind_right(c, e) for c in loose)
@@ -201,7 +211,7 @@ def main():
             t = by_kind[cls[0], e["key"]]
             for i, x in enumerate((True, kind, place, some, bool(wrong))):
                 t[i] += x
-            line += f" {e['key']:18s} {e['nats']:6.1f}  {'kind' if kind else '----'} {'place' if place else '-----'}"
+            line += f" {e['key']:18s} {e.get('nats', e.get('worth')):6.1f}  {'kind' if kind else '----'} {'place' if place else '-----'}"
         if cls == "D":
             # two effects of one kind never occur together with one place; each needs a cause of its own
             def both(causes, placed):
@@ -230,6 +240,8 @@ def main():
                 worse = h["after"] > 1.05 * h["before"]
                 note("extended file worse on the holdout, all classes", worse)
                 note(f"{cls} extended file worse on the holdout", worse)
+                note(f"{cls} extended file better on the holdout", h["after"] < 0.95 * h["before"])
+                ratios[cls].append(h["after"] / h["before"])
                 line += f"   holdout {h['before']:.3g} -> {h['after']:.3g}{' WORSE' if worse else ''}"
         if wrong:
             line += "   wrong: " + ",".join(c if isinstance(c, str) else c["effect"] + "@" + str(c.get("where")) for c in wrong)
@@ -240,6 +252,8 @@ def main():
     print("95 % intervals: Wilson")
     for figure in sorted(count):
         print(f"{figure:82s} {wilson(*count[figure])}")
+    for cls in sorted(ratios):
+        print(f"{cls} RMSE on the holdout, after over before: median {statistics.median(ratios[cls]):.3f}, {min(ratios[cls]):.3f} to {max(ratios[cls]):.3f}")
     if a.csv:
         append_csv(a.csv, [[pathlib.Path(a.cases).resolve().name, a.diagnoses, figure, *count[figure], *(f"{x:.1f}" for x in interval(*count[figure]))] for figure in sorted(count)])
     print(f"\n{'class and truth':24s} {'cases':>6s} {'kind':>6s} {'place':>6s} {'loose':>6s} {'wrong':>6s}     kind, place: named; loose: kind in any standing; wrong: another kind named")

@@ -11,18 +11,17 @@ Rules (README.md, "Scoring statements"), written before the sets seventh, ninth,
   spindle). coolant, radiation and recorded_drive are heat or exchange. run_state is heat or exchange of "all", of heat the speed as well. A hidden body with a path to the hall is an exchange with it, too.
 - A statement is right if quantity and place are: of an exchange both ends, of one named by a single body that body (of a film with the ambient); of an expansion the body or the channel; of a swap both.
 - The statements of a case are taken in order of probability. "Said" is a probability of 0.9 or more; "silent" a probability of more than a half that nothing is wrong.
-- A truth that lists `statements` itself (the sets `stranger`, `visitor`, `foundry`) accepts these quantities and places, and no others. Its conductivity is an exchange at
+- A truth that lists `statements` itself (`foundry`, and the old cases of `stranger` and `visitor`) accepts these quantities and places, and no others. Its conductivity is an exchange at
   that body, its expansion a displacement there (both by the grammar's words); an exchange at one body alone is one with the ambient.
 - A run that has no statements counts as wrong, and not silent.
 """
 import argparse
 import collections
-import json
 import math
 import pathlib
 import re
 
-from score import append_csv, interval
+from score import append_csv, cases, interval
 
 QUANTITY = dict(
     heat=["heat_source", "friction_law", "recorded_drive", "heat_window"],
@@ -90,9 +89,8 @@ def right(statement, effect):
 def share(k, n):
     if n == 0:
         return "-"
-    z, p = 1.959964, k / n
-    middle, half = (p + z * z / (2 * n)) / (1 + z * z / n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return f"{k} of {n}, {100 * p:.0f} % ({100 * max(0, middle - half):.0f} to {100 * min(1, middle + half):.0f})"
+    p, low, high = interval(k, n)
+    return f"{k} of {n}, {p:.0f} % ({low:.0f} to {high:.0f})"
 
 
 def main():
@@ -105,12 +103,9 @@ def main():
     counts, bins = collections.defaultdict(collections.Counter), collections.defaultdict(list)
     kinds, log_score, seconds = collections.defaultdict(list), [], []
     for folder in a.cases:
-        for case in sorted(pathlib.Path(folder).glob("case_*")):
-            truth = json.loads((case / "truth.json").read_text())
-            file = case / a.diagnoses / "diagnosis.json"
-            if not file.exists() and not (case / f"{a.diagnoses}.exit").exists():
+        for case, truth, d in cases(folder, a.diagnoses):
+            if d is None:
                 continue
-            d = json.loads(file.read_text()) if file.exists() else {}
             told, nothing = d.get("statements", []), d.get("probability_nothing_wrong", 0.0)
             seconds += [d["seconds"]] if "seconds" in d else []
             effects = truth["effects"]

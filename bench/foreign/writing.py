@@ -33,15 +33,22 @@ def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="
     for a, b in machine.links:
         if not (a in machine.air and b == "hall"):
             out.append(f"  - {{type: link, node: {a}, to: {body(b)}, conductance: {g(v[f'G {a} {b}'])} W/K{known_to(machine, {'conductance': f'G {a} {b}'})}}}")
+    for a, b in machine.fans:
+        out.append(f"  - {{type: link, node: {a}, to: {body(b)}, conductance: {g(v[f'fan {a} {b}'])} W/K, runs: while_spindle_turns}}")
+    for node, column, how in machine.recorded:
+        key, unit = ("opening", "") if how == "opening" else ("conductance", " W/K")
+        out.append(f"  - {{type: recorded_drive, node: {node}, {key}: {g(v[f'{how} {node}'])}{unit}, column: {column}}}")
     for node, set_point in machine.circuits:
         out.append(f"  - {{type: coolant, node: {node}, flow: {g(v['flow ' + node])} L/min, passage_conductance: {g(v['passage ' + node])} W/K, set_point: {g(set_point)} degC}}")
     for i, law in enumerate(machine.heats):
-        known = known_to(machine, {"share" if law["kind"] == "cutting_heat" else "power": f"P {i}", "exponent": f"e {i}", "idle": f"idle {i}", "decay": f"decay {i}"})
+        known = known_to(machine, {dict(cutting_heat="share", recorded_drive="gain").get(law["kind"], "power"): f"P {i}", "exponent": f"e {i}", "idle": f"idle {i}", "decay": f"decay {i}"})
         p, e = v[f"P {i}"], f", exponent: {g(v[f'e {i}'])}" if law["has_exponent"] else ""
         idle = f", idle: {g(v[f'idle {i}'])} W" if law["has_idle"] else ""
         head = f"  - {{type: {law['kind']}, node: {law['node']}"
         if law["kind"] == "cutting_heat":
             out.append(f"{head}, share: {g(p)}{known}}}")
+        elif law["kind"] == "recorded_drive":
+            out.append(f"{head}, gain: {g(p)}, column: {law['column']}{known}}}")
         elif law["kind"] == "servo_loss":
             out.append(f"{head}, power: {g(p)} W, at_feed: {g(law['at'] * 60)} m/min{e or ', exponent: 1'}{idle}, axis: {law['axis']}{known}}}")
         elif law["kind"] == "heat_source" and not law["has_exponent"]:
@@ -49,17 +56,17 @@ def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="
         else:
             decay = f", decay: {g(v[f'decay {i}'])} 1/K, at_temperature: {g(machine.t_ref)} degC" if law["has_decay"] else ""
             out.append(f"{head}, power: {g(p)} W, at_speed: {g(law['at'])} rpm{e}{idle}{decay}{known}}}")
-    out.append(f"ambient: {hall}")
-    if machine.sensors:
-        out.append("sensors:")
-        out += [f"  - {{name: {n}, node: {body(b)}}}" for n, b in machine.sensors]
-    if machine.displacements:
-        out.append("displacements:")
-        for name_d, _, nodes in machine.displacements:
-            terms = ", ".join(f"{{node: {b}, sensitivity: {g(v[f'S {name_d} {b}'])} um/K}}" for b in nodes)
-            out.append(f"  - {{name: {name_d}, sensitivities: [{terms}]}}")
-    out += ["cyclograms:", f"  plan: {{csv: {plan}}}", f"solver: {{relative_tolerance: 1e-5, absolute_tolerance: 1e-4 K, output_interval: {g(dt)} s}}"]
-    return "\n".join(out) + "\n"
+    return "\n".join(out + seen(machine.sensors, [(n, [(b, v[f"S {n} {b}"]) for b in nodes]) for n, _, nodes in machine.displacements], dt, hall, plan)) + "\n"
+
+
+def seen(sensors, displacements, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="measured_1.csv"):
+    """The end of a scenario. sensors: (name, body); displacements: (name, [(body, um/K)])."""
+    out = [f"ambient: {hall}"]
+    if sensors:
+        out += ["sensors:"] + [f"  - {{name: {n}, node: {body(b)}}}" for n, b in sensors]
+    if displacements:
+        out += ["displacements:"] + [f"  - {{name: {n}, sensitivities: [" + ", ".join(f"{{node: {b}, sensitivity: {g(x)} um/K}}" for b, x in terms) + "]}" for n, terms in displacements]
+    return out + ["cyclograms:", f"  plan: {{csv: {plan}}}", f"solver: {{relative_tolerance: 1e-5, absolute_tolerance: 1e-4 K, output_interval: {g(dt)} s}}"]
 
 
 def record_csv(machine, record, temperatures, displacements, rng=None, missing=0.0):
@@ -73,15 +80,14 @@ def record_csv(machine, record, temperatures, displacements, rng=None, missing=0
     for name, (unit, x) in record.columns.items():
         head.append(f"{name}_{unit}")
         columns.append([g(a) for a in x])
-    head.append("ambient_degC")
-    columns.append([f"{x:.2f}" for x in record.hall])
-    cells = []
-    for i, (name, _) in enumerate(machine.sensors):
-        head.append(name + "_degC")
-        cells.append([f"{x:.4f}".rstrip("0").rstrip(".") for x in temperatures[:, i]])
-    for i, (name, _, _) in enumerate(machine.displacements):
-        head.append(name + "_um")
-        cells.append([f"{x:.2f}" for x in displacements[:, i]])
+    return with_readings(head, columns, record.hall, [n for n, _ in machine.sensors], temperatures, [d[0] for d in machine.displacements], displacements, rng, missing)
+
+
+def with_readings(head, columns, hall, thermometers, temperatures, channels, displacements, rng=None, missing=0.0):
+    """A record's text. head, columns: what is recorded of the drive, as text; temperatures, displacements: row x channel."""
+    head = head + ["ambient_degC"] + [n + "_degC" for n in thermometers] + [n + "_um" for n in channels]
+    columns = columns + [[f"{x:.2f}" for x in hall]]
+    cells = [[f"{x:.4f}".rstrip("0").rstrip(".") for x in y] for y in np.transpose(temperatures)] + [[f"{x:.2f}" for x in y] for y in np.transpose(displacements)]
     if missing > 0:
         for column in cells:
             for k in np.flatnonzero(rng.random(len(column)) < missing):
